@@ -1,0 +1,28 @@
+# make demo | make test | make lint | make bench; `make build` puts the compiled core into src/ for work on the code.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.venv/installed-%: pyproject.toml CMakeLists.txt $(wildcard cpp/*) $(shell find src -name '*.py' 2>/dev/null)
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet $(if $(filter demo,$*),.,".[$*]")
+	touch $@
+
+demo: .venv/installed-demo
+	$(BIN)/abut run examples/pin-lug/job.toml
+
+test: .venv/installed-test
+	$(BIN)/python -m pytest -n 2 --durations=10
+
+lint: .venv/installed-lint
+	$(BIN)/ruff check src tests examples bench
+	$(BIN)/ruff format --check src tests examples bench
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp
+
+build:
+	$(BIN)/cmake -S . -B build/dev -DPython_EXECUTABLE=$(abspath $(BIN)/python) -DCMAKE_LIBRARY_OUTPUT_DIRECTORY=$(CURDIR)/src/abut/_core
+	$(BIN)/cmake --build build/dev
+
+.PHONY: demo test lint build bench

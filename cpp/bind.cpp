@@ -1,0 +1,9 @@
+// The module: one function per area, each in its own file.
+#include "bind.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "abut's compiled kernels: stateless, arrays in and out.";
+  abut::bind_cells(m);
+  abut::bind_solids(m);
+  abut::bind_interface(m);
+}

@@ -1,0 +1,7 @@
+"""The compiled core, and the only door to it: layers above import from here, never from the extension itself."""
+
+from __future__ import annotations
+
+from abut._core._core import shape_functions
+
+__all__ = ["shape_functions"]

@@ -1,0 +1,54 @@
+"""Argument checks shared by all layers: each says the name, what was expected and what was got."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.errors import InputError, nearest
+
+
+def finite(value: float, name: str) -> float:
+    """Return ``value`` as a float; raise InputError unless it is a finite number."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected a number, got {value!r}") from None
+    if isinstance(value, bool) or not math.isfinite(number):
+        raise InputError(f"{name}: expected a finite number, got {value!r}")
+    return number
+
+
+def positive(value: float, name: str) -> float:
+    """Return ``value`` as a float; raise InputError unless it is finite and > 0."""
+    number = finite(value, name)
+    if number <= 0.0:
+        raise InputError(f"{name}: expected a number > 0, got {value!r}")
+    return number
+
+
+def choice(value: str, name: str, allowed: Sequence[str]) -> str:
+    """Return ``value``; raise InputError unless it is one of ``allowed``."""
+    if value not in allowed:
+        hint = nearest(str(value), allowed)
+        raise InputError(f"{name}: expected one of {', '.join(allowed)}, got {value!r}{hint if 'mean' in hint else ''}")
+    return value
+
+
+def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int | None] = ()) -> NDArray[Any]:
+    """Return ``value`` as a C-contiguous array of ``dtype``; ``None`` in ``shape`` matches any extent."""
+    try:
+        result = np.ascontiguousarray(value, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name}: expected an array of {np.dtype(dtype)}, got {type(value).__name__} ({error})") from None
+    if len(shape) != result.ndim or any(want is not None and want != got for want, got in zip(shape, result.shape)):
+        expected = "(" + ", ".join("any" if extent is None else str(extent) for extent in shape) + ")"
+        raise InputError(f"{name}: expected shape {expected}, got {result.shape}")
+    if np.issubdtype(result.dtype, np.floating) and not np.isfinite(result).all():
+        where = np.argwhere(~np.isfinite(result))[0].tolist()
+        raise InputError(f"{name}: entry {where} is not a finite number")
+    return result

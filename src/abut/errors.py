@@ -1,0 +1,39 @@
+"""Every error that abut raises on purpose, each with the exit status of the command line."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class AbutError(Exception):
+    """Base of abut's errors: the message says what is wrong, where, and how to mend it."""
+
+    exit_status = 2
+
+
+class InputError(AbutError, ValueError):
+    """A job, mesh or argument that cannot be used as given."""
+
+    exit_status = 2
+
+
+class ConvergenceError(AbutError, RuntimeError):
+    """The iteration stopped before the residual met its tolerance."""
+
+    exit_status = 3
+
+
+class SingularModelError(AbutError, RuntimeError):
+    """The model has no unique solution: free rigid motion or over-constraint."""
+
+    exit_status = 4
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the closest known name, else the list of what exists."""
+    known = sorted(known)
+    match = difflib.get_close_matches(name, known, n=1)
+    if match:
+        return f"; did you mean '{match[0]}'?"
+    return f"; known: {', '.join(known)}" if known else "; there are none"

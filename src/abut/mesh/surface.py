@@ -1,0 +1,39 @@
+"""A surface as the contact core sees it: coordinates and facet connectivity, no word of cells or solids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Facets, possibly of mixed types, over a shared array of points.
+
+    points: (n_points, dim) coordinates, dim 2 or 3, any length unit; facets need not use every point.
+    kinds:  (n_facets,) uint8 codes of the facet types (``abut.mesh.cells``): line2 line3 / tri3 tri6 quad4 quad8 quad9.
+    nodes:  (n_facets, 9) int32 indices into ``points``, padded with -1; order as in ``abut.mesh.cells``, so that the
+            normal points out of the body.
+    cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
+    """
+
+    points: NDArray[np.float64]
+    kinds: NDArray[np.uint8]
+    nodes: NDArray[np.int32]
+    cells: NDArray[np.int64]
+    local: NDArray[np.int64]
+    name: str = "surface"
+
+    @property
+    def dim(self) -> int:
+        return int(self.points.shape[1])
+
+    def __len__(self) -> int:
+        return int(self.kinds.shape[0])
+
+    @property
+    def node_ids(self) -> NDArray[np.int64]:
+        """Sorted indices of the points that the facets use."""
+        return np.unique(self.nodes[self.nodes >= 0]).astype(np.int64)

@@ -1,0 +1,247 @@
+"""The model: what the user states, as frozen records that check themselves and each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from abut import checks
+from abut.errors import InputError, nearest
+from abut.mesh.mesh import Mesh
+from abut.solids.materials import LinearElastic
+
+PLANES = ("strain", "stress")
+PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
+LAWS = ("complementarity", "constraint-function")
+RULES = ("gauss", "newton-cotes")
+LINEAR = ("auto", "direct")
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees)."""
+
+    body: str
+    material: LinearElastic
+    temperature: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks.finite(self.temperature, f"solid '{self.body}': temperature")
+
+
+@dataclass(frozen=True)
+class Support:
+    """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
+    outward normal); what is left out stays free. Values in the mesh's length unit, ramped over the load steps."""
+
+    on: str
+    x: float | None = None
+    y: float | None = None
+    z: float | None = None
+    normal: float | None = None
+
+    def __post_init__(self) -> None:
+        given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
+        for name, value in given.items():
+            checks.finite(value, f"support on '{self.on}': {name}")
+        if not given:
+            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
+        if "normal" in given and len(given) > 1:
+            raise InputError(f"support on '{self.on}': give either normal or components, not both")
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """Pressure on a surface, force per area, positive into the body."""
+
+    on: str
+    value: float
+
+    def __post_init__(self) -> None:
+        checks.finite(self.value, f"pressure on '{self.on}': value")
+
+
+def _vector(values: Sequence[float], name: str) -> tuple[float, ...]:
+    try:
+        result = tuple(checks.finite(value, name) for value in values)
+    except TypeError:
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
+    if len(result) not in (2, 3):
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
+    return result
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Traction vector on a surface, force per area."""
+
+    on: str
+    value: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
+
+
+@dataclass(frozen=True)
+class Force:
+    """Total force (2D: per unit thickness), spread evenly over a surface."""
+
+    on: str
+    value: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
+
+    value: tuple[float, ...]
+    on: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
+
+
+Load = Pressure | Traction | Force | Gravity
+
+
+@dataclass(frozen=True)
+class Integration:
+    """Quadrature on segments: ``points`` per direction, or "auto" (exact on straight facets)."""
+
+    rule: str = "gauss"
+    points: int | str = "auto"
+
+    def __post_init__(self) -> None:
+        checks.choice(self.rule, "integration.rule", RULES)
+        if self.points == "auto":
+            return
+        low, high = (2, 9) if self.rule == "newton-cotes" else (1, 16)
+        if isinstance(self.points, bool) or not isinstance(self.points, int) or not low <= self.points <= high:
+            raise InputError(
+                f"integration.points: expected 'auto' or {low}..{high} for {self.rule}, got {self.points!r}"
+            )
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A contact pair. The contactor carries the pressure; ``offset`` is added to the geometric gap (negative:
+    interference), in the mesh's length unit; ``epsilon`` smooths the constraint function (dimensionless, relative to
+    the square of a reference pressure)."""
+
+    contactor: str
+    target: str
+    name: str = ""
+    kind: str = "contact"
+    pressure: str = "auto"
+    law: str = "complementarity"
+    epsilon: float = 1e-12
+    integration: Integration = field(default_factory=Integration)
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            object.__setattr__(self, "name", f"{self.contactor}-{self.target}")
+        where = f"contact '{self.name}'"
+        checks.choice(self.kind, f"{where}: kind", ("contact", "tied"))
+        checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
+        checks.choice(self.law, f"{where}: law", LAWS)
+        checks.positive(self.epsilon, f"{where}: epsilon")
+        checks.finite(self.offset, f"{where}: offset")
+        if self.contactor == self.target:
+            raise InputError(f"{where}: contactor and target are the same surface '{self.contactor}'")
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """How to solve: load steps (a linear ramp), linear solver, iterations allowed in a step."""
+
+    steps: int = 1
+    linear: str = "auto"
+    max_iterations: int = 50
+
+    def __post_init__(self) -> None:
+        for name in ("steps", "max_iterations"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+                raise InputError(f"solve.{name}: expected a whole number >= 1, got {value!r}")
+        checks.choice(self.linear, "solve.linear", LINEAR)
+
+
+@dataclass(frozen=True)
+class Model:
+    """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
+
+    ``plane`` is "strain" or "stress" in 2D and left out in 3D.
+    """
+
+    mesh: Mesh
+    solids: Sequence[Solid]
+    supports: Sequence[Support] = ()
+    loads: Sequence[Load] = ()
+    contacts: Sequence[Contact] = ()
+    plane: str | None = None
+    solve: SolveOptions = field(default_factory=SolveOptions)
+
+    def __post_init__(self) -> None:
+        for name in ("solids", "supports", "loads", "contacts"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        self._check_plane()
+        self._check_solids()
+        self._check_names()
+
+    @property
+    def dim(self) -> int:
+        return int(self.mesh.points.shape[1])
+
+    def _check_plane(self) -> None:
+        if self.dim == 2:
+            if self.plane is None:
+                raise InputError('model.plane: a 2D mesh needs plane = "strain" or "stress"')
+            checks.choice(self.plane, "model.plane", PLANES)
+        elif self.plane is not None:
+            raise InputError(f"model.plane: the mesh is 3D; leave plane out (got {self.plane!r})")
+
+    def _check_solids(self) -> None:
+        seen: set[str] = set()
+        for i, solid in enumerate(self.solids):
+            _known(solid.body, self.mesh.bodies, f"solids[{i}].body", "body")
+            if solid.body in seen:
+                raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
+            seen.add(solid.body)
+        missing = sorted(set(self.mesh.bodies) - seen)
+        if missing:
+            raise InputError(f"solids: no material for body {', '.join(map(repr, missing))}; add a solid for it")
+
+    def _check_names(self) -> None:
+        mesh = self.mesh
+        for i, support in enumerate(self.supports):
+            if support.normal is None:
+                _known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
+            else:
+                _known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
+            if self.dim == 2 and support.z is not None:
+                raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+        for i, load in enumerate(self.loads):
+            if isinstance(load, Gravity):
+                if load.on is not None:
+                    _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
+            else:
+                _known(load.on, mesh.surfaces, f"loads[{i}].on", "surface")
+            if not isinstance(load, Pressure) and len(load.value) != self.dim:
+                raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
+        names: set[str] = set()
+        for i, contact in enumerate(self.contacts):
+            _known(contact.contactor, mesh.surfaces, f"contacts[{i}].contactor", "surface")
+            _known(contact.target, mesh.surfaces, f"contacts[{i}].target", "surface")
+            if contact.name in names:
+                raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
+            names.add(contact.name)
+
+
+def _known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:
+    if name not in known:
+        raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")
