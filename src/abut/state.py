@@ -1,0 +1,108 @@
+"""What solving yields: iterations, steps and the solution, as frozen records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.mesh.surface import Surface
+from abut.model import Model
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One Newton iteration: one row of the live table, one line of run.jsonl.
+
+    active: multipliers in contact, over all pairs; changed: how many changed since the iteration before;
+    residual: equilibrium residual over the reference force; contact_residual: largest violation of the contact law over
+    the reference pressure; penetration: largest penetration over the contactor's facet size.
+    """
+
+    step: int
+    iteration: int
+    active: int
+    changed: int
+    residual: float
+    contact_residual: float
+    penetration: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class ContactResult:
+    """One contact pair at the end of a step.
+
+    force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
+    pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length.
+    covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
+    target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
+    For tied pairs ``pressure`` is the normal part of the tie traction (compression positive).
+    """
+
+    name: str
+    contactor: Surface
+    target: Surface
+    force: NDArray[np.float64]
+    max_pressure: float
+    area: float
+    max_penetration: float
+    active: int
+    multipliers: int
+    removed: int
+    segments: int
+    pressure: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    covered: NDArray[np.bool_]
+    target_pressure: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Step:
+    """The state at the end of a load step. ``factor`` in (0, 1] is the share of loads and displacements applied.
+
+    displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
+    reaction: (dim,) resultant of all supports; load: (dim,) resultant of all loads.
+    """
+
+    number: int
+    factor: float
+    converged: bool
+    iterations: tuple[Iteration, ...]
+    displacement: NDArray[np.float64]
+    stress: NDArray[np.float64]
+    reaction: NDArray[np.float64]
+    load: NDArray[np.float64]
+    contacts: tuple[ContactResult, ...]
+    cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+
+
+@dataclass(frozen=True)
+class Solution:
+    """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state)."""
+
+    model: Model
+    steps: tuple[Step, ...]
+    dofs: int
+    solver: str
+    notes: tuple[str, ...]
+    timings: Mapping[str, float]
+
+    @property
+    def converged(self) -> bool:
+        return all(step.converged for step in self.steps)
+
+    @property
+    def contacts(self) -> tuple[ContactResult, ...]:
+        """The contact results of the last step."""
+        return self.steps[-1].contacts
+
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """Displacement at the end of the last step, (n_points, dim)."""
+        return self.steps[-1].displacement
+
+
+Observer = Callable[[Iteration | str], None]  # gets each iteration, and notes as text
