@@ -1,5 +1,89 @@
+// Segments and coupling for Python; arguments are checked there.
 #include "bind.hpp"
+#include "segments.hpp"
+#include <nanobind/stl/vector.h>
 
 namespace abut {
-void bind_interface(nb::module_ &) {}
+
+static SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes) {
+  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != 9) throw nb::value_error("nodes must be (facets, 9)");
+  return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
+}
+
+static RuleTable table(Tensor3<double> rules) {
+  if (rules.shape(0) != 4) throw nb::value_error("rules must be (4, count, width)");
+  const std::size_t step = rules.shape(1) * rules.shape(2);
+  const double *data = rules.data();
+  return {rules.shape(1), rules.shape(2), data, data + step, data + 2 * step, data + 3 * step};
+}
+
+static nb::tuple plan_facets(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes,
+                             Tensor3<double> rules, double tolerance) {
+  const SurfaceView surface = view(points, kinds, nodes);
+  const RuleTable rule_table = table(rules);
+  std::vector<std::int32_t> count, subdivisions;
+  {
+    nb::gil_scoped_release release;
+    plan(surface, rule_table, tolerance, count, subdivisions);
+  }
+  return nb::make_tuple(to_numpy(std::move(count)), to_numpy(std::move(subdivisions)));
+}
+
+static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> kinds_c, Matrix<std::int32_t> nodes_c,
+                                Tensor3<double> normals, Matrix<double> points_t, Vector<std::uint8_t> kinds_t,
+                                Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
+                                Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
+                                Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
+                                double reach) {
+  SurfaceView contactor = view(points_c, kinds_c, nodes_c);
+  const SurfaceView target = view(points_t, kinds_t, nodes_t);
+  contactor.normals = normals.data();
+  const RuleTable rule_table = table(rules);
+  const std::size_t dim = contactor.dim, facets = contactor.facets, width = vectorial ? dim : 1;
+  Coupling c;
+  {
+    nb::gil_scoped_release release;
+    c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
+               {degree, vectorial, keep_points, reach});
+  }
+  nb::dict out;
+  auto entries = [&](const char *name, Entries &e) {
+    const std::size_t n = e.row.size();
+    out[name] = nb::make_tuple(to_numpy(std::move(e.row)), to_numpy(std::move(e.column)),
+                               to_numpy(std::move(e.value), {n, width}));
+  };
+  entries("contactor", c.contactor);
+  entries("target", c.target);
+  out["gap"] = to_numpy(std::move(c.gap), {facets, 9});
+  out["weight"] = to_numpy(std::move(c.weight), {facets, 9});
+  out["mass"] = to_numpy(std::move(c.mass), {facets, 9, 9});
+  out["covered"] = to_numpy(std::move(c.covered));
+  out["segments"] = to_numpy(std::move(c.segments));
+  out["first_target"] = to_numpy(std::move(c.first_target));
+  if (keep_points) {
+    const std::size_t n = c.points.weight.size();
+    out["point_weight"] = to_numpy(std::move(c.points.weight));
+    out["point_gap"] = to_numpy(std::move(c.points.gap));
+    out["point_normal"] = to_numpy(std::move(c.points.normal), {n, dim});
+    out["point_pressure"] = to_numpy(std::move(c.points.pressure), {n, 9});
+    out["point_contactor"] = to_numpy(std::move(c.points.contactor), {n, 9});
+    out["point_target"] = to_numpy(std::move(c.points.target), {n, 9});
+    out["point_contactor_facet"] = to_numpy(std::move(c.points.contactor_facet));
+    out["point_target_facet"] = to_numpy(std::move(c.points.target_facet));
+  }
+  return out;
+}
+
+void bind_interface(nb::module_ &m) {
+  m.def("plan_facets", &plan_facets, nb::arg("points").noconvert(), nb::arg("kinds").noconvert(),
+        nb::arg("nodes").noconvert(), nb::arg("rules").noconvert(), nb::arg("tolerance"),
+        "Integration points per direction and subdivisions of every facet, so that it meets its own moments.");
+  m.def("couple_surfaces", &couple_surfaces, nb::arg("points_c").noconvert(), nb::arg("kinds_c").noconvert(),
+        nb::arg("nodes_c").noconvert(), nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(),
+        nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
+        nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
+        nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
+        nb::arg("reach"), "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
+}
+
 } // namespace abut

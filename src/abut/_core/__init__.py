@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from abut._core._core import shape_functions
+from abut._core._core import couple_surfaces, plan_facets, shape_functions
 
-__all__ = ["shape_functions"]
+__all__ = ["couple_surfaces", "plan_facets", "shape_functions"]

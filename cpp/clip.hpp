@@ -1,0 +1,133 @@
+// Plane polygons with straight or parabolic edges: clipping, and integration over the result.
+#pragma once
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace abut {
+
+struct Point2 {
+  double x, y;
+};
+inline Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
+inline Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
+inline Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
+inline double cross2(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
+inline double dot2(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
+
+// The curve a + t (b - a) + t (1 - t) bulge, t in [0, 1]; straight when the bulge is zero.
+struct Curve {
+  Point2 a, b, bulge;
+  bool straight;
+  Point2 at(double t) const { return a + t * (b - a) + (t * (1 - t)) * bulge; }
+  Point2 slope(double t) const { return (b - a) + (1 - 2 * t) * bulge; }
+  // Parameter of the curve's point nearest to p.
+  double parameter(Point2 p) const {
+    const Point2 chord = b - a;
+    double t = dot2(p - a, chord) / dot2(chord, chord);
+    for (int i = 0; i < 4 && !straight; ++i) {
+      const Point2 s = slope(t);
+      t -= dot2(at(t) - p, s) / dot2(s, s);
+    }
+    return t;
+  }
+};
+
+constexpr int MAX_CLIP = 16; // vertices of a clipped polygon: a quadrilateral cut by four lines has at most eight
+
+// A vertex and the edge that leaves it: `side` 0 subject, 1 clip; `edge` its number there.
+struct Vertex {
+  Point2 p;
+  int side, edge;
+};
+
+struct Polygon {
+  int size = 0;
+  std::array<Vertex, MAX_CLIP> v;
+  void push(const Vertex &w) {
+    if (size < MAX_CLIP) v[size++] = w;
+  }
+};
+
+inline double signed_area(const Point2 *p, int n) {
+  double sum = 0;
+  for (int i = 1; i + 1 < n; ++i) sum += cross2(p[i] - p[0], p[i + 1] - p[0]);
+  return 0.5 * sum;
+}
+
+inline bool convex(const Point2 *p, int n) {
+  for (int i = 0; i < n; ++i)
+    if (cross2(p[(i + 1) % n] - p[i], p[(i + 2) % n] - p[(i + 1) % n]) < 0) return false;
+  return true;
+}
+
+// Part of `subject` on the left of every edge of the counter-clockwise convex polygon `clip` (Sutherland-Hodgman, with
+// the origin of each edge kept).
+inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count) {
+  Polygon current = subject;
+  for (int j = 0; j < count && current.size > 2; ++j) {
+    const Point2 a = clip[j], edge = clip[(j + 1) % count] - a;
+    Polygon next;
+    for (int i = 0; i < current.size; ++i) {
+      const Vertex &p = current.v[i], &q = current.v[(i + 1) % current.size];
+      const double dp = cross2(edge, p.p - a), dq = cross2(edge, q.p - a);
+      if (dp >= 0) next.push(p);
+      if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
+        const Point2 at = p.p + (dp / (dp - dq)) * (q.p - p.p);
+        next.push(dp > 0 ? Vertex{at, 1, j} : Vertex{at, p.side, p.edge});
+      } else if (dp == 0 && dq < 0) {
+        next.v[next.size - 1].side = 1, next.v[next.size - 1].edge = j;
+      }
+    }
+    current = next;
+  }
+  return current;
+}
+
+// Moves a vertex where two curves cross to their true intersection, starting from that of the chords.
+inline void polish(const Curve &c, const Curve &d, Point2 &p) {
+  double s = c.parameter(p), t = d.parameter(p);
+  for (int i = 0; i < 6; ++i) {
+    const Point2 f = c.at(s) - d.at(t), cs = c.slope(s), dt = d.slope(t);
+    const double det = -cross2(cs, dt);
+    if (std::abs(det) < 1e-12 * std::sqrt(dot2(cs, cs) * dot2(dt, dt))) return; // nearly parallel: keep the chords'
+    const double ds = (-f.x * -dt.y + f.y * -dt.x) / det;
+    const double step = (cs.x * -f.y + cs.y * f.x) / det;
+    s += ds, t += step;
+    if (std::abs(ds) + std::abs(step) < 1e-15) break;
+  }
+  if (s > -0.5 && s < 1.5 && t > -0.5 && t < 1.5) p = c.at(s);
+}
+
+// One-dimensional rules on [0, 1]: `t` along an edge, `r` from the apex with the weight r included.
+struct Rule {
+  int n;
+  const double *t, *wt, *r, *wr;
+};
+
+// Calls visit(point, weight) for a rule on every cone from an apex to an edge. Straight polygons are fanned from their
+// first vertex, curved ones from the mean of the vertices.
+template <class Visit>
+void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curves)[2], const Rule &rule, Visit visit) {
+  bool straight = true;
+  Point2 mean{0, 0};
+  for (int i = 0; i < polygon.size; ++i) {
+    straight = straight && curves[polygon.v[i].side][polygon.v[i].edge].straight;
+    mean = mean + (1.0 / polygon.size) * polygon.v[i].p;
+  }
+  const Point2 apex = straight ? polygon.v[0].p : mean;
+  for (int i = straight ? 1 : 0; i < polygon.size - (straight ? 1 : 0); ++i) {
+    const Point2 p = polygon.v[i].p, q = polygon.v[(i + 1) % polygon.size].p;
+    const Curve &curve = curves[polygon.v[i].side][polygon.v[i].edge];
+    const double t0 = curve.straight ? 0 : curve.parameter(p), t1 = curve.straight ? 1 : curve.parameter(q);
+    for (int k = 0; k < rule.n; ++k) {
+      const double t = t0 + rule.t[k] * (t1 - t0);
+      const Point2 on = curve.straight ? p + rule.t[k] * (q - p) : curve.at(t);
+      const Point2 along = curve.straight ? q - p : (t1 - t0) * curve.slope(t);
+      const double jacobian = cross2(on - apex, along) * rule.wt[k];
+      for (int m = 0; m < rule.n; ++m) visit(apex + rule.r[m] * (on - apex), jacobian * rule.wr[m]);
+    }
+  }
+}
+
+} // namespace abut

@@ -1,0 +1,116 @@
+// Flattening facets into a plane: the pieces that are clipped against each other.
+#pragma once
+#include "segments.hpp"
+
+namespace abut {
+
+// The mean plane of a facet; coordinates in it along e1, e2.
+struct Plane {
+  double origin[3], e1[3], e2[3], n[3];
+  Point2 flat(const double *x) const {
+    const double d[3] = {x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]};
+    return {dot(d, e1, 3), dot(d, e2, 3)};
+  }
+  double height(const double *x) const {
+    const double d[3] = {x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]};
+    return dot(d, n, 3);
+  }
+  void lift(Point2 p, double *x) const {
+    for (int a = 0; a < 3; ++a) x[a] = origin[a] + p.x * e1[a] + p.y * e2[a];
+  }
+};
+
+inline Plane mean_plane(const Facet<double> &f) {
+  Plane plane;
+  const int corners = f.triangle() ? 3 : 4;
+  double area[3] = {0, 0, 0};
+  for (int a = 0; a < 3; ++a) {
+    plane.origin[a] = 0;
+    for (int i = 0; i < corners; ++i) plane.origin[a] += f.x[i][a] / corners;
+  }
+  double p[3], q[3], c[3]; // half the cross product of the diagonals, or of two edges
+  for (int a = 0; a < 3; ++a) {
+    p[a] = f.x[2][a] - f.x[0][a];
+    q[a] = corners == 4 ? f.x[3][a] - f.x[1][a] : f.x[2][a] - f.x[1][a];
+  }
+  if (corners == 3)
+    for (int a = 0; a < 3; ++a) p[a] = f.x[1][a] - f.x[0][a];
+  cross(p, q, c);
+  for (int a = 0; a < 3; ++a) area[a] += c[a];
+  normalize(area, 3);
+  for (int a = 0; a < 3; ++a) plane.n[a] = area[a];
+  frame(plane.n, plane.e1, plane.e2);
+  return plane;
+}
+
+inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
+  Curve curve{a, b, {0, 0}, true};
+  if (!middle) return curve;
+  const Point2 chord = b - a;
+  curve.bulge = 4.0 * (*middle - 0.5 * (a + b));
+  curve.straight = std::abs(cross2(chord, curve.bulge)) < 4e-13 * dot2(chord, chord);
+  if (curve.straight) curve.bulge = {0, 0};
+  return curve;
+}
+
+// The pieces of a facet divided m x m, counter-clockwise; `to_plane` maps reference coordinates to the plane and returns
+// false where that fails. `reverse` turns the order (a target seen from the contactor). Back-facing pieces are left out.
+template <class Map>
+void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
+  const bool triangle = f.triangle(), curved = quadratic(f.kind);
+  auto grid = [&](double i, double j, double *xi) {
+    xi[0] = triangle ? i / m : -1 + 2 * i / m, xi[1] = triangle ? j / m : -1 + 2 * j / m;
+  };
+  auto add = [&](const double (*corner)[2], int size) {
+    Piece piece;
+    piece.size = size;
+    Point2 middle[4];
+    double xi[2];
+    for (int i = 0; i < size; ++i) {
+      const int k = reverse ? size - 1 - i : i, next = reverse ? (k + size - 1) % size : (k + 1) % size;
+      grid(corner[k][0], corner[k][1], xi);
+      if (!to_plane(xi, piece.p[i])) return;
+      if (!curved) continue;
+      grid(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]), xi);
+      if (!to_plane(xi, middle[i])) return;
+    }
+    if (signed_area(piece.p, size) <= 0) return;
+    for (int i = 0; i < size; ++i)
+      piece.curve[i] = make_curve(piece.p[i], piece.p[(i + 1) % size], curved ? &middle[i] : nullptr);
+    if (size == 3 || convex(piece.p, 4)) {
+      out.push_back(piece);
+      return;
+    }
+    // A quadrilateral that is not convex in this plane: cut along the diagonal from its reflex corner.
+    int reflex = 0;
+    for (int i = 0; i < 4; ++i)
+      if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0) reflex = i;
+    for (int half = 0; half < 2; ++half) {
+      const int a = reflex, b = (reflex + (half == 0 ? 1 : 2)) % 4, c = (reflex + (half == 0 ? 2 : 3)) % 4;
+      Piece part;
+      part.size = 3;
+      part.p[0] = piece.p[a], part.p[1] = piece.p[b], part.p[2] = piece.p[c];
+      part.curve[0] = half == 0 ? piece.curve[a] : make_curve(piece.p[a], piece.p[b], nullptr);
+      part.curve[1] = piece.curve[b];
+      part.curve[2] = half == 0 ? make_curve(piece.p[c], piece.p[a], nullptr) : piece.curve[c];
+      if (signed_area(part.p, 3) > 0) out.push_back(part);
+    }
+  };
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < (triangle ? m - i : m); ++j) {
+      const double a = i, b = j;
+      if (!triangle) {
+        const double quad[4][2] = {{a, b}, {a + 1, b}, {a + 1, b + 1}, {a, b + 1}};
+        add(quad, 4);
+        continue;
+      }
+      const double up[3][2] = {{a, b}, {a + 1, b}, {a, b + 1}};
+      add(up, 3);
+      if (i + j < m - 1) {
+        const double down[3][2] = {{a + 1, b}, {a + 1, b + 1}, {a, b + 1}};
+        add(down, 3);
+      }
+    }
+}
+
+} // namespace abut

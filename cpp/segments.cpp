@@ -1,0 +1,477 @@
+// The 2D and 3D loops over contactor facets; see docs/theory.md for the construction.
+#include "segments.hpp"
+#include "flatten.hpp"
+#include "tree.hpp"
+
+namespace abut {
+
+Facet<double> SurfaceView::facet(std::size_t f) const {
+  Facet<double> out;
+  out.kind = kinds[f], out.dim = dim, out.nodes = NODES[out.kind];
+  for (int i = 0; i < out.nodes; ++i)
+    for (int a = 0; a < dim; ++a) {
+      out.x[i][a] = points[std::size_t(nodes[9 * f + i]) * dim + a];
+      if (normals) out.normals[i][a] = normals[(9 * f + i) * dim + a];
+    }
+  return out;
+}
+
+namespace {
+
+Box box_of(const Facet<double> &f) {
+  Box box;
+  for (int i = 0; i < f.nodes; ++i) box.add(f.x[i], f.dim);
+  if (quadratic(f.kind)) box.inflate(0.15 * box.diagonal(f.dim), f.dim);
+  return box;
+}
+
+int pressure_functions(int kind, int degree) { return degree == 0 ? 1 : degree == 1 ? CORNERS[kind] : NODES[kind]; }
+
+void pressure_values(int kind, int degree, const double *xi, const double *own, double *h) {
+  if (degree == 0) {
+    h[0] = 1;
+  } else if (degree == 2 || !quadratic(kind)) {
+    for (int k = 0; k < NODES[kind]; ++k) h[k] = own[k];
+  } else {
+    double d[MAX_FACET_NODES][3];
+    shape(LINEAR[kind], xi, h, d);
+  }
+}
+
+// Sums of one contactor facet with all its targets.
+class Accumulator {
+public:
+  Accumulator(Coupling &out, const Options &options, int dim) : out_(out), options_(options), dim_(dim) {}
+
+  void begin(std::size_t f, const Facet<double> &c) {
+    f_ = f, functions_ = pressure_functions(c.kind, options_.degree), nodes_ = c.nodes;
+    clear(&own_[0][0][0]);
+  }
+  void begin_target(std::size_t t, int nodes) { t_ = t, target_nodes_ = nodes, hit_ = false, clear(&other_[0][0][0]); }
+
+  // A point with weight dS, gap g, normal N from target to contactor, and the shape functions of both sides.
+  void add(int kind, const double *xi, const double *nc, const double *nt, double weight, double gap,
+           const double *normal) {
+    double h[MAX_FACET_NODES] = {0};
+    pressure_values(kind, options_.degree, xi, nc, h);
+    hit_ = true;
+    out_.covered[f_] += weight;
+    const int width = options_.vectorial ? dim_ : 1;
+    for (int k = 0; k < functions_; ++k) {
+      const double wh = weight * h[k];
+      out_.gap[9 * f_ + k] += wh * gap, out_.weight[9 * f_ + k] += wh;
+      for (int l = 0; l < functions_; ++l) out_.mass[81 * f_ + 9 * k + l] += wh * h[l];
+      for (int a = 0; a < width; ++a) {
+        const double whn = options_.vectorial ? wh * normal[a] : wh;
+        for (int j = 0; j < nodes_; ++j) own_[k][j][a] += whn * nc[j];
+        for (int j = 0; j < target_nodes_; ++j) other_[k][j][a] += whn * nt[j];
+      }
+    }
+    if (options_.keep_points) keep(h, nc, nt, weight, gap, normal);
+  }
+
+  void end_target(const std::int32_t *nodes) {
+    if (!hit_) return;
+    if (out_.first_target[f_] < 0) out_.first_target[f_] = std::int32_t(t_);
+    emit(out_.target, other_, nodes, target_nodes_);
+  }
+  void count_segment() { ++out_.segments[f_]; }
+  void end(const std::int32_t *nodes) {
+    if (out_.segments[f_] > 0) emit(out_.contactor, own_, nodes, nodes_);
+  }
+
+private:
+  using Block = double[MAX_FACET_NODES][MAX_FACET_NODES][3];
+  static void clear(double *block) { std::fill(block, block + MAX_FACET_NODES * MAX_FACET_NODES * 3, 0.0); }
+
+  void emit(Entries &entries, const Block &block, const std::int32_t *nodes, int count) {
+    const int width = options_.vectorial ? dim_ : 1;
+    for (int k = 0; k < functions_; ++k)
+      for (int j = 0; j < count; ++j) {
+        entries.row.push_back(std::int32_t(9 * f_ + k));
+        entries.column.push_back(nodes[j]);
+        entries.value.insert(entries.value.end(), block[k][j], block[k][j] + width);
+      }
+  }
+
+  void keep(const double *h, const double *nc, const double *nt, double weight, double gap, const double *normal) {
+    IntegrationPoints &p = out_.points;
+    p.weight.push_back(weight), p.gap.push_back(gap);
+    p.normal.insert(p.normal.end(), normal, normal + dim_);
+    for (int k = 0; k < MAX_FACET_NODES; ++k) {
+      p.pressure.push_back(k < functions_ ? h[k] : 0);
+      p.contactor.push_back(k < nodes_ ? nc[k] : 0);
+      p.target.push_back(k < target_nodes_ ? nt[k] : 0);
+    }
+    p.contactor_facet.push_back(std::int32_t(f_)), p.target_facet.push_back(std::int32_t(t_));
+  }
+
+  Coupling &out_;
+  const Options &options_;
+  int dim_;
+  std::size_t f_ = 0, t_ = 0;
+  int functions_ = 0, nodes_ = 0, target_nodes_ = 0;
+  bool hit_ = false;
+  Block own_, other_;
+};
+
+// ---- 2D ------------------------------------------------------------------------------------------------------------
+
+// Where the contactor sees the point v along its continuous normal, clamped to the facet: the root of
+// (v - x(xi)) x n(xi), which neighbouring facets share at their common node.
+double sees(const Facet<double> &c, const double *v) {
+  auto ahead = [&](double xi) { // > 0 where v lies ahead of xi
+    double x[3], tangent[2][3], n[3];
+    c.at(&xi, x, tangent, n);
+    return -((v[0] - x[0]) * n[1] - (v[1] - x[1]) * n[0]);
+  };
+  double low = -1, high = 1, at_low = ahead(low), at_high = ahead(high);
+  if (at_low <= 0) return -1;
+  if (at_high >= 0) return 1;
+  double xi = low + (high - low) * at_low / (at_low - at_high);
+  for (int i = 0; i < 60; ++i) { // regula falsi safeguarded by bisection
+    const double value = ahead(xi);
+    if (value > 0)
+      low = xi, at_low = value;
+    else
+      high = xi, at_high = value;
+    if (value == 0 || high - low < 1e-15) break;
+    double next = low + (high - low) * at_low / (at_low - at_high);
+    if (i % 3 == 2) next = 0.5 * (low + high);
+    if (std::abs(next - xi) < 1e-16) break;
+    xi = next;
+  }
+  return xi;
+}
+
+void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rule, double reach, Accumulator &sums) {
+  const double begin = sees(c, t.x[1]), end = sees(c, t.x[0]); // the target runs the other way
+  if (end - begin < 1e-14) return;
+  bool counted = false;
+  double eta[2] = {0, 0};
+  for (int q = -1; q < rule.n; ++q) {
+    const double xi = q < 0 ? 0.5 * (begin + end) : begin + rule.t[q] * (end - begin);
+    double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
+    c.at(&xi, x, tangent, n);
+    const double along[2] = {-n[1], n[0]};
+    if (!project(t, x, along, along, eta)) return;
+    t.at(eta, y, target_tangent);
+    const double gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
+    if (q < 0) {
+      // The middle decides whether the two face each other within reach.
+      const double outward = target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1];
+      if (outward >= 0 || std::abs(gap) > reach) return;
+      continue;
+    }
+    double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+    c.values(&xi, nc, d), t.values(eta, nt, d);
+    const double length = std::sqrt(dot(tangent[0], tangent[0], 2)), normal[2] = {-n[0], -n[1]};
+    if (!counted) sums.count_segment(), counted = true;
+    sums.add(c.kind, &xi, nc, nt, rule.wt[q] * (end - begin) * length, gap, normal);
+  }
+}
+
+// ---- 3D ------------------------------------------------------------------------------------------------------------
+
+// The contactor facet in its mean plane, and the way its continuous normal carries points of space into that plane.
+struct Contactor3 {
+  Facet<double> facet;
+  Plane plane;
+  bool flat; // all nodal normals along the plane's normal: projection is plain
+  std::vector<Piece> pieces;
+
+  Contactor3(const Facet<double> &f, int m) : facet(f), plane(mean_plane(f)) {
+    flat = true;
+    for (int i = 0; i < f.nodes; ++i) {
+      double d[3];
+      for (int a = 0; a < 3; ++a) d[a] = f.normals[i][a] - plane.n[a];
+      flat = flat && dot(d, d, 3) < 1e-26;
+    }
+    flatten(
+        f, m, false,
+        [&](const double *xi, Point2 &p) {
+          double x[3], tangent[2][3];
+          facet.at(xi, x, tangent);
+          p = plane.flat(x);
+          return true;
+        },
+        pieces);
+  }
+
+  bool locate(Point2 p, double *xi) const {
+    double x[3];
+    plane.lift(p, x);
+    return project(facet, x, plane.e1, plane.e2, xi);
+  }
+
+  // Foot in the plane of the contactor point whose normal line meets v; outside the facet the normal of the nearest
+  // point of the facet is used.
+  Point2 carry(const double *v) const {
+    const Point2 start = plane.flat(v);
+    if (flat) return start;
+    Point2 p = start;
+    double xi[2];
+    facet.centre(xi);
+    for (int i = 0; i < 12; ++i) {
+      locate(p, xi);
+      facet.clamp(xi);
+      double x[3], tangent[2][3], n[3];
+      facet.at(xi, x, tangent, n);
+      const double along = dot(n, plane.n, 3);
+      if (along < 0.1) return p;
+      // Height of v above the facet's tangent plane region: the contactor point itself may stand off the mean plane.
+      const double t = (plane.height(v) - plane.height(x)) / along;
+      const Point2 next = start - t * Point2{dot(n, plane.e1, 3), dot(n, plane.e2, 3)};
+      const Point2 moved = next - p;
+      p = next;
+      if (dot2(moved, moved) < 1e-30 * (dot2(p, p) + 1e-300)) break;
+    }
+    return p;
+  }
+};
+
+void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &mine, const Piece &theirs,
+                   const Rule &rule, double reach, Accumulator &sums) {
+  Polygon subject;
+  double scale = 0;
+  for (int i = 0; i < mine.size; ++i) {
+    subject.push({mine.p[i], 0, i});
+    scale += std::abs(cross2(mine.p[i] - mine.p[0], mine.p[(i + 1) % mine.size] - mine.p[0]));
+  }
+  Polygon polygon = clip_convex(subject, theirs.p, theirs.size);
+  if (polygon.size < 3) return;
+  Point2 corner[MAX_CLIP], middle{0, 0};
+  const std::array<Curve, 4> curves[2] = {mine.curve, theirs.curve};
+  for (int i = 0; i < polygon.size; ++i) {
+    Vertex &v = polygon.v[i];
+    const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
+    const Curve &in = curves[before.side][before.edge], &out = curves[v.side][v.edge];
+    if (before.side != v.side && !(in.straight && out.straight)) polish(in, out, v.p);
+    corner[i] = v.p;
+    middle = middle + (1.0 / polygon.size) * v.p;
+  }
+  if (std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale) return;
+
+  double xi[2], eta[2];
+  c.facet.centre(xi), t.centre(eta);
+  // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen.
+  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
+  auto look = [&](Point2 p) {
+    if (!c.locate(p, xi)) return HUGE_VAL;
+    c.facet.at(xi, x, tangent, n);
+    double t1[3], t2[3];
+    frame(n, t1, t2);
+    if (!project(t, x, t1, t2, eta)) return HUGE_VAL;
+    t.at(eta, y, target_tangent);
+    return (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1] + (y[2] - x[2]) * n[2];
+  };
+  if (!(std::abs(look(middle)) <= reach)) return;
+  double facing[3];
+  cross(target_tangent[0], target_tangent[1], facing);
+  if (dot(facing, n, 3) >= 0) return;
+  sums.count_segment();
+  integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
+    if (weight == 0) return;
+    const double gap = look(p);
+    if (gap == HUGE_VAL) return;
+    double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3], area[3];
+    c.facet.values(xi, nc, d), t.values(eta, nt, d);
+    cross(tangent[0], tangent[1], area);
+    const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, c.plane.n, 3), normal[3] = {-n[0], -n[1], -n[2]};
+    sums.add(c.facet.kind, xi, nc, nt, weight * stretch, gap, normal);
+  });
+}
+
+void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, const Rule &rule, double reach,
+                  std::vector<Piece> &pieces, Accumulator &sums) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (int i = 0; i < t.nodes; ++i) {
+    const double h = c.plane.height(t.x[i]);
+    low = std::min(low, h), high = std::max(high, h);
+  }
+  double thickness = 0; // of the contactor facet itself about its mean plane
+  for (int i = 0; i < c.facet.nodes; ++i) thickness = std::max(thickness, std::abs(c.plane.height(c.facet.x[i])));
+  if (low - thickness > 2 * reach || high + thickness < -2 * reach) return;
+  pieces.clear();
+  flatten(
+      t, subdivide, true,
+      [&](const double *eta, Point2 &p) {
+        double y[3], tangent[2][3];
+        t.at(eta, y, tangent);
+        p = c.carry(y);
+        return true;
+      },
+      pieces);
+  for (const Piece &mine : c.pieces)
+    for (const Piece &theirs : pieces) {
+      Box a, b;
+      for (int i = 0; i < mine.size; ++i) a.add(&mine.p[i].x, 2);
+      for (int i = 0; i < theirs.size; ++i) b.add(&theirs.p[i].x, 2);
+      if (a.meets(b, 2)) couple_pieces(c, t, mine, theirs, rule, reach, sums);
+    }
+}
+
+// ---- planning ------------------------------------------------------------------------------------------------------
+
+// Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area.
+double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &rule, const double (*exact)[9],
+                    double area) {
+  double sum[9][9] = {{0}};
+  double xi[2];
+  f.centre(xi);
+  for (const Piece &piece : own.pieces) {
+    Polygon polygon;
+    for (int i = 0; i < piece.size; ++i) polygon.push({piece.p[i], 0, i});
+    const std::array<Curve, 4> curves[2] = {piece.curve, piece.curve};
+    integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
+      if (!own.locate(p, xi)) return;
+      double x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
+      f.at(xi, x, tangent);
+      f.values(xi, n, d);
+      cross(tangent[0], tangent[1], normal);
+      weight *= std::sqrt(dot(normal, normal, 3)) / dot(normal, own.plane.n, 3);
+      for (int i = 0; i < f.nodes; ++i)
+        for (int j = 0; j < f.nodes; ++j) sum[i][j] += weight * n[i] * n[j];
+    });
+  }
+  double error = 0;
+  for (int i = 0; i < f.nodes; ++i)
+    for (int j = 0; j < f.nodes; ++j) error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+  return error / area;
+}
+
+// The same in 2D, integrating over the chord so that the inverse map is exercised.
+double moment_error_line(const Facet<double> &f, const Rule &rule, const double (*exact)[9], double length) {
+  double sum[9][9] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
+  normalize(chord, 2);
+  double xi[2] = {0, 0};
+  for (int q = 0; q < rule.n; ++q) {
+    double from[2], x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+    for (int a = 0; a < 2; ++a) from[a] = f.x[0][a] + rule.t[q] * (f.x[1][a] - f.x[0][a]);
+    if (!project(f, from, chord, chord, xi)) return HUGE_VAL;
+    f.at(xi, x, tangent);
+    f.values(xi, n, d);
+    const double speed = std::sqrt(dot(tangent[0], tangent[0], 2)) / dot(tangent[0], chord, 2);
+    const double span = (f.x[1][0] - f.x[0][0]) * chord[0] + (f.x[1][1] - f.x[0][1]) * chord[1];
+    for (int i = 0; i < f.nodes; ++i)
+      for (int j = 0; j < f.nodes; ++j) sum[i][j] += rule.wt[q] * span * speed * n[i] * n[j];
+  }
+  double error = 0;
+  for (int i = 0; i < f.nodes; ++i)
+    for (int j = 0; j < f.nodes; ++j) error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+  return error / length;
+}
+
+int subdivisions_needed(const Facet<double> &f) {
+  if (!quadratic(f.kind) || f.dim == 2) return 1;
+  const Plane plane = mean_plane(f);
+  const int corners = f.triangle() ? 3 : 4;
+  double sagitta = 0;
+  for (int i = 0; i < corners; ++i) {
+    const Point2 a = plane.flat(f.x[i]), b = plane.flat(f.x[(i + 1) % corners]), m = plane.flat(f.x[corners + i]);
+    sagitta = std::max(sagitta, std::abs(cross2(b - a, m - a)) / dot2(b - a, b - a));
+  }
+  // The error of a segment whose topology the chords get wrong goes with the square of the sagitta.
+  return std::min(12, std::max(1, int(std::ceil(std::sqrt(sagitta / 0.03) - 1e-9))));
+}
+
+} // namespace
+
+void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, std::vector<std::int32_t> &points,
+          std::vector<std::int32_t> &subdivisions) {
+  const int last = int(rules.count);
+  const Rule fine = rules.rule(last);
+  for (std::size_t f = 0; f < surface.facets; ++f) {
+    Facet<double> facet = surface.facet(f);
+    double exact[9][9] = {{0}}, area = 0;
+    const bool triangle = facet.triangle(), line = surface.dim == 2;
+    for (int p = 0; p < fine.n; ++p)
+      for (int q = 0; q < (line ? 1 : fine.n); ++q) {
+        double xi[2], weight, x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
+        if (line)
+          xi[0] = 2 * fine.t[p] - 1, weight = 2 * fine.wt[p];
+        else if (triangle)
+          xi[0] = fine.r[q] * (1 - fine.t[p]), xi[1] = fine.r[q] * fine.t[p], weight = fine.wt[p] * fine.wr[q];
+        else
+          xi[0] = 2 * fine.t[p] - 1, xi[1] = 2 * fine.t[q] - 1, weight = 4 * fine.wt[p] * fine.wt[q];
+        facet.at(xi, x, tangent);
+        facet.values(xi, n, d);
+        if (line) {
+          weight *= std::sqrt(dot(tangent[0], tangent[0], 2));
+        } else {
+          cross(tangent[0], tangent[1], normal);
+          weight *= std::sqrt(dot(normal, normal, 3));
+        }
+        area += weight;
+        for (int i = 0; i < facet.nodes; ++i)
+          for (int j = 0; j < facet.nodes; ++j) exact[i][j] += weight * n[i] * n[j];
+      }
+    const int m = subdivisions_needed(facet);
+    int n = 1;
+    if (line) {
+      for (; n < last; ++n)
+        if (moment_error_line(facet, rules.rule(n), exact, area) < tolerance) break;
+    } else {
+      for (int i = 0; i < facet.nodes; ++i)
+        for (int a = 0; a < 3; ++a) facet.normals[i][a] = 0;
+      const Contactor3 own(facet, m);
+      for (; n < last; ++n)
+        if (moment_error(facet, own, rules.rule(n), exact, area) < tolerance) break;
+    }
+    points.push_back(n);
+    subdivisions.push_back(m);
+  }
+}
+
+Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
+                const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,
+                const std::int32_t *subdivide_t, const Options &options) {
+  const int dim = contactor.dim;
+  Coupling out;
+  out.gap.assign(9 * contactor.facets, 0), out.weight.assign(9 * contactor.facets, 0);
+  out.mass.assign(81 * contactor.facets, 0), out.covered.assign(contactor.facets, 0);
+  out.segments.assign(contactor.facets, 0), out.first_target.assign(contactor.facets, -1);
+
+  std::vector<Facet<double>> targets(target.facets);
+  std::vector<Box> boxes(target.facets);
+  for (std::size_t t = 0; t < target.facets; ++t) targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
+  const Tree tree(boxes, dim);
+
+  Accumulator sums(out, options, dim);
+  std::vector<int> found;
+  std::vector<Piece> pieces;
+  for (std::size_t f = 0; f < contactor.facets; ++f) {
+    const Facet<double> c = contactor.facet(f);
+    Box swept = box_of(c);
+    for (int i = 0; i < c.nodes; ++i) {
+      double far[3];
+      for (int side = -1; side <= 1; side += 2) {
+        for (int a = 0; a < dim; ++a) far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
+        swept.add(far, dim);
+      }
+    }
+    swept.inflate(1e-9 * swept.diagonal(dim), dim);
+    tree.query(swept, found);
+    if (found.empty()) continue;
+    sums.begin(f, c);
+    if (dim == 2) {
+      for (int t : found) {
+        sums.begin_target(t, targets[t].nodes);
+        couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach, sums);
+        sums.end_target(target.nodes + 9 * t);
+      }
+    } else {
+      const Contactor3 own(c, subdivide_c[f]);
+      for (int t : found) {
+        sums.begin_target(t, targets[t].nodes);
+        couple_facet(own, targets[t], subdivide_t[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
+                     pieces, sums);
+        sums.end_target(target.nodes + 9 * t);
+      }
+    }
+    sums.end(contactor.nodes + 9 * f);
+  }
+  return out;
+}
+
+} // namespace abut

@@ -1,0 +1,71 @@
+// Cutting a contactor by the facets of a target, and integrating over the segments.
+#pragma once
+#include "clip.hpp"
+#include "project.hpp"
+#include <vector>
+
+namespace abut {
+
+struct SurfaceView {
+  int dim;
+  const double *points;
+  std::size_t facets;
+  const std::uint8_t *kinds;
+  const std::int32_t *nodes;      // facets x 9
+  const double *normals = nullptr; // facets x 9 x dim, contactor only
+  Facet<double> facet(std::size_t f) const;
+};
+
+// Rules with 1..n points: row n-1 of each table holds the rule with n points.
+struct RuleTable {
+  std::size_t count, width;
+  const double *t, *wt, *r, *wr;
+  Rule rule(int n) const {
+    const std::size_t row = (std::size_t(n) < 1 ? 0 : std::size_t(n) > count ? count - 1 : n - 1);
+    return {int(row) + 1, t + row * width, wt + row * width, r + row * width, wr + row * width};
+  }
+};
+
+// A facet flattened into a plane: one convex polygon, or several where edges are curved or the facet is not convex.
+struct Piece {
+  int size;
+  Point2 p[4];
+  std::array<Curve, 4> curve;
+};
+
+// What is asked of the integration.
+struct Options {
+  int degree;       // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
+  bool vectorial;   // couple along the normal (dim values an entry) or componentwise (1 value an entry)
+  bool keep_points; // also return every integration point
+  double reach;     // largest distance between the surfaces, either sign
+};
+
+// Entries are (row, column, values): row 9 f + k for pressure function k of contactor facet f, column a point number.
+struct Entries {
+  std::vector<std::int32_t> row, column;
+  std::vector<double> value;
+};
+
+struct IntegrationPoints {
+  std::vector<double> weight, gap, normal, pressure, contactor, target; // n, n, n dim, 9 n, 9 n, 9 n
+  std::vector<std::int32_t> contactor_facet, target_facet;
+};
+
+struct Coupling {
+  Entries contactor, target;
+  std::vector<double> gap, weight, mass, covered; // 9 f, 9 f, 81 f, f
+  std::vector<std::int32_t> segments, first_target; // f: number of segments; f: one target facet, -1 if none
+  IntegrationPoints points;
+};
+
+// Points per direction so that int N_i N_j over every facet alone is met to `tolerance`, from `least` up; and the
+// number of subdivisions per direction that the curvature of the facet's edges asks for.
+void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, std::vector<std::int32_t> &points,
+          std::vector<std::int32_t> &subdivisions);
+
+Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
+                const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,
+                const std::int32_t *subdivide_t, const Options &options);
+
+} // namespace abut

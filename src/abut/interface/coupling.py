@@ -1,0 +1,166 @@
+"""Coupling of a contact pair: int H_k N_j on contactor and target and the weighted gap, integrated on segments.
+
+The pressure functions here are facet by facet (discontinuous): row 9 f + k is function k of contactor facet f. The
+pressure spaces of ``abut.interface.pressure`` are combinations of these rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import couple_surfaces, plan_facets
+from abut.errors import InputError
+from abut.interface.geometry import by_kind, facet_sizes, nodal_normals
+from abut.interface.quadrature import MOMENT_TOLERANCE, rule_tables
+from abut.mesh.cells import CELLS
+from abut.mesh.surface import Surface
+
+
+@dataclass(frozen=True)
+class IntegrationPoints:
+    """The integration points of all segments of a pair (n of them).
+
+    weight: (n,) area; gap: (n,) geometric gap, length; normal: (n, dim) unit, from target to contactor;
+    pressure: (n, 9 n_facets) values of the facet-wise pressure functions;
+    gap_operator: (n, dim n_points), change of the gap by a displacement.
+    """
+
+    weight: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    pressure: Any
+    gap_operator: Any
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """The integrated interface of one contact pair.
+
+    Columns are the points of the surfaces: one shared array (``contactor.points is target.points``), or, where each
+    surface brings its own, the contactor's points followed by the target's.
+
+    operator: (9 n_facets, dim n_points) sparse, (B u)_k = int H_k (u_C - u_T) . N; for ``componentwise`` coupling
+              (9 n_facets, n_points), the same without N (one displacement component).
+    contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
+    gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
+    covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
+    """
+
+    degree: int
+    operator: Any
+    contactor_part: Any
+    target_part: Any
+    gap: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    covered: NDArray[np.float64]
+    segments: NDArray[np.int32]
+    points: IntegrationPoints | None = None
+
+
+def default_reach(contactor: Surface, target: Surface) -> float:
+    """How far apart two surfaces may lie and still be paired: two of the larger facets, or a tenth of the contactor."""
+    extent = np.ptp(contactor.points[contactor.node_ids], axis=0)
+    facet = max(facet_sizes(contactor).max(), facet_sizes(target).max())
+    return float(max(2.0 * facet, 0.1 * np.linalg.norm(extent)))
+
+
+def couple(
+    contactor: Surface,
+    target: Surface,
+    degree: int,
+    *,
+    rule: str = "gauss",
+    points: int | str = "auto",
+    reach: float | None = None,
+    componentwise: bool = False,
+    keep_points: bool = False,
+) -> Coupling:
+    """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
+
+    degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
+    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12
+            (newton-cotes: as far as its nine points go).
+    reach:  largest distance between the surfaces, length; see ``default_reach``.
+    Raises InputError where the two surfaces do not fit together (dimension, empty).
+    """
+    if contactor.dim != target.dim:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
+    for surface in (contactor, target):
+        if len(surface) == 0:
+            raise InputError(f"surface '{surface.name}' has no facets")
+    tables = rule_tables(rule)
+    order_c, split_c = _plan(contactor, tables, points)
+    order_t, split_t = _plan(target, tables, points)
+    raw = couple_surfaces(
+        contactor.points, contactor.kinds, contactor.nodes, nodal_normals(contactor),
+        target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
+        degree, not componentwise, keep_points, default_reach(contactor, target) if reach is None else reach,
+    )  # fmt: skip
+    offset, n_points = _columns(contactor, target)
+    contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)
+    target_part = _matrix(raw["target"], 9 * len(contactor), n_points, offset)
+    return Coupling(
+        degree=degree,
+        operator=(contactor_part - target_part).tocsr(),
+        contactor_part=contactor_part,
+        target_part=target_part,
+        gap=raw["gap"].ravel(),
+        weight=raw["weight"].ravel(),
+        mass=raw["mass"],
+        covered=raw["covered"],
+        segments=raw["segments"],
+        points=_points(raw, contactor, target) if keep_points else None,
+    )
+
+
+def _plan(surface: Surface, tables: NDArray[np.float64], points: int | str) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    order, split = plan_facets(surface.points, surface.kinds, surface.nodes, tables, MOMENT_TOLERANCE)
+    if points != "auto":
+        order = np.full_like(order, int(points))
+    return order, split
+
+
+def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
+    """Number of the target's first point among the columns, and how many points there are."""
+    if contactor.points is target.points:
+        return 0, len(contactor.points)
+    return len(contactor.points), len(contactor.points) + len(target.points)
+
+
+def _matrix(entries: tuple[NDArray[Any], ...], rows: int, n_points: int, offset: int) -> Any:
+    row, column, value = entries
+    width = value.shape[1]
+    columns = (width * (offset + column[:, None].astype(np.int64)) + np.arange(width)).ravel()
+    return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, width * n_points))
+
+
+def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -> IntegrationPoints:
+    n, dim = raw["point_normal"].shape
+    offset, n_points = _columns(contactor, target)
+    operator = sp.csr_matrix((n, dim * n_points))
+    for surface, name, sign, first in ((contactor, "contactor", 1.0, 0), (target, "target", -1.0, offset)):
+        facet = raw[f"point_{name}_facet"]
+        nodes = surface.nodes[facet]
+        used = nodes >= 0
+        row = np.nonzero(used)[0]
+        value = sign * raw[f"point_{name}"][used][:, None] * raw["point_normal"][row]
+        column = dim * (first + nodes[used][:, None].astype(np.int64)) + np.arange(dim)
+        operator = operator + sp.csr_matrix((value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape)
+    facet = raw["point_contactor_facet"].astype(np.int64)
+    columns = 9 * facet[:, None] + np.arange(9)
+    pressure = sp.csr_matrix(
+        (raw["point_pressure"].ravel(), (np.repeat(np.arange(n), 9), columns.ravel())), shape=(n, 9 * len(contactor))
+    )
+    pressure.eliminate_zeros()
+    return IntegrationPoints(raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator)
+
+
+def surface_degree(surface: Surface) -> int:
+    """Degree of the displacement on a surface: 2 where any facet is quadratic."""
+    return max(CELLS[kind].degree for kind, _ in by_kind(surface))

@@ -1,0 +1,121 @@
+"""Facet geometry of a surface: nodal normals, sizes, exact moments of the pressure functions."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.mesh.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.mesh.surface import Surface
+
+CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge
+
+_CORNER_XI = {
+    1: np.array([[-1.0], [1.0]]),
+    3: np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
+    4: np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]),
+}
+LINEAR_FACET = {"line3": "line2", "tri6": "tri3", "quad8": "quad4", "quad9": "quad4"}
+
+
+def node_coordinates(kind: str) -> NDArray[np.float64]:
+    """Reference coordinates (nodes, dim) of a facet type's nodes."""
+    cell = CELLS[kind]
+    corners = _CORNER_XI[1 if cell.dim == 1 else cell.corners]
+    if cell.degree == 1:
+        return corners
+    if cell.dim == 1:
+        return np.vstack([corners, [[0.0]]])
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+    return np.vstack([corners, middles, [[0.0, 0.0]]])[: cell.nodes]
+
+
+def by_kind(surface: Surface) -> list[tuple[str, NDArray[np.int64]]]:
+    """The facet types present, each with its facet numbers."""
+    return [(BY_CODE[code].name, np.flatnonzero(surface.kinds == code)) for code in np.unique(surface.kinds)]
+
+
+def _area_vectors(surface: Surface, kind: str, facets: NDArray[np.int64], xi: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Outward normal times area element at reference points xi, (facets, points, dim)."""
+    cell = CELLS[kind]
+    _, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
+    x = surface.points[surface.nodes[facets, : cell.nodes]]
+    tangents = np.einsum("pna,fnd->fpad", derivatives, x)
+    if surface.dim == 2:
+        return np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
+    return np.cross(tangents[..., 0, :], tangents[..., 1, :])
+
+
+def facet_sizes(surface: Surface) -> NDArray[np.float64]:
+    """Length of each facet: largest extent of its bounding box, (n_facets,)."""
+    x = surface.points[np.maximum(surface.nodes, 0)]
+    padded = (surface.nodes < 0)[..., None]
+    return (np.where(padded, -np.inf, x).max(axis=1) - np.where(padded, np.inf, x).min(axis=1)).max(axis=1)
+
+
+def nodal_normals(surface: Surface) -> NDArray[np.float64]:
+    """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded.
+
+    At each node the area-weighted normals of the surface's own facets are averaged, leaving out facets that meet
+    this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges.
+    """
+    own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
+    for kind, facets in by_kind(surface):
+        own[facets, : CELLS[kind].nodes] = _area_vectors(surface, kind, facets, node_coordinates(kind))
+    valid = surface.nodes >= 0
+    facet, local = np.nonzero(valid)
+    node = surface.nodes[facet, local]
+    vector = own[facet, local]
+    unit = vector / np.linalg.norm(vector, axis=1, keepdims=True)
+    total = np.zeros_like(unit)
+    order = np.argsort(node, kind="stable")
+    counts = np.bincount(node)
+    counts = counts[counts > 0]
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    # Every pair of visits to the same node, at a shift s within its group.
+    size = np.repeat(counts, counts)
+    position = np.arange(len(order)) - np.repeat(starts, counts)
+    for shift in range(int(counts.max(initial=0))):
+        has = shift < size
+        here = order[has]
+        other = order[(np.arange(len(order)) - position)[has] + (position[has] + shift) % size[has]]
+        near = np.einsum("ij,ij->i", unit[here], unit[other]) > CREASE
+        np.add.at(total, here[near], vector[other[near]])
+    result = np.zeros_like(own)
+    result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
+    return result
+
+
+def pressure_kind(kind: str, degree: int) -> str:
+    """The facet type whose shape functions carry a pressure of this degree (1: the corners', 2: the facet's own)."""
+    return kind if degree == 2 else LINEAR_FACET.get(kind, kind)
+
+
+def function_count(kind: str, degree: int) -> int:
+    """Number of pressure functions on a facet."""
+    return 1 if degree == 0 else CELLS[pressure_kind(kind, degree)].nodes
+
+
+def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
+    """int H_k over the whole of each facet, (n_facets, 9), zero where padded."""
+    moments = np.zeros((len(surface), MAX_FACET_NODES))
+    x, w = np.polynomial.legendre.leggauss(6)
+    for kind, facets in by_kind(surface):
+        cell = CELLS[kind]
+        if cell.dim == 1:
+            xi, weight = x[:, None], w
+        else:
+            a, b = (grid.ravel() for grid in np.meshgrid(x, x, indexing="ij"))
+            xi, weight = np.stack([a, b], axis=1), np.outer(w, w).ravel()
+            if cell.corners == 3:
+                r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
+                xi, weight = np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weight * r
+        area = np.linalg.norm(_area_vectors(surface, kind, facets, xi), axis=2) * weight
+        if degree == 0:
+            moments[facets, 0] = area.sum(axis=1)
+        else:
+            own = CELLS[pressure_kind(kind, degree)]
+            values, _ = shape_functions(own.code, np.ascontiguousarray(xi))
+            moments[facets, : own.nodes] = area @ values
+    return moments

@@ -1,0 +1,37 @@
+"""Rules on segments: Gauss-Legendre and closed Newton-Cotes, as tables for the compiled core.
+
+A segment is a set of cones from an apex to its edges. Along an edge the rule lives on [0, 1]; from the apex outward it
+carries the weight r of the cone, so that n x n points are exact for polynomials of degree 2 n - 2 (Gauss).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAX_POINTS = 12
+MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area
+
+
+def _gauss(n: int) -> tuple[NDArray[np.float64], ...]:
+    x, w = np.polynomial.legendre.leggauss(n)
+    t, wt = 0.5 * (x + 1.0), 0.5 * w
+    return t, wt, t, wt * t
+
+
+def _newton_cotes(n: int) -> tuple[NDArray[np.float64], ...]:
+    if n == 1:
+        return _gauss(1)
+    t = np.linspace(0.0, 1.0, n)
+    powers = np.vander(t, n, increasing=True).T
+    order = np.arange(n)
+    return t, np.linalg.solve(powers, 1.0 / (order + 1)), t, np.linalg.solve(powers, 1.0 / (order + 2))
+
+
+def rule_tables(rule: str) -> NDArray[np.float64]:
+    """Tables (4, count, width) of t, w_t, r, w_r for 1..count points; ``rule`` is "gauss" or "newton-cotes"."""
+    make, count = (_newton_cotes, 9) if rule == "newton-cotes" else (_gauss, MAX_POINTS)
+    tables = np.zeros((4, count, count))
+    for n in range(1, count + 1):
+        tables[:, n - 1, :n] = make(n)
+    return tables
