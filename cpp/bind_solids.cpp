@@ -1,5 +1,141 @@
+// Element kernels: sparsity pattern of the stiffness, and isotropic stiffness matrices scattered straight into it.
 #include "bind.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace abut {
-void bind_solids(nb::module_ &) {}
+
+// Node adjacency through cells, rows sorted: cell c has the nodes nodes[start[c] .. start[c+1]].
+static nb::tuple node_pattern(std::int64_t n_points, Vector<std::int64_t> start, Vector<std::int32_t> nodes) {
+  const std::size_t cells = start.shape(0) - 1;
+  std::vector<std::int64_t> indptr(n_points + 1, 0);
+  std::vector<std::int32_t> indices;
+  {
+    nb::gil_scoped_release release;
+    std::vector<std::int64_t> first(n_points + 1, 0);
+    const std::size_t visits = nodes.shape(0);
+    for (std::size_t i = 0; i < visits; ++i) ++first[nodes(i) + 1];
+    for (std::int64_t i = 0; i < n_points; ++i) first[i + 1] += first[i];
+    std::vector<std::int32_t> cell_of(visits);
+    std::vector<std::int64_t> fill(first.begin(), first.end() - 1);
+    for (std::size_t c = 0; c < cells; ++c)
+      for (std::int64_t i = start(c); i < start(c + 1); ++i) cell_of[fill[nodes(i)]++] = std::int32_t(c);
+    std::vector<std::int64_t> seen(n_points, -1);
+    indices.reserve(visits * 4);
+    for (std::int64_t row = 0; row < n_points; ++row) {
+      const std::size_t begin = indices.size();
+      for (std::int64_t k = first[row]; k < first[row + 1]; ++k)
+        for (std::int64_t i = start(cell_of[k]); i < start(cell_of[k] + 1); ++i)
+          if (seen[nodes(i)] != row) seen[nodes(i)] = row, indices.push_back(nodes(i));
+      std::sort(indices.begin() + begin, indices.end());
+      indptr[row + 1] = std::int64_t(indices.size());
+    }
+  }
+  return nb::make_tuple(to_numpy(std::move(indptr)), to_numpy(std::move(indices)));
+}
+
+// Expands a node pattern to dim x dim blocks.
+static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t> indices, int dim) {
+  const std::int64_t rows = std::int64_t(indptr.shape(0)) - 1;
+  std::vector<std::int64_t> start(rows * dim + 1, 0);
+  std::vector<std::int32_t> columns(indices.shape(0) * dim * dim);
+  std::size_t k = 0;
+  for (std::int64_t i = 0; i < rows; ++i)
+    for (int a = 0; a < dim; ++a) {
+      for (std::int64_t p = indptr(i); p < indptr(i + 1); ++p)
+        for (int b = 0; b < dim; ++b) columns[k++] = dim * indices(p) + b;
+      start[i * dim + a + 1] = std::int64_t(k);
+    }
+  return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)));
+}
+
+// Adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to the values of a block pattern.
+// derivatives (q, n, dim), weights (q): the rule on the reference cell; lame (cells, 2): lambda, mu of each cell.
+template <int dim>
+static void add_stiffness(const double *points, const std::int32_t *nodes, std::size_t cells, std::size_t n,
+                          const double *derivatives, const double *weights, std::size_t rule, const double *lame,
+                          const std::int64_t *indptr, const std::int32_t *indices, double *values) {
+  std::vector<double> gradient(n * dim), block(n * n * dim * dim);
+  for (std::size_t c = 0; c < cells; ++c) {
+    const std::int32_t *own = nodes + c * n;
+    const double lambda = lame[2 * c], mu = lame[2 * c + 1];
+    std::fill(block.begin(), block.end(), 0.0);
+    for (std::size_t q = 0; q < rule; ++q) {
+      const double *d = derivatives + q * n * dim;
+      double j[dim][dim] = {{0}}, inverse[dim][dim], det;
+      for (std::size_t i = 0; i < n; ++i)
+        for (int a = 0; a < dim; ++a)
+          for (int b = 0; b < dim; ++b) j[a][b] += points[std::size_t(own[i]) * dim + a] * d[i * dim + b];
+      if constexpr (dim == 2) {
+        det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        inverse[0][0] = j[1][1] / det, inverse[0][1] = -j[0][1] / det;
+        inverse[1][0] = -j[1][0] / det, inverse[1][1] = j[0][0] / det;
+      } else {
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) {
+            const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+            inverse[b][a] = j[a1][b1] * j[a2][b2] - j[a1][b2] * j[a2][b1];
+          }
+        det = j[0][0] * inverse[0][0] + j[0][1] * inverse[1][0] + j[0][2] * inverse[2][0];
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) inverse[a][b] /= det;
+      }
+      const double w = det * weights[q];
+      for (std::size_t i = 0; i < n; ++i)
+        for (int a = 0; a < dim; ++a) {
+          double sum = 0;
+          for (int b = 0; b < dim; ++b) sum += d[i * dim + b] * inverse[b][a];
+          gradient[i * dim + a] = sum;
+        }
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = i; k < n; ++k) {
+          const double *g = &gradient[i * dim], *h = &gradient[k * dim];
+          double *out = &block[(i * n + k) * dim * dim];
+          double scalar = 0;
+          for (int a = 0; a < dim; ++a) scalar += g[a] * h[a];
+          for (int a = 0; a < dim; ++a) {
+            for (int b = 0; b < dim; ++b) out[a * dim + b] += w * (lambda * g[a] * h[b] + mu * g[b] * h[a]);
+            out[a * dim + a] += w * mu * scalar;
+          }
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t row = indptr[own[i]], length = indptr[own[i] + 1] - row;
+      const std::int32_t *begin = indices + row, *end = begin + length;
+      double *out = values + row * dim * dim;
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::int64_t position = std::lower_bound(begin, end, own[k]) - begin;
+        const double *in = &block[(i <= k ? i * n + k : k * n + i) * dim * dim];
+        for (int a = 0; a < dim; ++a)
+          for (int b = 0; b < dim; ++b)
+            out[a * dim * length + position * dim + b] += i <= k ? in[a * dim + b] : in[b * dim + a];
+      }
+    }
+  }
+}
+
+static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes, Tensor3<double> derivatives,
+                               Vector<double> weights, Matrix<double> lame, Vector<std::int64_t> indptr,
+                               Vector<std::int32_t> indices,
+                               nb::ndarray<double, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu> values) {
+  const std::size_t dim = points.shape(1), n = nodes.shape(1);
+  if (derivatives.shape(1) != n || derivatives.shape(2) != dim || lame.shape(0) != nodes.shape(0) || lame.shape(1) != 2)
+    throw nb::value_error("rule, cells and materials disagree");
+  nb::gil_scoped_release release;
+  (dim == 2 ? add_stiffness<2> : add_stiffness<3>)(points.data(), nodes.data(), nodes.shape(0), n, derivatives.data(),
+                                                   weights.data(), weights.shape(0), lame.data(), indptr.data(),
+                                                   indices.data(), values.data());
+}
+
+void bind_solids(nb::module_ &m) {
+  m.def("node_pattern", &node_pattern, nb::arg("n_points"), nb::arg("start").noconvert(), nb::arg("nodes").noconvert(),
+        "CSR (indptr, indices) of which nodes share a cell, rows sorted.");
+  m.def("block_pattern", &block_pattern, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(), nb::arg("dim"),
+        "The same pattern with dim x dim blocks.");
+  m.def("assemble_stiffness", &assemble_stiffness, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(),
+        nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(), nb::arg("lame").noconvert(),
+        nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(), nb::arg("values").noconvert(),
+        "Adds the stiffness of all cells of one type to the values of a block pattern, in place.");
+}
+
 } // namespace abut

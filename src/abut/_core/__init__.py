@@ -2,6 +2,20 @@
 
 from __future__ import annotations
 
-from abut._core._core import couple_surfaces, plan_facets, shape_functions
+from abut._core._core import (
+    assemble_stiffness,
+    block_pattern,
+    couple_surfaces,
+    node_pattern,
+    plan_facets,
+    shape_functions,
+)
 
-__all__ = ["couple_surfaces", "plan_facets", "shape_functions"]
+__all__ = [
+    "assemble_stiffness",
+    "block_pattern",
+    "couple_surfaces",
+    "node_pattern",
+    "plan_facets",
+    "shape_functions",
+]

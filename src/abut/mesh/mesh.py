@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from abut.errors import InputError, nearest
+from abut.mesh.cells import CELLS, MAX_FACET_NODES
+from abut.mesh.surface import Surface
 
 
 @dataclass(frozen=True)
@@ -33,3 +38,63 @@ class Mesh:
     bodies: Mapping[str, NDArray[np.int64]]
     surfaces: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     node_sets: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
+
+    @staticmethod
+    def read(path: str | Path) -> Mesh:
+        """Read a Gmsh ``.msh`` (2.2 or 4.1) or ``.vtu`` file and check it.
+
+        Raises InputError for a file that is missing, truncated, of another kind, or whose mesh is unsound.
+        """
+        from abut.mesh.read import read_mesh
+
+        return read_mesh(Path(path))
+
+    @property
+    def dim(self) -> int:
+        return int(self.points.shape[1])
+
+    @property
+    def n_cells(self) -> int:
+        return sum(len(block.nodes) for block in self.blocks)
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """First cell number of each block, and the total at the end."""
+        return np.concatenate([[0], np.cumsum([len(block.nodes) for block in self.blocks])]).astype(np.int64)
+
+    def surface(self, name: str) -> Surface:
+        """The facets of a named surface, over this mesh's own points array. Raises InputError for an unknown name."""
+        if name not in self.surfaces:
+            raise InputError(f"no surface named {name!r} in the mesh{nearest(name, self.surfaces)}")
+        return self.facets(self.surfaces[name], name)
+
+    def facets(self, rows: NDArray[np.int64], name: str = "surface") -> Surface:
+        """Facets given as rows (cell number, local facet number)."""
+        cells, local = rows[:, 0], rows[:, 1]
+        kinds = np.zeros(len(rows), dtype=np.uint8)
+        nodes = np.full((len(rows), MAX_FACET_NODES), -1, dtype=np.int32)
+        starts = self.starts
+        for block, first, last in zip(self.blocks, starts, starts[1:]):
+            inside = (cells >= first) & (cells < last)
+            for number, (kind, own) in enumerate(CELLS[block.kind].facets):
+                pick = np.flatnonzero(inside & (local == number))
+                kinds[pick] = CELLS[kind].code
+                nodes[pick, : len(own)] = block.nodes[cells[pick] - first][:, own]
+        return Surface(self.points, kinds, nodes, cells.copy(), local.copy(), name)
+
+    def nodes_of(self, name: str) -> NDArray[np.int64]:
+        """Sorted point numbers of a surface, node set or body. Raises InputError for an unknown name."""
+        if name in self.surfaces:
+            return self.surface(name).node_ids
+        if name in self.node_sets:
+            return self.node_sets[name]
+        if name in self.bodies:
+            starts = self.starts
+            cells = self.bodies[name]
+            parts = [
+                block.nodes[cells[(cells >= first) & (cells < last)] - first].ravel()
+                for block, first, last in zip(self.blocks, starts, starts[1:])
+            ]
+            return np.unique(np.concatenate(parts)).astype(np.int64)
+        known = [*self.surfaces, *self.node_sets, *self.bodies]
+        raise InputError(f"no surface, node set or body named {name!r} in the mesh{nearest(name, known)}")

@@ -1,0 +1,5 @@
+"""The spine: from a model to its solution."""
+
+from abut.analysis.solve import solve
+
+__all__ = ["solve"]

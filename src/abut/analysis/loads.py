@@ -1,0 +1,34 @@
+"""The load vector of a model."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.model import Force, Gravity, Model, Pressure, Traction
+from abut.solids.elements import gravity_load, thermal_load
+from abut.solids.loads import force_load, pressure_load, traction_load
+
+
+def applied_load(model: Model) -> NDArray[np.float64]:
+    """Nodal forces of all loads at full size, (dim n_points,)."""
+    mesh = model.mesh
+    total = np.zeros(mesh.points.size)
+    for load in model.loads:
+        if isinstance(load, Pressure):
+            total += pressure_load(mesh.surface(load.on), load.value)
+        elif isinstance(load, Traction):
+            total += traction_load(mesh.surface(load.on), np.array(load.value))
+        elif isinstance(load, Force):
+            total += force_load(mesh.surface(load.on), np.array(load.value))
+        elif isinstance(load, Gravity):
+            density = {s.body: s.material.density for s in model.solids if load.on in (None, s.body)}
+            total += gravity_load(mesh, density, np.array(load.value))
+    return total
+
+
+def external_load(model: Model) -> NDArray[np.float64]:
+    """Applied loads and the forces of thermal strains, (dim n_points,)."""
+    materials = {solid.body: solid.material for solid in model.solids}
+    temperatures = {solid.body: solid.temperature for solid in model.solids}
+    return applied_load(model) + thermal_load(model.mesh, materials, temperatures, model.plane)

@@ -1,0 +1,126 @@
+"""From the unknowns of a step to what a user reads."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.analysis.loads import applied_load
+from abut.discretization.pairs import Pair
+from abut.discretization.supports import Supports
+from abut.interface.recover import carry_to_target, facet_node_values
+from abut.model import Model
+from abut.solids.elements import nodal_stress
+from abut.solvers.active_set import Outcome, System
+from abut.state import ContactResult, Step
+
+
+def step_result(
+    model: Model,
+    stiffness: Any,
+    load: NDArray[np.float64],
+    held: Supports,
+    system: System,
+    outcome: Outcome,
+    number: int,
+    factor: float,
+) -> Step:
+    """Collect displacement, stress, reactions and contact results at a share ``factor`` of the load."""
+    dim = model.dim
+    unknowns = outcome.unknowns
+    displacement = held.free @ unknowns.displacement + factor * held.prescribed
+    pressures = system.split(unknowns.pressure)
+    contact_force = np.zeros_like(displacement)
+    for pair, pressure in zip(system.pairs, pressures):
+        contact_force += pair.rows.T @ pressure
+    reaction = stiffness @ displacement - factor * load - contact_force
+    nodal = displacement.reshape(-1, dim)
+    temperatures = {solid.body: factor * solid.temperature for solid in model.solids}
+    materials = {solid.body: solid.material for solid in model.solids}
+    cycling = {}
+    for pair, own in zip(system.pairs, system.split(outcome.cycling)):
+        if own.any():
+            rows = np.unique(pair.space.transfer[:, own].tocoo().row // 9)
+            cycling[pair.contact.name] = rows.astype(np.int64)
+    return Step(
+        number=number,
+        factor=factor,
+        converged=outcome.converged,
+        iterations=outcome.iterations,
+        displacement=nodal,
+        stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane),
+        reaction=reaction.reshape(-1, dim).sum(axis=0),
+        load=factor * applied_load(model).reshape(-1, dim).sum(axis=0),
+        contacts=tuple(
+            _contact(pair, pressure, gap, active)
+            for pair, pressure, gap, active in zip(
+                system.pairs,
+                pressures,
+                system.split(system.gap(unknowns.displacement, factor)),
+                system.split(unknowns.active),
+            )
+        ),
+        cycling=cycling,
+    )
+
+
+def _contact(
+    pair: Pair, pressure: NDArray[np.float64], gap: NDArray[np.float64], active: NDArray[np.bool_]
+) -> ContactResult:
+    dim = pair.contactor.dim
+    coupling, degree = pair.coupling, pair.coupling.degree
+    force = _contactor_force(pair, pressure)
+    weight = pair.scale * pair.stiffness
+    if pair.tied:
+        values = _normal_traction(pair, pressure)
+        gaps = np.zeros_like(values)
+        area, depth = float(coupling.covered.sum()), 0.0
+    else:
+        values = pair.space.transfer @ pressure
+        gaps = pair.space.transfer @ (gap / weight)
+        area, depth = float(weight[active].sum()), float((-gap / weight).max(initial=0.0))
+    covered = coupling.segments > 0
+    nodal = facet_node_values(pair.contactor, degree, values)
+    return ContactResult(
+        name=pair.contact.name,
+        contactor=pair.contactor,
+        target=pair.target,
+        force=force.reshape(-1, dim).sum(axis=0),
+        max_pressure=float(np.nanmax(nodal)),
+        area=area,
+        max_penetration=max(depth, 0.0),
+        active=int(active.sum()),
+        multipliers=len(pair),
+        removed=pair.space.removed,
+        segments=int(coupling.segments.sum()),
+        pressure=nodal,
+        gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, gaps), np.nan),
+        covered=covered,
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, values),
+    )
+
+
+def _contactor_force(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Nodal forces on the contactor alone, (dim n_points,)."""
+    dim = pair.contactor.dim
+    if not pair.tied:
+        return np.asarray(pair.coupling.contactor_part.T @ (pair.space.transfer @ pressure))
+    force = np.zeros(pair.contactor.points.shape)
+    for a in range(dim):
+        own = pair.space.node == a
+        force[:, a] = pair.coupling.contactor_part.T @ (pair.space.transfer[:, own] @ pressure[own])
+    return force.ravel()
+
+
+def _normal_traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normal part of the tie traction, facet-wise coefficients, compression positive."""
+    from abut.interface.geometry import nodal_normals
+
+    normals = nodal_normals(pair.contactor).reshape(-1, pair.contactor.dim)
+    total = np.zeros(len(normals))
+    for a in range(pair.contactor.dim):
+        own = pair.space.node == a
+        total -= normals[:, a] * (pair.space.transfer[:, own] @ pressure[own])
+    return total

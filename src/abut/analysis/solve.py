@@ -1,0 +1,101 @@
+"""solve(model): supports, stiffness, contact pairs, load steps, results; the whole way on one page."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import scipy.sparse as sp
+
+from abut.analysis.holding import Holding, holding
+from abut.analysis.loads import external_load
+from abut.analysis.results import step_result
+from abut.discretization.pairs import Pair, pair
+from abut.discretization.supports import supports
+from abut.model import Model
+from abut.solids.elements import stiffness
+from abut.solvers.active_set import System, solve_step, start
+from abut.solvers.direct import solver_name
+from abut.state import Observer, Solution, Step
+
+
+def _silent(_: object) -> None:
+    return None
+
+
+def solve(model: Model, observer: Observer | None = None) -> Solution:
+    """Solve a model step by step.
+
+    ``observer`` is called with every iteration (``abut.state.Iteration``) and with notes as text while it runs.
+    A run that does not converge is returned with its last state (``solution.converged`` is False).
+    Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
+    """
+    observe: Observer = observer or _silent
+    notes: list[str] = []
+
+    def note(text: str) -> None:
+        notes.append(text)
+        observe(text)
+
+    clock = _Clock()
+    materials = {solid.body: solid.material for solid in model.solids}
+    held = supports(model)
+    full_stiffness = stiffness(model.mesh, materials, model.plane)
+    load = external_load(model)
+    clock.mark("assembly")
+    pairs = [pair(model, contact, held) for contact in model.contacts]
+    _describe(pairs, note)
+    clock.mark("interface")
+    held_by: Holding = holding(model.mesh, held, pairs)
+    held_by.check()
+    reduced = (held.free.T @ full_stiffness @ held.free).tocsr()
+    n_free = reduced.shape[0]
+    system = System(
+        stiffness=reduced,
+        load=held.free.T @ (load - full_stiffness @ held.prescribed),
+        pairs=pairs,
+        operator=sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free)),
+        complete=held_by.complete,
+    )
+    note(f"{n_free} free displacements, {sum(map(len, pairs))} multipliers, direct solver {solver_name()}")
+    clock.mark("set-up")
+
+    state = start(system)
+    steps: list[Step] = []
+    count = model.solve.steps
+    for number in range(1, count + 1):
+        factor = number / count
+        outcome = solve_step(system, state, factor, number, model.solve.max_iterations, observe)
+        state = outcome.unknowns
+        clock.mark("solve")
+        steps.append(step_result(model, full_stiffness, load, held, system, outcome, number, factor))
+        clock.mark("results")
+        if not outcome.converged:
+            note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
+            break
+    return Solution(model, tuple(steps), n_free, f"direct ({solver_name()})", tuple(notes), clock.timings)
+
+
+def _describe(pairs: Sequence[Pair], note: Observer) -> None:
+    for p in pairs:
+        facets = len(p.contactor)
+        covered = int((p.coupling.segments > 0).sum())
+        note(
+            f"contact '{p.contact.name}': {p.coupling.segments.sum()} segments on {covered} of {facets} facets, "
+            f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (without support or fixed)"
+        )
+
+
+class _Clock:
+    """Seconds spent since the last mark, by stage."""
+
+    def __init__(self) -> None:
+        self.timings: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def mark(self, stage: str) -> None:
+        now = time.perf_counter()
+        self.timings[stage] = self.timings.get(stage, 0.0) + now - self._last
+        self._last = now
+
+

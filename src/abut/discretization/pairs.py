@@ -1,0 +1,196 @@
+"""A contact pair, discretised: operators on the free displacements, weighted gaps, scales."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.discretization.supports import Supports
+from abut.errors import InputError
+from abut.interface.coupling import Coupling, couple
+from abut.interface.geometry import facet_sizes, nodal_normals
+from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
+from abut.mesh.surface import Surface
+from abut.model import Contact, Model
+
+HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
+NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
+
+
+@dataclass(frozen=True)
+class PairPoints:
+    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, prescribed (n_points,);
+    operator (n_points, n_free) change of the gap by the free displacements."""
+
+    test: Any
+    weight: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    operator: Any
+    prescribed: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One contact pair on the free displacements.
+
+    operator: (n, n_free) sparse; prescribed: (n,) operator times the prescribed displacement at full load;
+    gap: (n,) weighted geometric gap with the offset; scale: (n,) weighted gap per pressure, weight h / E.
+    size: typical facet length; stiffness: E / size, pressure per length. For tied pairs the n rows hold all components
+    (dim in turn) and the gap is zero.
+    """
+
+    contact: Contact
+    contactor: Surface
+    target: Surface
+    coupling: Coupling
+    space: PressureSpace
+    rows: Any  # (n, dim n_points): operator on all displacements
+    operator: Any
+    prescribed: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    size: float
+    stiffness: float
+    points: PairPoints | None = None  # where the law is evaluated at the integration points
+
+    @property
+    def tied(self) -> bool:
+        return self.contact.kind == "tied"
+
+    @property
+    def smooth(self) -> bool:
+        return not self.tied and self.contact.law == "constraint-function"
+
+    def __len__(self) -> int:
+        return int(self.operator.shape[0])
+
+
+def pair(model: Model, contact: Contact, held: Supports) -> Pair:
+    """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
+    contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
+    name, degree = resolve(contact.pressure, contactor)
+    tied = contact.kind == "tied"
+    coupling = couple(
+        contactor,
+        target,
+        degree,
+        rule=contact.integration.rule,
+        points=contact.integration.points,
+        componentwise=tied,
+        keep_points=contact.law == "constraint-function" and not tied,
+        reach=_reach(model, contactor, target),
+    )
+    if not coupling.segments.any():
+        raise InputError(
+            f"contact '{contact.name}': no facet of '{contact.contactor}' faces '{contact.target}' within reach; check the "
+            "names, that both surfaces' normals point out of their bodies, and the distance between them"
+        )
+    space = pressure_space(name, contactor, coupling)
+    size = float(np.median(facet_sizes(contactor)))
+    stiffness = _modulus(model, contactor, target) / size
+    if tied:
+        return _tied(contact, contactor, target, coupling, space, held, size, stiffness)
+    space = _without_held(space, contactor, coupling, held)
+    rows = (space.transfer.T @ coupling.operator).tocsr()
+    free = (rows @ held.free).tocsr()
+    moved = _row_norms(free) > NO_EFFECT * space.weight
+    if not moved.all():
+        space = reduce(space, coupling, moved)
+        rows = (space.transfer.T @ coupling.operator).tocsr()
+        free = (rows @ held.free).tocsr()
+    return Pair(
+        contact, contactor, target, coupling, space, rows, free,
+        prescribed=rows @ held.prescribed,
+        gap=space.transfer.T @ coupling.gap + contact.offset * space.weight,
+        scale=space.weight / stiffness, size=size, stiffness=stiffness,
+        points=_points(contact, coupling, space, held),
+    )  # fmt: skip
+
+
+def _points(contact: Contact, coupling: Coupling, space: PressureSpace, held: Supports) -> PairPoints | None:
+    if coupling.points is None:
+        return None
+    at = coupling.points
+    return PairPoints(
+        test=(at.pressure @ space.transfer).tocsr(),
+        weight=at.weight,
+        gap=at.gap + contact.offset,
+        operator=(at.gap_operator @ held.free).tocsr(),
+        prescribed=at.gap_operator @ held.prescribed,
+    )
+
+
+def _tied(
+    contact: Contact, contactor: Surface, target: Surface, coupling: Coupling, space: PressureSpace,
+    held: Supports, size: float, stiffness: float,
+) -> Pair:  # fmt: skip
+    """All components of the displacement are tied. A multiplier component that supports hold at its node on the
+    contactor follows its neighbour, direction by direction."""
+    dim = contactor.dim
+    rows, weights, spaces = [], [], []
+    for a in range(dim):
+        own = space
+        sits = space.node >= 0
+        if sits.any():
+            share = np.zeros(len(space))
+            direction = np.broadcast_to(np.eye(dim)[a], (int(sits.sum()), dim))
+            share[sits] = held.held_share(space.node[sits], direction)
+            if (share < HELD).any():
+                own = reduce(space, coupling, share < HELD)
+        scalar = (own.transfer.T @ coupling.operator).tocsr()
+        spread = sp.csr_matrix(
+            (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dim * np.arange(scalar.shape[1]) + a)),
+            shape=(scalar.shape[1], dim * scalar.shape[1]),
+        )
+        component = (scalar @ spread).tocsr()
+        keep = _row_norms(component @ held.free) > NO_EFFECT * own.weight
+        rows.append(component[keep])
+        weights.append(own.weight[keep])
+        spaces.append((own.transfer.tocsc()[:, keep], a))
+    every = sp.vstack(rows).tocsr()
+    weight = np.concatenate(weights)
+    transfer = sp.hstack([t for t, _ in spaces]).tocsr()
+    component_of = np.concatenate([np.full(t.shape[1], a) for t, a in spaces])
+    vector_space = PressureSpace(space.name, space.degree, transfer, weight, component_of, space.removed)
+    return Pair(
+        contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
+        prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
+        stiffness=stiffness,
+    )  # fmt: skip
+
+
+def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
+    """Take out multipliers at contactor nodes that supports hold along the normal (DESIGN: beta would drop to 0.03)."""
+    sits = np.flatnonzero(space.node >= 0)
+    if not len(sits):
+        return space
+    normals = nodal_normals(contactor)
+    at = np.zeros_like(contactor.points)
+    used = contactor.nodes >= 0
+    at[contactor.nodes[used]] = normals[used]
+    share = np.zeros(len(space))
+    share[sits] = held.held_share(space.node[sits], at[space.node[sits]])
+    keep = share < HELD
+    return reduce(space, coupling, keep) if keep.any() else space
+
+
+def _row_norms(matrix: Any) -> NDArray[np.float64]:
+    return np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
+
+
+def _reach(model: Model, contactor: Surface, target: Surface) -> float:
+    from abut.interface.coupling import default_reach
+
+    moves = [abs(v) for s in model.supports for v in (s.x, s.y, s.z, s.normal) if v is not None]
+    return default_reach(contactor, target) + 2.0 * max(moves, default=0.0)
+
+
+def _modulus(model: Model, contactor: Surface, target: Surface) -> float:
+    """The softer Young's modulus of the two sides."""
+    young = {solid.body: solid.material.young for solid in model.solids}
+    cells = np.concatenate([contactor.cells, target.cells])
+    return min(young[body] for body, members in model.mesh.bodies.items() if np.isin(cells, members).any())

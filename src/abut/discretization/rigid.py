@@ -1,0 +1,101 @@
+"""Rigid-body motions: which of them nothing resists."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from abut.mesh.mesh import Mesh
+
+FREE = 1e-7  # resistance, relative to the strongest, below which a motion counts as free
+
+
+@dataclass(frozen=True)
+class RigidModes:
+    """modes: (dim n_points, 3 or 6 per group) translations and rotations of each group of glued bodies, all of the
+    size of a unit translation; groups: names of the bodies in each group."""
+
+    modes: NDArray[np.float64]
+    groups: tuple[tuple[str, ...], ...]
+    per_group: int
+
+
+def rigid_modes(mesh: Mesh) -> RigidModes:
+    """Rigid motions of every group of bodies that share nodes."""
+    n, dim = mesh.points.shape
+    names = list(mesh.bodies)
+    member = np.zeros((len(names), n), dtype=bool)
+    for i, name in enumerate(names):
+        member[i, mesh.nodes_of(name)] = True
+    shared = sp.csr_matrix(member.astype(np.int32) @ member.T.astype(np.int32))
+    count, label = connected_components(shared, directed=False)
+    per_group = 3 if dim == 2 else 6
+    modes = np.zeros((n, dim, per_group * count))
+    groups = []
+    for g in range(count):
+        bodies = [names[i] for i in np.flatnonzero(label == g)]
+        groups.append(tuple(bodies))
+        nodes = np.flatnonzero(member[label == g].any(axis=0))
+        x = mesh.points[nodes] - mesh.points[nodes].mean(axis=0)
+        x = x / max(np.abs(x).max(), 1e-300)
+        first = per_group * g
+        for a in range(dim):
+            modes[nodes, a, first + a] = 1.0
+        if dim == 2:
+            modes[nodes, 0, first + 2], modes[nodes, 1, first + 2] = -x[:, 1], x[:, 0]
+        else:
+            for a in range(3):
+                b, c = (a + 1) % 3, (a + 2) % 3
+                modes[nodes, b, first + 3 + a], modes[nodes, c, first + 3 + a] = -x[:, c], x[:, b]
+    return RigidModes(modes.reshape(n * dim, -1), tuple(groups), per_group)
+
+
+def resistance_of_supports(rigid: RigidModes, free: Any) -> NDArray[np.float64]:
+    """Gram matrix of what supports take out of the rigid motions."""
+    moved = free.T @ rigid.modes
+    held = rigid.modes.T @ rigid.modes - moved.T @ moved
+    return held / max(1.0, float(free.shape[0] - free.shape[1]))
+
+
+def resistance_of_rows(rigid: RigidModes, rows: Any) -> NDArray[np.float64]:
+    """Gram matrix of constraint rows, each scaled to a unit displacement."""
+    if rows.shape[0] == 0:
+        return np.zeros((rigid.modes.shape[1],) * 2)
+    size = np.asarray(abs(rows).sum(axis=1)).ravel()
+    motion = (rows @ rigid.modes) / np.maximum(size, 1e-300)[:, None]
+    return np.asarray(motion.T @ motion) / rows.shape[0]
+
+
+def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Null vectors (n_modes, n_free) of the sum of all resistances."""
+    total = sum(grams)
+    values, vectors = np.linalg.eigh(total)
+    return np.asarray(vectors[:, values < FREE * max(values.max(initial=0.0), 1e-300)])
+
+
+def describe(rigid: RigidModes, motion: NDArray[np.float64]) -> str:
+    """Say which body moves and how."""
+    parts = motion.reshape(-1, rigid.per_group)
+    group = int(np.abs(parts).max(axis=1).argmax())
+    own = parts[group]
+    dim = 2 if rigid.per_group == 3 else 3
+    shift, turn = own[:dim], own[dim:]
+    bodies = " + ".join(f"'{name}'" for name in rigid.groups[group])
+    kinds: Mapping[bool, str] = {True: "shift", False: "turn"}
+    if kinds[bool(np.abs(shift).max() >= np.abs(turn).max())] == "shift":
+        return f"body {bodies} can shift along {_axis(shift)}"
+    return f"body {bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
+
+
+def _axis(vector: NDArray[np.float64]) -> str:
+    vector = vector / np.linalg.norm(vector)
+    largest = int(np.abs(vector).argmax())
+    if abs(vector[largest]) > 0.999:
+        return "xyz"[largest]
+    return "(" + ", ".join(f"{v / np.sign(vector[largest]):.3g}" for v in vector) + ")"

@@ -1,0 +1,117 @@
+"""Supports as an exact change of variables: u = Z u_free + u_prescribed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.errors import SingularModelError
+from abut.interface.geometry import nodal_normals
+from abut.mesh.mesh import Mesh
+from abut.model import Model, Support
+
+SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
+
+
+@dataclass(frozen=True)
+class Supports:
+    """free: (dim n_points, n_free) sparse with orthonormal columns; prescribed: (dim n_points,) at full load."""
+
+    free: Any
+    prescribed: NDArray[np.float64]
+
+    def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How much of a direction (n, dim unit vectors) is held at each of n points: 1 fully, 0 free."""
+        dim = directions.shape[1]
+        n = len(points)
+        pick = sp.csr_matrix(
+            (directions.ravel(), (np.repeat(np.arange(n), dim), (dim * points[:, None] + np.arange(dim)).ravel())),
+            shape=(n, self.free.shape[0]),
+        )
+        moved = pick @ self.free
+        return np.asarray(1.0 - moved.multiply(moved).sum(axis=1)).ravel()
+
+
+def supports(model: Model) -> Supports:
+    """Collect all supports. Raises SingularModelError where two of them contradict each other at a node."""
+    mesh, dim = model.mesh, model.dim
+    node, direction, value, origin = _conditions(model)
+    prescribed = np.zeros((len(mesh.points), dim))
+    order = np.lexsort((np.abs(direction).argmax(axis=1), node))
+    node, direction, value, origin = node[order], direction[order], value[order], origin[order]
+    held, start = np.unique(node, return_index=True)
+    stop = np.append(start[1:], len(node))
+    free_rows, free_columns, free_values = [], [], []
+    unheld = np.setdiff1d(np.arange(len(mesh.points)), held)
+    rows = (dim * unheld[:, None] + np.arange(dim)).ravel()
+    free_rows.append(rows)
+    free_columns.append(np.arange(len(rows)))
+    free_values.append(np.ones(len(rows)))
+    column = len(rows)
+    for k, first, last in zip(held, start, stop):
+        matrix, target = direction[first:last], value[first:last]
+        basis, x = _solve_node(matrix, target)
+        if np.abs(matrix @ x - target).max() > 1e-9 * max(1e-30, np.abs(target).max()):
+            names = ", ".join(sorted({model.supports[i].on for i in origin[first:last]}))
+            raise SingularModelError(
+                f"supports on {names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
+                "they prescribe different displacements in one direction; take one of them out"
+            )
+        prescribed[k] = x
+        count = basis.shape[1]
+        free_rows.append(np.tile(dim * k + np.arange(dim), count))
+        free_columns.append(np.repeat(column + np.arange(count), dim))
+        free_values.append(basis.T.ravel())
+        column += count
+    free = sp.csr_matrix(
+        (np.concatenate(free_values), (np.concatenate(free_rows), np.concatenate(free_columns))),
+        shape=(dim * len(mesh.points), column),
+    )
+    free.eliminate_zeros()
+    return Supports(free, prescribed.ravel())
+
+
+def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Basis (dim, n_free) of the directions left free, and the displacement of the held ones."""
+    axis = np.abs(matrix).argmax(axis=1)
+    if np.array_equal(np.abs(matrix), np.eye(matrix.shape[1])[axis]):  # along the axes: keep zeros and ones exact
+        x = np.zeros(matrix.shape[1])
+        x[axis] = target * matrix[np.arange(len(axis)), axis]
+        return np.delete(np.eye(matrix.shape[1]), np.unique(axis), axis=1), x
+    _, singular, vt = np.linalg.svd(matrix)
+    rank = int((singular > SAME_DIRECTION * singular[0]).sum())
+    return vt[rank:].T, np.linalg.lstsq(matrix, target, rcond=SAME_DIRECTION)[0]
+
+
+def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
+    """Every held direction: node, unit vector, value, number of its support."""
+    dim = model.dim
+    nodes: list[NDArray[Any]] = [np.empty(0, np.int64)]
+    directions: list[NDArray[Any]] = [np.empty((0, dim))]
+    values: list[NDArray[Any]] = [np.empty(0)]
+    origins: list[NDArray[Any]] = [np.empty(0, np.int64)]
+    for i, support in enumerate(model.supports):
+        for where, vector, value in _directions(model.mesh, support, dim):
+            nodes.append(where)
+            directions.append(np.broadcast_to(vector, (len(where), dim)))
+            values.append(np.full(len(where), value))
+            origins.append(np.full(len(where), i))
+    return tuple(np.concatenate(parts) for parts in (nodes, directions, values, origins))
+
+
+def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], NDArray[Any], float]]:
+    if support.normal is None:
+        where = mesh.nodes_of(support.on)
+        given = [(a, getattr(support, "xyz"[a])) for a in range(dim)]
+        return [(where, np.eye(dim)[a], float(v)) for a, v in given if v is not None]
+    surface = mesh.surface(support.on)
+    normals = nodal_normals(surface)
+    facet, local = np.nonzero(surface.nodes >= 0)
+    where = surface.nodes[facet, local].astype(np.int64)
+    both = np.round(np.column_stack([where, normals[facet, local]]), 9)
+    _, first = np.unique(both, axis=0, return_index=True)  # one condition for each normal at a node
+    return [(where[first], normals[facet, local][first], float(support.normal))]

@@ -1,0 +1,192 @@
+"""Stiffness, body loads and stresses of the solids; dof of component a at point i: dim i + a."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
+from abut.mesh.cells import CELLS
+from abut.mesh.mesh import Mesh
+from abut.solids.materials import LinearElastic
+from abut.solids.quadrature import stiffness_rule, stress_rule
+
+CHUNK = 4096  # cells treated at once where NumPy does the work
+
+
+def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:
+    """Lame's constants; in plane stress lambda is the reduced one."""
+    young, poisson = material.young, material.poisson
+    mu = young / (2.0 * (1.0 + poisson))
+    if plane == "stress":
+        return young * poisson / (1.0 - poisson**2), mu
+    return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), mu
+
+
+def _by_cell(mesh: Mesh, values: Mapping[str, tuple[float, ...]]) -> NDArray[np.float64]:
+    """A row of values for every cell, from those of its body."""
+    table = np.zeros((mesh.n_cells, len(next(iter(values.values())))))
+    for body, row in values.items():
+        table[mesh.bodies[body]] = row
+    return table
+
+
+def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | None = None) -> Any:
+    """Stiffness matrix of all bodies, (dim n_points, dim n_points) CSR with sorted rows; force per length (2D: per
+    unit thickness)."""
+    points = np.ascontiguousarray(mesh.points)
+    dim = points.shape[1]
+    counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])
+    start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    flat = np.concatenate([b.nodes.ravel() for b in mesh.blocks]).astype(np.int32)
+    node_start, node_columns = node_pattern(len(points), start, flat)
+    constants = _by_cell(mesh, {body: lame(material, plane) for body, material in materials.items()})
+    values = np.zeros(len(node_columns) * dim * dim)
+    first = 0
+    for block in mesh.blocks:
+        xi, weights = stiffness_rule(block.kind)
+        _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
+        last = first + len(block.nodes)
+        assemble_stiffness(
+            points, np.ascontiguousarray(block.nodes, dtype=np.int32), derivatives, weights,
+            np.ascontiguousarray(constants[first:last]), node_start, node_columns, values,
+        )  # fmt: skip
+        first = last
+    indptr, indices = block_pattern(node_start, node_columns, dim)
+    if len(values) < 2**31:
+        indptr = indptr.astype(np.int32)
+    matrix = sp.csr_matrix((values, indices, indptr), shape=(points.size, points.size))
+    matrix.has_sorted_indices = True
+    return matrix
+
+
+def _chunks(mesh: Mesh) -> Iterator[tuple[str, NDArray[np.int32], slice]]:
+    """Blocks in manageable pieces: type, connectivity, cell numbers."""
+    first = 0
+    for block in mesh.blocks:
+        for i in range(0, len(block.nodes), CHUNK):
+            part = block.nodes[i : i + CHUNK]
+            yield block.kind, part, slice(first + i, first + i + len(part))
+        first += len(block.nodes)
+
+
+def _gradients(points: NDArray[np.float64], nodes: NDArray[np.int32], derivatives: NDArray[np.float64]) -> tuple[Any, Any]:
+    """Gradients of the shape functions (cells, q, n, dim) and Jacobian determinants (cells, q)."""
+    jacobian = np.einsum("cna,qnb->cqab", points[nodes], derivatives)
+    return np.einsum("qnb,cqba->cqna", derivatives, np.linalg.inv(jacobian)), np.linalg.det(jacobian)
+
+
+def thermal_load(
+    mesh: Mesh, materials: Mapping[str, LinearElastic], temperatures: Mapping[str, float], plane: str | None = None
+) -> NDArray[np.float64]:
+    """int B^T D eps_thermal for a uniform temperature change of each body, (dim n_points,)."""
+    load = np.zeros(mesh.points.shape)
+    pressure = _by_cell(
+        mesh, {body: (_thermal_pressure(m, temperatures.get(body, 0.0), plane),) for body, m in materials.items()}
+    )
+    if not pressure.any():
+        return load.ravel()
+    for kind, nodes, cells in _chunks(mesh):
+        xi, weights = stiffness_rule(kind)
+        _, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        gradients, det = _gradients(mesh.points, nodes, derivatives)
+        np.add.at(load, nodes, np.einsum("c,cq,q,cqna->cna", pressure[cells, 0], det, weights, gradients))
+    return load.ravel()
+
+
+def _thermal_pressure(material: LinearElastic, change: float, plane: str | None) -> float:
+    """Stress that a blocked thermal strain would cause in the plane (all directions in 3D)."""
+    young, poisson = material.young, material.poisson
+    strain = material.expansion * change
+    return young * strain / (1.0 - poisson) if plane == "stress" else young * strain / (1.0 - 2.0 * poisson)
+
+
+def gravity_load(mesh: Mesh, densities: Mapping[str, float], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    """int rho g N, (dim n_points,)."""
+    load = np.zeros(mesh.points.shape)
+    density = np.zeros(mesh.n_cells)
+    for body, value in densities.items():
+        density[mesh.bodies[body]] = value
+    for kind, nodes, cells in _chunks(mesh):
+        xi, weights = stiffness_rule(kind)
+        values, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        _, det = _gradients(mesh.points, nodes, derivatives)
+        np.add.at(load, nodes, np.einsum("c,cq,q,qn,a->cna", density[cells], det, weights, values, acceleration))
+    return load.ravel()
+
+
+def nodal_stress(
+    mesh: Mesh,
+    materials: Mapping[str, LinearElastic],
+    temperatures: Mapping[str, float],
+    displacement: NDArray[np.float64],
+    plane: str | None = None,
+) -> NDArray[np.float64]:
+    """Stress xx yy zz xy yz zx at the points, (n_points, 6): taken at the reduced integration points, carried linearly
+    to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average)."""
+    dim = mesh.points.shape[1]
+    total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
+    constants = _by_cell(
+        mesh,
+        {
+            body: (*lame(m, None), m.poisson, m.expansion * temperatures.get(body, 0.0))
+            for body, m in materials.items()
+        },
+    )
+    for kind, nodes, cells in _chunks(mesh):
+        xi, _ = stress_rule(kind)
+        _, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        gradients, _ = _gradients(mesh.points, nodes, derivatives)
+        slope = np.einsum("cqnb,cna->cqab", gradients, displacement[nodes])
+        strain = np.zeros((*slope.shape[:2], 3, 3))
+        strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
+        lambda_, mu, poisson, thermal = (v[:, None] for v in constants[cells].T)
+        if plane == "stress":
+            inplane = strain[..., 0, 0] + strain[..., 1, 1] - 2.0 * thermal
+            strain[..., 2, 2] = thermal - poisson / (1.0 - poisson) * inplane
+        strain = strain - thermal[..., None, None] * np.eye(3)
+        trace = np.trace(strain, axis1=2, axis2=3)
+        stress = 2.0 * mu[..., None, None] * strain + (lambda_ * trace)[..., None, None] * np.eye(3)
+        voigt = stress[..., [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
+        at_nodes = np.einsum("nq,cqs->cns", _to_nodes(kind, xi), voigt)
+        np.add.at(total, nodes, at_nodes)
+        np.add.at(count, nodes, 1.0)
+    return total / np.maximum(count, 1.0)[:, None]
+
+
+def _to_nodes(kind: str, xi: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least-squares linear extrapolation from points xi to the nodes, (nodes, q)."""
+    where = reference_nodes(kind)
+    terms = np.concatenate([np.ones((len(xi), 1)), xi], axis=1) if len(xi) > 2 else np.ones((len(xi), 1))
+    at = np.concatenate([np.ones((len(where), 1)), where], axis=1)[:, : terms.shape[1]]
+    return np.asarray(at @ np.linalg.pinv(terms))
+
+
+def reference_nodes(kind: str) -> NDArray[np.float64]:
+    """Reference coordinates of a cell's nodes, (nodes, dim)."""
+    cell = CELLS[kind]
+    if cell.dim == 2:
+        corners = np.array([[0, 0], [1, 0], [0, 1]]) if cell.corners == 3 else _square()
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+        return np.vstack([corners, middles, [[0.0, 0.0]]])[: cell.nodes].astype(float)
+    if cell.corners == 4:
+        corners = np.vstack([np.zeros(3), np.eye(3)])
+        edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+    elif cell.corners == 6:
+        tri = np.array([[0.0, 0], [1, 0], [0, 1]])
+        corners = np.vstack([np.column_stack([tri, np.full(3, z)]) for z in (-1.0, 1.0)])
+        edges = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
+    else:
+        corners = np.vstack([np.column_stack([_square(), np.full(4, z)]) for z in (-1.0, 1.0)])
+        edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    middles = np.array([0.5 * (corners[a] + corners[b]) for a, b in edges])
+    faces = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [0, 0, 0]], dtype=float)
+    return np.vstack([corners, middles, faces])[: cell.nodes]
+
+
+def _square() -> NDArray[np.float64]:
+    return np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])

@@ -1,0 +1,53 @@
+"""Consistent nodal forces of loads on surfaces, all facet types."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.mesh.cells import BY_CODE, CELLS
+from abut.mesh.surface import Surface
+from abut.solids.quadrature import facet_rule
+
+
+def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: float) -> NDArray[np.float64]:
+    load = np.zeros(surface.points.shape)
+    for code in np.unique(surface.kinds):
+        cell = CELLS[BY_CODE[code].name]
+        nodes = surface.nodes[surface.kinds == code, : cell.nodes]
+        xi, weights = facet_rule(cell.name)
+        values, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
+        tangents = np.einsum("qna,fnd->fqad", derivatives, surface.points[nodes])
+        if surface.dim == 2:
+            normal = np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
+        else:
+            normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+        if traction is None:
+            force = -pressure * normal
+        else:
+            force = np.linalg.norm(normal, axis=2)[..., None] * traction
+        np.add.at(load, nodes, np.einsum("q,qn,fqd->fnd", weights, values, force))
+    return load
+
+
+def pressure_load(surface: Surface, value: float) -> NDArray[np.float64]:
+    """Pressure (force per area, positive into the body), (dim n_points,)."""
+    return _spread(surface, None, value).ravel()
+
+
+def traction_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Uniform traction vector (force per area), (dim n_points,)."""
+    return _spread(surface, np.asarray(vector, dtype=float), 0.0).ravel()
+
+
+def surface_area(surface: Surface) -> float:
+    """Area (2D: length) of a surface."""
+    first = np.zeros(surface.dim)
+    first[0] = 1.0
+    return float(_spread(surface, first, 0.0)[:, 0].sum())
+
+
+def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Total force, spread evenly over the surface, (dim n_points,)."""
+    return traction_load(surface, np.asarray(vector, dtype=float) / surface_area(surface))

@@ -1,0 +1,107 @@
+"""Integration rules on reference cells and facets, and the points where stresses are best."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.mesh.cells import CELLS
+
+Rule = tuple[NDArray[np.float64], NDArray[np.float64]]  # points (q, dim), weights (q,)
+
+
+def _line(n: int) -> Rule:
+    x, w = np.polynomial.legendre.leggauss(n)
+    return x[:, None], w
+
+
+def _product(*rules: Rule) -> Rule:
+    points, weights = rules[0]
+    for x, w in rules[1:]:
+        points = np.concatenate([np.repeat(points, len(x), axis=0), np.tile(x, (len(points), 1))], axis=1)
+        weights = np.outer(weights, w).ravel()
+    return points, weights
+
+
+def _triangle(n: int) -> Rule:
+    """Symmetric where small: 1 point (degree 1), 3 (degree 2), 6 (degree 4); else collapsed Gauss with n x n points."""
+    if n == 1:
+        return np.full((1, 2), 1 / 3), np.array([0.5])
+    if n == 3:
+        return np.array([[1, 1], [4, 1], [1, 4]]) / 6.0, np.full(3, 1 / 6)
+    if n == 6:  # Strang and Fix: two orbits a, a, 1 - 2 a
+        points, weights = [], []
+        for a, w in ((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322)):
+            points += [[a, a], [1 - 2 * a, a], [a, 1 - 2 * a]]
+            weights += [0.5 * w] * 3
+        return _polish(np.array(points), np.array(weights))
+    (x, wx), (y, wy) = _line(n), _line(n)
+    r, t = 0.5 * (x[:, 0] + 1), 0.5 * (y[:, 0] + 1)
+    rr, tt = (g.ravel() for g in np.meshgrid(r, t, indexing="ij"))
+    return np.stack([rr * (1 - tt), rr * tt], axis=1), 0.25 * np.outer(wx * r, wy).ravel()
+
+
+def _polish(points: NDArray[np.float64], weights: NDArray[np.float64]) -> Rule:
+    """Weights that integrate all monomials up to degree 2 exactly (the tabulated digits end at 1e-15)."""
+    x, y = points.T
+    powers = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y])
+    exact = np.array([1 / 2, 1 / 6, 1 / 6, 1 / 12, 1 / 24, 1 / 12])
+    return points, weights + np.linalg.lstsq(powers, exact - powers @ weights, rcond=None)[0]
+
+
+def _tetrahedron(n: int) -> Rule:
+    """1 point, 4 points (degree 2), or collapsed Gauss with n^3 points."""
+    if n == 1:
+        return np.full((1, 3), 0.25), np.array([1 / 6])
+    if n == 4:
+        a = (5 - np.sqrt(5)) / 20
+        return np.full((4, 3), a) + (1 - 4 * a) * np.vstack([np.zeros(3), np.eye(3)]), np.full(4, 1 / 24)
+    points, weights = _product(_line(n), _line(n), _line(n))
+    r, s, t = (0.5 * (points + 1)).T
+    return np.stack([r * (1 - s), r * s * (1 - t), r * s * t], axis=1), weights / 8 * r * r * s
+
+
+def _cube(n: int, dim: int) -> Rule:
+    return _product(*[_line(n)] * dim)
+
+
+def _wedge(tri: int, line: int) -> Rule:
+    return _product(_triangle(tri), _line(line))
+
+
+def stiffness_rule(kind: str) -> Rule:
+    """Exact for a constant stress on cells with straight edges in general position."""
+    return {
+        "tri3": lambda: _triangle(1),
+        "tri6": lambda: _triangle(6),
+        "quad4": lambda: _cube(2, 2),
+        "quad8": lambda: _cube(3, 2),
+        "quad9": lambda: _cube(3, 2),
+        "tet4": lambda: _tetrahedron(1),
+        "tet10": lambda: _tetrahedron(3),
+        "hex8": lambda: _cube(2, 3),
+        "hex20": lambda: _cube(3, 3),
+        "hex27": lambda: _cube(3, 3),
+        "wedge6": lambda: _wedge(3, 2),
+        "wedge15": lambda: _wedge(6, 3),
+    }[kind]()
+
+
+def stress_rule(kind: str) -> Rule:
+    """The reduced points at which stresses converge fastest."""
+    return {
+        "tri3": lambda: _triangle(1),
+        "tri6": lambda: _triangle(3),
+        "tet4": lambda: _tetrahedron(1),
+        "tet10": lambda: _tetrahedron(4),
+        "wedge6": lambda: _wedge(1, 2),
+        "wedge15": lambda: _wedge(3, 2),
+    }.get(kind, lambda: _cube(2, CELLS[kind].dim))()
+
+
+def facet_rule(kind: str) -> Rule:
+    """Exact for consistent loads on curved quadratic facets."""
+    cell = CELLS[kind]
+    if cell.dim == 1:
+        return _line(4)
+    return _triangle(4) if cell.corners == 3 else _cube(5, 2)

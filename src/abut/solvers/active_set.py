@@ -1,0 +1,264 @@
+"""Semi-smooth Newton for one load step: the active set is an output of the law, changed until it stands still."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.discretization.pairs import Pair
+from abut.interface.laws import Linearisation, linearise_active, linearise_constraint_function
+from abut.solvers.blocks import newton_step
+from abut.state import Iteration
+
+TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
+FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
+TOLERANCE = 1e-10  # of the relative residuals, for laws that are not piecewise linear
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """displacement: (n_free,); pressure: (n,) coefficients of all pairs; active: (n,) bool."""
+
+    displacement: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    active: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class System:
+    """What stays the same over all iterations and steps. ``support`` decides whether an active set holds every body,
+    and completes it where it does not."""
+
+    stiffness: Any
+    load: NDArray[np.float64]  # at full load
+    pairs: Sequence[Pair]
+    operator: Any  # all pairs stacked, (n, n_free)
+    complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
+
+    def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+        """Values of all multipliers, pair by pair."""
+        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
+
+    def join(self, values: Sequence[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(values) if len(values) else np.zeros(0)
+
+    def gap(self, displacement: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+        """Weighted gaps of all multipliers at a share ``factor`` of the load."""
+        fixed = self.join([pair.gap + factor * pair.prescribed for pair in self.pairs])
+        return np.asarray(fixed + self.operator @ displacement) if len(fixed) else fixed
+
+
+@dataclass(frozen=True)
+class Outcome:
+    unknowns: Unknowns
+    iterations: tuple[Iteration, ...]
+    converged: bool
+    cycling: NDArray[np.bool_]  # multipliers that go in and out for ever
+
+
+def start(system: System) -> Unknowns:
+    """Zero displacement; multipliers that touch at the outset are active."""
+    gap = system.gap(np.zeros(system.stiffness.shape[0]), 0.0)
+    active = system.join(
+        [
+            np.full(len(pair), True) if pair.tied else g <= TOUCHING * pair.size * _weight(pair)
+            for pair, g in zip(system.pairs, system.split(gap))
+        ]
+    ).astype(bool)
+    return Unknowns(np.zeros(system.stiffness.shape[0]), np.zeros(len(active)), active)
+
+
+def solve_step(
+    system: System, begin: Unknowns, factor: float, number: int, limit: int, observe: Callable[[Iteration], None]
+) -> Outcome:
+    """Find the state at a share ``factor`` of the load, from the state ``begin``."""
+    state = begin
+    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    seen: set[bytes] = set()
+    history: list[NDArray[np.bool_]] = []
+    done: list[Iteration] = []
+    keep_largest = 0.0  # after a cycle only the multipliers with violations above this share of the largest change
+    changed = np.zeros(len(state.active), dtype=bool)
+    for count in range(1, limit + 1):
+        clock = time.perf_counter()
+        active = system.complete(state.active, system.gap(state.displacement, factor)) | tied
+        solved = _solve_active(system, replace(state, active=active), factor)
+        wanted, violation = _next_active(system, solved, factor, tied)
+        changed = wanted != active
+        row = _report(system, solved, factor, number, count, int(changed.sum()), violation, time.perf_counter() - clock)
+        done.append(row)
+        observe(row)
+        history.append(active)
+        if not changed.any():
+            return _finish_smooth(system, solved, factor, number, limit, done, observe)
+        seen.add(active.tobytes())
+        if wanted.tobytes() in seen or keep_largest:
+            keep_largest = 0.3 if not keep_largest else min(1.0, 1.5 * keep_largest)
+            if wanted.tobytes() not in seen:
+                keep_largest = max(0.3, keep_largest / 1.5)
+            strong = changed & (violation >= keep_largest * violation[changed].max())
+            wanted = np.where(strong, wanted, active)
+        state = replace(solved, active=wanted)
+    recent = np.stack(history[-6:])
+    return Outcome(state, tuple(done), False, (recent.any(axis=0) & ~recent.all(axis=0)) | changed)
+
+
+def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
+    laws = [
+        linearise_active(pair.operator, g, p, a, pair.scale)
+        for pair, g, p, a in zip(
+            system.pairs,
+            system.split(system.gap(state.displacement, factor)),
+            system.split(state.pressure),
+            system.split(state.active),
+        )
+    ]
+    return _advance(system, state, factor, laws)
+
+
+def _advance(system: System, state: Unknowns, factor: float, laws: Sequence[Linearisation]) -> Unknowns:
+    residual = _equilibrium(system, state, factor)
+    du, dp = newton_step(system.stiffness, system.operator, laws, residual, state.pressure)
+    return replace(state, displacement=state.displacement + du, pressure=state.pressure + dp)
+
+
+def _equilibrium(system: System, state: Unknowns, factor: float) -> NDArray[np.float64]:
+    residual = system.stiffness @ state.displacement - factor * system.load
+    if len(state.pressure):
+        residual = residual - system.operator.T @ state.pressure
+    return np.asarray(residual)
+
+
+def _weight(pair: Pair) -> NDArray[np.float64]:
+    return pair.scale * pair.stiffness
+
+
+def _next_active(
+    system: System, state: Unknowns, factor: float, tied: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """The active set that the law asks for, and by how much (pressure) each multiplier breaks it now."""
+    if not len(state.pressure):
+        return state.active, np.zeros(0)
+    gap = system.gap(state.displacement, factor)
+    push = -gap / system.join([pair.scale for pair in system.pairs])  # penetration as a pressure
+    reference = np.abs(state.pressure[~tied]).max(initial=0.0)
+    small = FLAT * max(reference, 1e-300)
+    tension = np.where(state.active & ~tied, -state.pressure, 0.0)
+    penetration = np.where(~state.active, push, 0.0)
+    wanted = np.where(state.active, tension <= small, penetration > small) | tied
+    return wanted, np.maximum(np.maximum(tension, penetration), 0.0)
+
+
+def _report(
+    system: System,
+    state: Unknowns,
+    factor: float,
+    number: int,
+    count: int,
+    changed: int,
+    violation: NDArray[np.float64],
+    seconds: float,
+) -> Iteration:
+    internal = system.stiffness @ state.displacement
+    force = max(np.abs(internal).max(initial=0.0), np.abs(factor * system.load).max(initial=0.0), 1e-300)
+    gap = system.split(system.gap(state.displacement, factor))
+    depth = [float((-g / (_weight(pair) * pair.size)).max(initial=0.0)) for pair, g in zip(system.pairs, gap) if not pair.tied]
+    return Iteration(
+        step=number,
+        iteration=count,
+        active=int(state.active.sum()),
+        changed=changed,
+        residual=float(np.abs(_equilibrium(system, state, factor)).max(initial=0.0) / force),
+        contact_residual=float(violation.max(initial=0.0) / max(np.abs(state.pressure).max(initial=0.0), 1e-300)),
+        penetration=max(depth, default=0.0),
+        seconds=seconds,
+    )
+
+
+def _finish_smooth(
+    system: System,
+    state: Unknowns,
+    factor: float,
+    number: int,
+    limit: int,
+    done: list[Iteration],
+    observe: Callable[[Iteration], None],
+) -> Outcome:
+    """Pairs with the constraint function: Newton on it, from the solution of the complementarity law."""
+    none = np.zeros(len(state.active), dtype=bool)
+    if not any(pair.smooth for pair in system.pairs):
+        return Outcome(state, tuple(done), True, none)
+    reference = max(np.abs(state.pressure).max(initial=0.0), 1e-300)
+    for _ in range(limit):
+        clock = time.perf_counter()
+        laws = _smooth_laws(system, state, factor, reference)
+        residual = system.join([law.residual for law in laws])
+        scale = system.join([_weight(pair) for pair in system.pairs]) * reference
+        law_error = float(np.abs(residual / scale).max(initial=0.0))
+        following = _advance(system, state, factor, laws)
+        following = _line_search(system, state, following, factor, reference)
+        active = system.join([law.active for law in laws]).astype(bool)
+        changed = int((active != state.active).sum())
+        state = replace(following, active=active)
+        row = _report(system, state, factor, number, len(done) + 1, changed, np.zeros(1), time.perf_counter() - clock)
+        row = replace(row, contact_residual=law_error)
+        done.append(row)
+        observe(row)
+        if law_error < TOLERANCE and row.residual < 1e-8:
+            return Outcome(state, tuple(done), True, none)
+    return Outcome(state, tuple(done), False, none)
+
+
+def _smooth_laws(system: System, state: Unknowns, factor: float, reference: float) -> list[Linearisation]:
+    laws = []
+    for pair, g, p, a in zip(
+        system.pairs,
+        system.split(system.gap(state.displacement, factor)),
+        system.split(state.pressure),
+        system.split(state.active),
+    ):
+        if not pair.smooth:
+            laws.append(linearise_active(pair.operator, g, p, a, pair.scale))
+            continue
+        at = pair.points
+        laws.append(
+            linearise_constraint_function(
+                at.test,
+                at.weight,
+                at.operator,
+                at.gap + at.operator @ state.displacement + factor * at.prescribed,
+                at.test @ p,
+                pair.stiffness,
+                pair.contact.epsilon * reference**2,
+            )
+        )
+    return laws
+
+
+def _line_search(system: System, state: Unknowns, full: Unknowns, factor: float, reference: float) -> Unknowns:
+    """Halve the step while the law's residual grows."""
+
+    def size(at: Unknowns) -> float:
+        laws = _smooth_laws(system, at, factor, reference)
+        scale = system.join([_weight(pair) for pair in system.pairs]) * reference
+        return float(np.linalg.norm(system.join([law.residual for law in laws]) / scale))
+
+    before = size(state)
+    share = 1.0
+    best = full
+    for _ in range(8):
+        if size(best) <= max((1.0 - 0.1 * share) * before, 1e-9):
+            return best
+        share *= 0.5
+        best = replace(
+            state,
+            displacement=state.displacement + share * (full.displacement - state.displacement),
+            pressure=state.pressure + share * (full.pressure - state.pressure),
+        )
+    return best
