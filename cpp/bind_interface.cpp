@@ -34,7 +34,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                double reach) {
+                                double reach, double rounding) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   const SurfaceView target = view(points_t, kinds_t, nodes_t);
   contactor.normals = normals.data();
@@ -44,7 +44,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
-               {degree, vectorial, keep_points, reach});
+               {degree, vectorial, keep_points, reach, rounding});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -83,7 +83,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("reach"), "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
+        nb::arg("reach"), nb::arg("rounding"), "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
 }
 
 } // namespace abut

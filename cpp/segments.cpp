@@ -54,6 +54,7 @@ public:
            const double *normal) {
     double h[MAX_FACET_NODES] = {0};
     pressure_values(kind, options_.degree, xi, nc, h);
+    if (std::abs(gap) < options_.rounding) gap = 0;
     hit_ = true;
     out_.covered[f_] += weight;
     const int width = options_.vectorial ? dim_ : 1;

@@ -39,6 +39,7 @@ struct Options {
   bool vectorial;   // couple along the normal (dim values an entry) or componentwise (1 value an entry)
   bool keep_points; // also return every integration point
   double reach;     // largest distance between the surfaces, either sign
+  double rounding;  // gaps below this are rounding errors of the coordinates: none
 };
 
 // Entries are (row, column, values): row 9 f + k for pressure function k of contactor facet f, column a point number.

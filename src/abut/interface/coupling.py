@@ -20,6 +20,8 @@ from abut.interface.quadrature import MOMENT_TOLERANCE, rule_tables
 from abut.mesh.cells import CELLS
 from abut.mesh.surface import Surface
 
+ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
+
 
 @dataclass(frozen=True)
 class IntegrationPoints:
@@ -101,6 +103,7 @@ def couple(
         contactor.points, contactor.kinds, contactor.nodes, nodal_normals(contactor),
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
         degree, not componentwise, keep_points, default_reach(contactor, target) if reach is None else reach,
+        ROUNDING * max(np.abs(s.points).max() for s in (contactor, target)),
     )  # fmt: skip
     offset, n_points = _columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)

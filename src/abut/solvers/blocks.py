@@ -27,14 +27,19 @@ def newton_step(
     law_residual = np.concatenate([law.residual for law in laws]) if laws else np.zeros(0)
     if all(law.symmetric for law in laws):
         return _symmetric_step(stiffness, operator, laws, residual, law_residual, pressure)
-    by_displacement = sp.vstack([law.by_displacement for law in laws])
-    by_pressure = sp.block_diag([law.by_pressure for law in laws])
-    matrix = sp.bmat([[stiffness, -operator.T], [by_displacement, by_pressure]], format="csr")
-    matrix = _store_diagonal(matrix)
-    # Scaling the law's rows to the size of the stiffness leaves the pivots comparable.
-    rhs = -np.concatenate([residual, law_residual])
-    solution = direct.solve(matrix, rhs, symmetric=False)
-    return np.split(solution, [len(residual)])[0], np.split(solution, [len(residual)])[1]
+    # Rows and pressures are scaled so that all blocks have entries of one size: dp = s q, law rows times t.
+    unit = np.median(stiffness.diagonal())
+    by_displacement = sp.vstack([law.by_displacement for law in laws]).tocsr()
+    by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
+    s = unit / _row_max(operator)
+    rows = np.maximum(_row_max(by_displacement), _row_max(by_pressure @ sp.diags(s)))
+    t = sp.diags(unit / rows)
+    matrix = sp.bmat(
+        [[stiffness, -(operator.T @ sp.diags(s))], [t @ by_displacement, t @ by_pressure @ sp.diags(s)]], format="csr"
+    )
+    rhs = -np.concatenate([residual, t @ law_residual])
+    solution = direct.solve(_store_diagonal(matrix), rhs, symmetric=False)
+    return solution[: len(residual)], s * solution[len(residual) :]
 
 
 def _symmetric_step(
@@ -56,10 +61,9 @@ def _symmetric_step(
     couple = operator.copy()
     couple.data = couple.data * np.repeat(-active.astype(float), np.diff(couple.indptr))
     # Pressures are scaled so that both blocks have entries of one size: dp = s q.
-    size = _row_max(operator)
-    s = np.median(stiffness.diagonal()) / np.where(size > 0.0, size, 1.0)
-    couple = (sp.diags(s) @ couple).tocsr()
     unit = np.median(stiffness.diagonal())
+    s = unit / _row_max(operator)
+    couple = (sp.diags(s) @ couple).tocsr()
     diagonal = sp.csr_matrix((np.where(active, 0.0, -unit), np.arange(n), np.arange(n + 1)), shape=(n, n))
     matrix = sp.bmat([[upper, couple.T], [None, diagonal]], format="csr")
     matrix = _store_diagonal(matrix)
@@ -70,7 +74,8 @@ def _symmetric_step(
 
 
 def _row_max(matrix: Any) -> NDArray[np.float64]:
-    return np.asarray(abs(matrix).max(axis=1).todense()).ravel()
+    size = np.asarray(abs(matrix).max(axis=1).todense()).ravel()
+    return np.where(size > 0.0, size, 1.0)
 
 
 def _store_diagonal(matrix: Any) -> Any:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 
 SYMMETRIC_INDEFINITE, UNSYMMETRIC = -2, 11
-RESIDUAL_LIMIT = 1e-6  # relative residual above which a factorisation is taken for singular
+ACCURATE = 1e-10  # relative residual that a sound factorisation stays below
+SINGULAR = 1e-6  # relative residual above which the matrix is taken for singular
 
 
 @functools.lru_cache(maxsize=1)
@@ -44,23 +45,47 @@ def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[
 
     Raises SingularModelError where the matrix is singular to working precision.
     """
-    if len(rhs) == 0:
-        return np.zeros(0)
-    x = _solve_pardiso(matrix, rhs, symmetric) if _pardiso() is not None else _solve_superlu(matrix, rhs, symmetric)
-    product = matrix @ x
-    if symmetric:
-        product = product + matrix.T @ x - matrix.diagonal() * x
-    size = np.abs(rhs).max()
-    if not np.isfinite(x).all() or np.abs(product - rhs).max() > RESIDUAL_LIMIT * max(size, 1e-300):
+    size = np.abs(rhs).max(initial=0.0)
+    if size == 0.0:
+        return np.zeros_like(rhs)
+    rhs = rhs / size  # refinement stops on absolute sizes
+    if _pardiso() is None:
+        x = _solve_superlu(matrix, rhs, symmetric)
+        error = _residual(matrix, x, rhs, symmetric)
+    else:
+        x = _solve_pardiso(matrix, rhs, symmetric)
+        error = _residual(matrix, x, rhs, symmetric)
+        if symmetric and not error < ACCURATE:
+            # The symmetric factorisation pivots only within blocks; the unsymmetric one also before.
+            full = (matrix + sp.triu(matrix, 1).T).tocsr()
+            x = _solve_pardiso(full, rhs, False)
+            error = _residual(full, x, rhs, False)
+    if not error < SINGULAR:
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
-    return x
+    return size * x
+
+
+def _residual(matrix: Any, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:
+    """Largest residual over the largest entry of the right-hand side, or componentwise over |A| |x| + |b| where that is
+    smaller (a right-hand side at rounding level is met no better)."""
+
+    def product(a: Any, v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(a @ v + a.T @ v - a.diagonal() * v if symmetric else a @ v)
+
+    miss = np.abs(product(matrix, x) - rhs)
+    plain = miss.max() / max(np.abs(rhs).max(), 1e-300)
+    if plain < ACCURATE:
+        return float(plain)
+    bound = product(abs(matrix), np.abs(x)) + np.abs(rhs)
+    return float(min(plain, (miss / np.maximum(bound, 1e-300)).max()))
 
 
 def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
     module = _pardiso()
     solver = module.PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
-    # own settings; nested dissection; up to 5 refinements; pivots perturbed at 1e-10 or 1e-13, scaling, matching
-    settings = {1: 1, 2: 2, 8: 5, 10: 10 if symmetric else 13, 11: 1, 13: 1, 18: 0, 21: 1}
+    # Own settings (1); nested dissection (2); refinement steps (8); pivots perturbed below 10^-k (10), where refinement
+    # makes good what a larger perturbation spoils; scaling and matching (11, 13); Bunch-Kaufman pivots, refined (21).
+    settings = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
     for key, value in settings.items():
         solver.iparm[key - 1] = value
     try:
