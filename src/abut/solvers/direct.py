@@ -60,6 +60,10 @@ def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[
             full = (matrix + sp.triu(matrix, 1).T).tocsr()
             x = _solve_pardiso(full, rhs, False)
             error = _residual(full, x, rhs, False)
+        if not error < ACCURATE:
+            # PARDISO perturbs pivots that partial pivoting avoids: SuperLU is slower and sure.
+            x = _solve_superlu(matrix, rhs, symmetric)
+            error = _residual(matrix, x, rhs, symmetric)
     if not error < SINGULAR:
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
     return size * x
