@@ -1,6 +1,6 @@
 // Shape functions of every cell and facet type, on reference domains:
 // line [-1,1]; triangle {x,y >= 0, x+y <= 1}; quadrilateral, hexahedron [-1,1]^d; tetrahedron {x,y,z >= 0, sum <= 1};
-// wedge: triangle x [-1,1]. Node order: src/abut/mesh/cells.py. Codes are the positions in that file's table.
+// wedge: triangle x [-1,1]. Node order: src/abut/cells.py. Codes are the positions in that file's table.
 #pragma once
 #include <array>
 #include <cstdint>

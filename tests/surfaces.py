@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 from abut.mesh.surface import Surface
 
 FACETS_3D = ("tri3", "tri6", "quad4", "quad8", "quad9")

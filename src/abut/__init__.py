@@ -1,27 +1,51 @@
 """abut: finite element contact mechanics that one can trust."""
 
-from abut.analysis import solve
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from abut.errors import AbutError, ConvergenceError, InputError, SingularModelError
-from abut.mesh.mesh import Mesh
-from abut.model import (
-    Contact,
-    Force,
-    Gravity,
-    Integration,
-    Model,
-    Pressure,
-    Solid,
-    SolveOptions,
-    Support,
-    Traction,
-)
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+
+if TYPE_CHECKING:
+    from abut.analysis import solve
+    from abut.io.results import write
+    from abut.mesh.mesh import Mesh
+    from abut.model import (
+        Contact,
+        Force,
+        Gravity,
+        Integration,
+        Model,
+        Pressure,
+        Solid,
+        SolveOptions,
+        Support,
+        Traction,
+    )
+    from abut.solids.materials import LinearElastic
+    from abut.state import Solution
 
 __version__ = "0.1.0"
+
+_HOME = {
+    "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
+    "LinearElastic": "abut.solids.materials", **dict.fromkeys(
+        ("Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions", "Support", "Traction"),
+        "abut.model",
+    ),
+}  # fmt: skip
 
 __all__ = [
     "AbutError", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration", "LinearElastic",
     "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Traction",
-    "solve",
+    "solve", "write",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Public names are imported when first used: ``abut --version`` and error messages stay fast."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'abut' has no attribute {name!r}")
+    import importlib
+
+    return getattr(importlib.import_module(_HOME[name]), name)

@@ -17,7 +17,7 @@ from abut._core import couple_surfaces, plan_facets
 from abut.errors import InputError
 from abut.interface.geometry import by_kind, facet_sizes, nodal_normals
 from abut.interface.quadrature import MOMENT_TOLERANCE, rule_tables
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 from abut.mesh.surface import Surface
 
 ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.mesh.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
 from abut.mesh.surface import Surface
 
 CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.interface.coupling import Coupling, surface_degree
 from abut.interface.geometry import by_kind, full_moments, function_count
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share of a multiplier's own support below which there is nothing to integrate

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import InputError, nearest
-from abut.mesh.cells import CELLS, MAX_FACET_NODES
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.mesh.surface import Surface
 
 
 @dataclass(frozen=True)
 class CellBlock:
-    """Cells of one type: ``kind`` a name in ``abut.mesh.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32."""
+    """Cells of one type: ``kind`` a name in ``abut.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32."""
 
     kind: str
     nodes: NDArray[np.int32]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 
 EDGES: dict[str, tuple[tuple[int, int], ...]] = {
     "tri": ((0, 1), (1, 2), (2, 0)),

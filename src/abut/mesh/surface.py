@@ -13,8 +13,8 @@ class Surface:
     """Facets, possibly of mixed types, over a shared array of points.
 
     points: (n_points, dim) coordinates, dim 2 or 3, any length unit; facets need not use every point.
-    kinds:  (n_facets,) uint8 codes of the facet types (``abut.mesh.cells``): line2 line3 / tri3 tri6 quad4 quad8 quad9.
-    nodes:  (n_facets, 9) int32 indices into ``points``, padded with -1; order as in ``abut.mesh.cells``, so that the
+    kinds:  (n_facets,) uint8 codes of the facet types (``abut.cells``): line2 line3 / tri3 tri6 quad4 quad8 quad9.
+    nodes:  (n_facets, 9) int32 indices into ``points``, padded with -1; order as in ``abut.cells``, so that the
             normal points out of the body.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """

@@ -10,10 +10,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 from abut.mesh.mesh import Mesh
 from abut.solids.materials import LinearElastic
-from abut.solids.quadrature import stiffness_rule, stress_rule
+from abut.mesh.quadrature import stiffness_rule, stress_rule
 
 CHUNK = 4096  # cells treated at once where NumPy does the work
 

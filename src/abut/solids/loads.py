@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.mesh.cells import BY_CODE, CELLS
+from abut.cells import BY_CODE, CELLS
 from abut.mesh.surface import Surface
-from abut.solids.quadrature import facet_rule
+from abut.mesh.quadrature import facet_rule
 
 
 def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: float) -> NDArray[np.float64]:

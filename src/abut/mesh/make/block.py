@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.errors import InputError
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.promote import promote
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.mesh.cells import CELLS
+from abut.cells import CELLS
 
 Rule = tuple[NDArray[np.float64], NDArray[np.float64]]  # points (q, dim), weights (q,)
 

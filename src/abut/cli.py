@@ -1,0 +1,143 @@
+"""The command line: abut run, abut schema."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from abut.errors import AbutError, ConvergenceError
+
+if TYPE_CHECKING:
+    from abut.state import Iteration, Solution
+
+DONE, BUG, INTERRUPTED = 0, 1, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution."""
+    parser = _parser()
+    arguments = parser.parse_args(argv)
+    try:
+        return int(arguments.command(arguments))
+    except AbutError as error:
+        print(f"abut: error: {error}", file=sys.stderr)
+        return error.exit_status
+    except KeyboardInterrupt:
+        print("abut: stopped", file=sys.stderr)
+        return INTERRUPTED
+    except Exception as error:
+        if getattr(arguments, "debug", False):
+            traceback.print_exc()
+        print(f"abut: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
+        print("abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr)
+        return BUG
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="abut",
+        description="Finite element contact mechanics that one can trust.",
+        epilog="example: abut run punch.toml   then open results/fields.pvd in ParaView",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    run = commands.add_parser(
+        "run",
+        help="solve a job",
+        description="Solve a job file (TOML) and write its results.",
+        epilog="exit status: 0 done; 2 bad input; 3 not converged (last state written); 4 the model has no unique solution",
+    )
+    run.add_argument("job", type=Path, help="the job file")
+    run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
+    run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
+    run.add_argument("--quiet", action="store_true", help="print errors only")
+    run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    run.set_defaults(command=_run)
+    schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")
+    schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
+    schema.set_defaults(command=_schema)
+    return parser
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"abut {version('abut')}")
+        parser.exit(DONE)
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from abut.analysis import solve
+    from abut.io.results import summary, write
+    from abut.job import load_job
+
+    job = load_job(arguments.job)
+    silent = arguments.quiet or arguments.json
+    directory = arguments.output or job.directory
+    solution = solve(job.model, None if silent else _Table())
+    write(solution, directory)
+    if arguments.json:
+        print(json.dumps(summary(solution), indent=2))
+    elif not arguments.quiet:
+        _print_result(solution, directory)
+    if not solution.converged:
+        where = "; ".join(
+            f"contact '{name}': facets {facets[:8].tolist()} go in and out" for name, facets in solution.steps[-1].cycling.items()
+        )
+        raise ConvergenceError(
+            f"step {solution.steps[-1].number} did not converge ({where or 'residual too large'}); the last state is in "
+            f"{directory}. Try more load steps, more iterations (solve.max_iterations) or a finer contactor"
+        )
+    return DONE
+
+
+class _Table:
+    """One line an iteration, notes as they come."""
+
+    def __init__(self) -> None:
+        self._step = 0
+
+    def __call__(self, item: Iteration | str) -> None:
+        if isinstance(item, str):
+            print(item, flush=True)
+            return
+        if item.step != self._step:
+            self._step = item.step
+            print("step  iter   active  changed   residual    contact  penetration   seconds")
+        print(
+            f"{item.step:4d}  {item.iteration:4d}  {item.active:7d}  {item.changed:7d}  {item.residual:9.2e}  "
+            f"{item.contact_residual:9.2e}    {item.penetration:9.2e}  {item.seconds:8.2f}",
+            flush=True,
+        )
+
+
+def _print_result(solution: Solution, directory: Path) -> None:
+    for contact in solution.contacts:
+        force = ", ".join(f"{value:.6g}" for value in contact.force)
+        print(
+            f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
+            f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
+        )
+    print(f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView")
+
+
+def _schema(arguments: argparse.Namespace) -> int:
+    from abut.io.atomic import write_text
+    from abut.job import json_schema
+
+    text = json.dumps(json_schema(), indent=2) + "\n"
+    if arguments.output is None:
+        print(text, end="")
+    else:
+        write_text(arguments.output, text)
+    return DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,37 @@
+"""Files are written whole or not at all: under a temporary name in the same folder, then renamed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from abut.errors import InputError
+
+
+def write_file(path: Path, write: Callable[[Path], None]) -> None:
+    """Call ``write`` with a temporary path beside ``path`` and move the result into place.
+
+    Raises InputError where the folder cannot be written to; nothing is left behind on failure.
+    """
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp{path.suffix}")
+    try:
+        write(temporary)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror or error}; choose another output directory") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole (UTF-8)."""
+    write_file(path, lambda temporary: temporary.write_text(text, encoding="utf-8") and None)
+
+
+def make_directory(path: Path) -> None:
+    """Create an output directory. Raises InputError where a file is in the way or it is not allowed."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot create the output directory {path}: {error.strerror}; choose another") from None

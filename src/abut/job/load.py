@@ -1,0 +1,188 @@
+"""Load a job: read, validate (every problem with its place), build the mesh and the model."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from abut.errors import InputError, nearest
+from abut.job.schema import JobFile, MeshTable
+from abut.mesh import make
+from abut.mesh.check import check_mesh
+from abut.mesh.mesh import Mesh
+from abut.model import (
+    Contact,
+    Force,
+    Gravity,
+    Integration,
+    Load,
+    Model,
+    Pressure,
+    Solid,
+    SolveOptions,
+    Support,
+    Traction,
+)
+from abut.solids.materials import LinearElastic
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+GENERATORS: Mapping[str, Callable[..., Mesh]] = {
+    name.replace("_", "-"): getattr(make, name) for name in make.__all__ if name != "join"
+}
+
+
+@dataclass(frozen=True)
+class Job:
+    """A loaded job: the model, where its results go, the file and its text."""
+
+    model: Model
+    directory: Path
+    path: Path
+    text: str
+
+
+def load_job(path: str | Path) -> Job:
+    """Read a job file. Raises InputError that lists every problem with its place."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read job file {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file in UTF-8; is it a job file?") from None
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+    if data.get("schema") != 1:
+        raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
+    try:
+        file = JobFile.model_validate(data)
+    except ValidationError as error:
+        problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
+        raise InputError(f"{path}:\n  {problems}") from None
+    try:
+        model = _model(file, path.parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return Job(model, path.parent / file.output.directory, path, text)
+
+
+def _model(file: JobFile, folder: Path) -> Model:
+    materials = {
+        name: _named(f"materials.{name}", lambda m=m: LinearElastic(m.young, m.poisson, m.density, m.expansion))
+        for name, m in file.materials.items()
+    }
+    solids = []
+    for i, s in enumerate(file.solids):
+        if s.material not in materials:
+            raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
+        solids.append(Solid(s.body, materials[s.material], s.temperature))
+    return Model(
+        mesh=_mesh(file.mesh, folder),
+        plane=file.model.plane,
+        solids=solids,
+        supports=[Support(**s.model_dump()) for s in file.supports],
+        loads=[_load(load) for load in file.loads],
+        contacts=[
+            Contact(
+                **{k: v for k, v in c.model_dump().items() if k not in ("method", "integration")},
+                integration=Integration(**c.integration.model_dump()),
+            )
+            for c in file.contacts
+        ],
+        solve=SolveOptions(**file.solve.model_dump()),
+    )
+
+
+def _named(where: str, build: Callable[[], Any]) -> Any:
+    try:
+        return build()
+    except InputError as error:
+        raise InputError(f"{where}.{error}") from None
+
+
+def _load(table: BaseModel) -> Load:
+    values = table.model_dump()
+    kind = values.pop("kind")
+    if isinstance(values["value"], list):
+        values["value"] = tuple(values["value"])
+    record = {"pressure": Pressure, "traction": Traction, "force": Force, "gravity": Gravity}[kind]
+    return record(**values)  # type: ignore[no-any-return]
+
+
+def _mesh(table: MeshTable, folder: Path) -> Mesh:
+    if (table.file is None) == (not table.bodies):
+        raise InputError("mesh: give either file = \"...\" or bodies ([mesh.bodies.NAME]), not both or neither")
+    if table.file is not None:
+        return Mesh.read(folder / table.file)
+    meshes = {}
+    for name, body in table.bodies.items():
+        where = f"mesh.bodies.{name}"
+        if body.kind not in GENERATORS:
+            raise InputError(f"{where}.kind: no generator {body.kind!r}{nearest(body.kind, GENERATORS)}")
+        generator = GENERATORS[body.kind]
+        known = inspect.signature(generator).parameters
+        arguments = body.model_extra or {}
+        for key in arguments:
+            if key not in known:
+                raise InputError(f"{where}.{key}: unknown key{nearest(key, known)}")
+        try:
+            meshes[name] = generator(**arguments)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{where}: {error}") from None
+    mesh = make.join(meshes)
+    check_mesh(mesh)
+    return mesh
+
+
+def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
+    """One problem in words, with its place as in ``contacts[0].tagret``."""
+    location = [part for part in error["loc"] if part not in ("pressure", "traction", "force", "gravity")]
+    place = ""
+    for part in location:
+        place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)
+    kind = error["type"]
+    if kind == "extra_forbidden":
+        return f"{place}: unknown key{_suggest(location, data)}"
+    if kind == "missing":
+        return f"{place}: missing"
+    if kind == "finite_number":
+        return f"{place}: expected a finite number, got {error['input']!r}"
+    return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"
+
+
+def _suggest(location: list[Any], data: dict[str, Any]) -> str:
+    known = _fields(JobFile, location[:-1])
+    return nearest(str(location[-1]), known) if known else ""
+
+
+def _fields(model: Any, location: list[Any]) -> list[str]:
+    """Keys known at a place, found by walking the field annotations."""
+    schema = model.model_json_schema(by_alias=True)
+    node: Any = schema
+
+    def resolve(item: Any) -> Any:
+        while "$ref" in item:
+            item = schema["$defs"][item["$ref"].rsplit("/", 1)[1]]
+        return item
+
+    for part in location:
+        node = resolve(node)
+        if isinstance(part, int):
+            node = node.get("items", {})
+        else:
+            node = node.get("properties", {}).get(part) or node.get("additionalProperties", {})
+    node = resolve(node)
+    options = [resolve(item) for item in node.get("oneOf", [])] or [node]
+    return sorted({key for option in options for key in option.get("properties", {})})
