@@ -64,7 +64,8 @@ class Step:
     """The state at the end of a load step. ``factor`` in (0, 1] is the share of loads and displacements applied.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
-    reaction: (dim,) resultant of all supports; load: (dim,) resultant of all loads.
+    reaction: (dim,) resultant of all supports; reactions: the same for each supported surface or node set (points that
+    lie on several count for each of them); load: (dim,) resultant of all loads.
     """
 
     number: int
@@ -74,6 +75,7 @@ class Step:
     displacement: NDArray[np.float64]
     stress: NDArray[np.float64]
     reaction: NDArray[np.float64]
+    reactions: Mapping[str, NDArray[np.float64]]
     load: NDArray[np.float64]
     contacts: tuple[ContactResult, ...]
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle

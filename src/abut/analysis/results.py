@@ -52,6 +52,9 @@ def step_result(
         displacement=nodal,
         stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
+        reactions={
+            on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0) for on in {s.on: s for s in model.supports}
+        },
         load=factor * applied_load(model).reshape(-1, dim).sum(axis=0),
         contacts=tuple(
             _contact(pair, pressure, gap, active)

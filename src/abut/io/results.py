@@ -72,7 +72,8 @@ def summary(solution: Solution) -> dict[str, Any]:
 
 def _step_summary(step: Step) -> dict[str, Any]:
     last = step.iterations[-1]
-    size = max(np.abs(step.load).max(initial=0.0), np.abs(step.reaction).max(initial=0.0), 1e-300)
+    forces = [step.load, step.reaction, *(c.force for c in step.contacts), *step.reactions.values()]
+    size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
     return {
         "step": step.number,
         "factor": step.factor,
@@ -81,6 +82,7 @@ def _step_summary(step: Step) -> dict[str, Any]:
         "residual": last.residual,
         "contact_residual": last.contact_residual,
         "reaction": step.reaction.tolist(),
+        "reactions": {name: force.tolist() for name, force in step.reactions.items()},
         "load": step.load.tolist(),
         "balance_error": float(np.abs(step.load + step.reaction).max() / size),
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
