@@ -16,7 +16,8 @@ template <class T> using Tensor3 = nb::ndarray<const T, nb::numpy, nb::ndim<3>, 
 // Hands a vector's memory to NumPy without a copy.
 template <class T> nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> &&data, std::vector<std::size_t> shape = {}) {
   auto *owned = new std::vector<T>(std::move(data));
-  if (shape.empty()) shape = {owned->size()};
+  if (shape.empty())
+    shape = {owned->size()};
   nb::capsule owner(owned, [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
   return nb::ndarray<nb::numpy, T>(owned->data(), shape.size(), shape.data(), owner);
 }

@@ -6,12 +6,14 @@
 namespace abut {
 
 static SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes) {
-  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != 9) throw nb::value_error("nodes must be (facets, 9)");
+  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != 9)
+    throw nb::value_error("nodes must be (facets, 9)");
   return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
 }
 
 static RuleTable table(Tensor3<double> rules) {
-  if (rules.shape(0) != 4) throw nb::value_error("rules must be (4, count, width)");
+  if (rules.shape(0) != 4)
+    throw nb::value_error("rules must be (4, count, width)");
   const std::size_t step = rules.shape(1) * rules.shape(2);
   const double *data = rules.data();
   return {rules.shape(1), rules.shape(2), data, data + step, data + 2 * step, data + 3 * step};
@@ -83,7 +85,8 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("reach"), nb::arg("rounding"), "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
+        nb::arg("reach"), nb::arg("rounding"),
+        "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
 }
 
 } // namespace abut

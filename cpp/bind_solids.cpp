@@ -14,19 +14,23 @@ static nb::tuple node_pattern(std::int64_t n_points, Vector<std::int64_t> start,
     nb::gil_scoped_release release;
     std::vector<std::int64_t> first(n_points + 1, 0);
     const std::size_t visits = nodes.shape(0);
-    for (std::size_t i = 0; i < visits; ++i) ++first[nodes(i) + 1];
-    for (std::int64_t i = 0; i < n_points; ++i) first[i + 1] += first[i];
+    for (std::size_t i = 0; i < visits; ++i)
+      ++first[nodes(i) + 1];
+    for (std::int64_t i = 0; i < n_points; ++i)
+      first[i + 1] += first[i];
     std::vector<std::int32_t> cell_of(visits);
     std::vector<std::int64_t> fill(first.begin(), first.end() - 1);
     for (std::size_t c = 0; c < cells; ++c)
-      for (std::int64_t i = start(c); i < start(c + 1); ++i) cell_of[fill[nodes(i)]++] = std::int32_t(c);
+      for (std::int64_t i = start(c); i < start(c + 1); ++i)
+        cell_of[fill[nodes(i)]++] = std::int32_t(c);
     std::vector<std::int64_t> seen(n_points, -1);
     indices.reserve(visits * 4);
     for (std::int64_t row = 0; row < n_points; ++row) {
       const std::size_t begin = indices.size();
       for (std::int64_t k = first[row]; k < first[row + 1]; ++k)
         for (std::int64_t i = start(cell_of[k]); i < start(cell_of[k] + 1); ++i)
-          if (seen[nodes(i)] != row) seen[nodes(i)] = row, indices.push_back(nodes(i));
+          if (seen[nodes(i)] != row)
+            seen[nodes(i)] = row, indices.push_back(nodes(i));
       std::sort(indices.begin() + begin, indices.end());
       indptr[row + 1] = std::int64_t(indices.size());
     }
@@ -43,7 +47,8 @@ static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t>
   for (std::int64_t i = 0; i < rows; ++i)
     for (int a = 0; a < dim; ++a) {
       for (std::int64_t p = indptr(i); p < indptr(i + 1); ++p)
-        for (int b = 0; b < dim; ++b) columns[k++] = dim * indices(p) + b;
+        for (int b = 0; b < dim; ++b)
+          columns[k++] = dim * indices(p) + b;
       start[i * dim + a + 1] = std::int64_t(k);
     }
   return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)));
@@ -65,7 +70,8 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
       double j[dim][dim] = {{0}}, inverse[dim][dim], det;
       for (std::size_t i = 0; i < n; ++i)
         for (int a = 0; a < dim; ++a)
-          for (int b = 0; b < dim; ++b) j[a][b] += points[std::size_t(own[i]) * dim + a] * d[i * dim + b];
+          for (int b = 0; b < dim; ++b)
+            j[a][b] += points[std::size_t(own[i]) * dim + a] * d[i * dim + b];
       if constexpr (dim == 2) {
         det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
         inverse[0][0] = j[1][1] / det, inverse[0][1] = -j[0][1] / det;
@@ -78,13 +84,15 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
           }
         det = j[0][0] * inverse[0][0] + j[0][1] * inverse[1][0] + j[0][2] * inverse[2][0];
         for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) inverse[a][b] /= det;
+          for (int b = 0; b < 3; ++b)
+            inverse[a][b] /= det;
       }
       const double w = det * weights[q];
       for (std::size_t i = 0; i < n; ++i)
         for (int a = 0; a < dim; ++a) {
           double sum = 0;
-          for (int b = 0; b < dim; ++b) sum += d[i * dim + b] * inverse[b][a];
+          for (int b = 0; b < dim; ++b)
+            sum += d[i * dim + b] * inverse[b][a];
           gradient[i * dim + a] = sum;
         }
       for (std::size_t i = 0; i < n; ++i)
@@ -92,9 +100,11 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
           const double *g = &gradient[i * dim], *h = &gradient[k * dim];
           double *out = &block[(i * n + k) * dim * dim];
           double scalar = 0;
-          for (int a = 0; a < dim; ++a) scalar += g[a] * h[a];
+          for (int a = 0; a < dim; ++a)
+            scalar += g[a] * h[a];
           for (int a = 0; a < dim; ++a) {
-            for (int b = 0; b < dim; ++b) out[a * dim + b] += w * (lambda * g[a] * h[b] + mu * g[b] * h[a]);
+            for (int b = 0; b < dim; ++b)
+              out[a * dim + b] += w * (lambda * g[a] * h[b] + mu * g[b] * h[a]);
             out[a * dim + a] += w * mu * scalar;
           }
         }

@@ -8,7 +8,21 @@
 namespace abut {
 
 enum Kind : std::uint8_t {
-  LINE2, LINE3, TRI3, TRI6, QUAD4, QUAD8, QUAD9, TET4, TET10, HEX8, HEX20, HEX27, WEDGE6, WEDGE15, KIND_COUNT
+  LINE2,
+  LINE3,
+  TRI3,
+  TRI6,
+  QUAD4,
+  QUAD8,
+  QUAD9,
+  TET4,
+  TET10,
+  HEX8,
+  HEX20,
+  HEX27,
+  WEDGE6,
+  WEDGE15,
+  KIND_COUNT
 };
 
 constexpr int MAX_NODES = 27;
@@ -18,12 +32,14 @@ constexpr std::array<int, KIND_COUNT> DIM{1, 1, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3,
 constexpr std::array<int, KIND_COUNT> CORNERS{2, 2, 3, 3, 4, 4, 4, 4, 4, 8, 8, 8, 6, 6};
 constexpr bool quadratic(int kind) { return NODES[kind] != CORNERS[kind]; }
 // The linear type with the same corners.
-constexpr std::array<Kind, KIND_COUNT> LINEAR{LINE2, LINE2, TRI3, TRI3, QUAD4, QUAD4, QUAD4,
+constexpr std::array<Kind, KIND_COUNT> LINEAR{LINE2, LINE2, TRI3, TRI3, QUAD4, QUAD4,  QUAD4,
                                               TET4,  TET4,  HEX8, HEX8, HEX8,  WEDGE6, WEDGE6};
 
 namespace detail {
 
-template <class T> struct Poly1 { T v[3], d[3]; }; // values and derivatives of a 1D basis
+template <class T> struct Poly1 {
+  T v[3], d[3];
+}; // values and derivatives of a 1D basis
 
 // Nodes at -1, 1 (linear); -1, 1, 0 (quadratic).
 template <class T> Poly1<T> line_linear(T x) {
@@ -34,10 +50,10 @@ template <class T> Poly1<T> line_quadratic(T x) {
 }
 
 constexpr int QUAD9_INDEX[9][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {1, 2}, {2, 1}, {0, 2}, {2, 2}};
-constexpr int HEX27_INDEX[27][3] = {
-    {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0},
-    {1, 2, 0}, {2, 1, 0}, {0, 2, 0}, {2, 0, 1}, {1, 2, 1}, {2, 1, 1}, {0, 2, 1}, {0, 0, 2}, {1, 0, 2},
-    {1, 1, 2}, {0, 1, 2}, {0, 2, 2}, {1, 2, 2}, {2, 0, 2}, {2, 1, 2}, {2, 2, 0}, {2, 2, 1}, {2, 2, 2}};
+constexpr int HEX27_INDEX[27][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1},
+                                    {0, 1, 1}, {2, 0, 0}, {1, 2, 0}, {2, 1, 0}, {0, 2, 0}, {2, 0, 1}, {1, 2, 1},
+                                    {2, 1, 1}, {0, 2, 1}, {0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}, {0, 2, 2},
+                                    {1, 2, 2}, {2, 0, 2}, {2, 1, 2}, {2, 2, 0}, {2, 2, 1}, {2, 2, 2}};
 constexpr double QUAD_SIGN[8][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}};
 constexpr int TRI_EDGE[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 constexpr int TET_EDGE[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
@@ -47,13 +63,15 @@ template <class T> void simplex_quadratic(int dim, const T *l, T *n, T (*d)[3]) 
   auto dl = [dim](int i, int a) { return i == 0 ? T(-1) : T(i - 1 == a ? 1 : 0); };
   for (int i = 0; i < corners; ++i) {
     n[i] = l[i] * (T(2) * l[i] - T(1));
-    for (int a = 0; a < dim; ++a) d[i][a] = (T(4) * l[i] - T(1)) * dl(i, a);
+    for (int a = 0; a < dim; ++a)
+      d[i][a] = (T(4) * l[i] - T(1)) * dl(i, a);
   }
   const int edges = dim == 2 ? 3 : 6;
   for (int e = 0; e < edges; ++e) {
     const int i = dim == 2 ? TRI_EDGE[e][0] : TET_EDGE[e][0], j = dim == 2 ? TRI_EDGE[e][1] : TET_EDGE[e][1];
     n[corners + e] = T(4) * l[i] * l[j];
-    for (int a = 0; a < dim; ++a) d[corners + e][a] = T(4) * (dl(i, a) * l[j] + l[i] * dl(j, a));
+    for (int a = 0; a < dim; ++a)
+      d[corners + e][a] = T(4) * (dl(i, a) * l[j] + l[i] * dl(j, a));
   }
 }
 
@@ -83,7 +101,8 @@ template <class T> void serendipity_hex(const T *x, T *n, T (*d)[3]) {
     for (int k = 0; k < 3; ++k) {
       const int index = HEX27_INDEX[i][k];
       s[k] = T(index == 0 ? -1 : index == 1 ? 1 : 0);
-      if (index == 2) zero = k;
+      if (index == 2)
+        zero = k;
       f[k] = T(1) + s[k] * x[k];
     }
     if (zero < 0) {
@@ -113,17 +132,20 @@ template <class T> void wedge15(const T *x, T *n, T (*d)[3]) {
     for (int i = 0; i < 3; ++i) {
       const int c = 3 * side + i;
       n[c] = T(0.5) * l[i] * h * (T(2) * l[i] - T(2) + s * z);
-      for (int a = 0; a < 2; ++a) d[c][a] = T(0.5) * h * (T(4) * l[i] - T(2) + s * z) * dl[i][a];
+      for (int a = 0; a < 2; ++a)
+        d[c][a] = T(0.5) * h * (T(4) * l[i] - T(2) + s * z) * dl[i][a];
       d[c][2] = T(0.5) * l[i] * s * (T(2) * l[i] - T(1) + T(2) * s * z);
       const int j = (i + 1) % 3, e = 6 + 3 * side + i;
       n[e] = T(2) * l[i] * l[j] * h;
-      for (int a = 0; a < 2; ++a) d[e][a] = T(2) * h * (dl[i][a] * l[j] + l[i] * dl[j][a]);
+      for (int a = 0; a < 2; ++a)
+        d[e][a] = T(2) * h * (dl[i][a] * l[j] + l[i] * dl[j][a]);
       d[e][2] = T(2) * l[i] * l[j] * s;
     }
   }
   for (int i = 0; i < 3; ++i) {
     n[12 + i] = l[i] * (T(1) - z * z);
-    for (int a = 0; a < 2; ++a) d[12 + i][a] = dl[i][a] * (T(1) - z * z);
+    for (int a = 0; a < 2; ++a)
+      d[12 + i][a] = dl[i][a] * (T(1) - z * z);
     d[12 + i][2] = T(-2) * l[i] * z;
   }
 }
@@ -137,7 +159,8 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
   case LINE2:
   case LINE3: {
     const auto p = kind == LINE2 ? line_linear(x[0]) : line_quadratic(x[0]);
-    for (int i = 0; i < NODES[kind]; ++i) n[i] = p.v[i], d[i][0] = p.d[i];
+    for (int i = 0; i < NODES[kind]; ++i)
+      n[i] = p.v[i], d[i][0] = p.d[i];
     break;
   }
   case TRI3:
@@ -153,7 +176,8 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
     n[0] = T(1) - x[0] - x[1] - x[2];
     for (int a = 0; a < 3; ++a) {
       d[0][a] = T(-1), n[a + 1] = x[a];
-      for (int b = 0; b < 3; ++b) d[a + 1][b] = T(a == b ? 1 : 0);
+      for (int b = 0; b < 3; ++b)
+        d[a + 1][b] = T(a == b ? 1 : 0);
     }
     break;
   case TET10: {
@@ -161,8 +185,12 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
     simplex_quadratic(3, l, n, d);
     break;
   }
-  case QUAD8: serendipity_quad(x[0], x[1], n, d); break;
-  case HEX20: serendipity_hex(x, n, d); break;
+  case QUAD8:
+    serendipity_quad(x[0], x[1], n, d);
+    break;
+  case HEX20:
+    serendipity_hex(x, n, d);
+    break;
   case QUAD4:
   case QUAD9: {
     const auto p = kind == QUAD4 ? line_linear(x[0]) : line_quadratic(x[0]);
@@ -176,7 +204,8 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
   case HEX8:
   case HEX27: {
     Poly1<T> p[3];
-    for (int k = 0; k < 3; ++k) p[k] = kind == HEX8 ? line_linear(x[k]) : line_quadratic(x[k]);
+    for (int k = 0; k < 3; ++k)
+      p[k] = kind == HEX8 ? line_linear(x[k]) : line_quadratic(x[k]);
     for (int i = 0; i < NODES[kind]; ++i) {
       const int *m = HEX27_INDEX[i];
       n[i] = p[0].v[m[0]] * p[1].v[m[1]] * p[2].v[m[2]];
@@ -195,8 +224,11 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
     }
     break;
   }
-  case WEDGE15: wedge15(x, n, d); break;
-  default: break;
+  case WEDGE15:
+    wedge15(x, n, d);
+    break;
+  default:
+    break;
   }
 }
 

@@ -45,19 +45,22 @@ struct Polygon {
   int size = 0;
   std::array<Vertex, MAX_CLIP> v;
   void push(const Vertex &w) {
-    if (size < MAX_CLIP) v[size++] = w;
+    if (size < MAX_CLIP)
+      v[size++] = w;
   }
 };
 
 inline double signed_area(const Point2 *p, int n) {
   double sum = 0;
-  for (int i = 1; i + 1 < n; ++i) sum += cross2(p[i] - p[0], p[i + 1] - p[0]);
+  for (int i = 1; i + 1 < n; ++i)
+    sum += cross2(p[i] - p[0], p[i + 1] - p[0]);
   return 0.5 * sum;
 }
 
 inline bool convex(const Point2 *p, int n) {
   for (int i = 0; i < n; ++i)
-    if (cross2(p[(i + 1) % n] - p[i], p[(i + 2) % n] - p[(i + 1) % n]) < 0) return false;
+    if (cross2(p[(i + 1) % n] - p[i], p[(i + 2) % n] - p[(i + 1) % n]) < 0)
+      return false;
   return true;
 }
 
@@ -71,7 +74,8 @@ inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count
     for (int i = 0; i < current.size; ++i) {
       const Vertex &p = current.v[i], &q = current.v[(i + 1) % current.size];
       const double dp = cross2(edge, p.p - a), dq = cross2(edge, q.p - a);
-      if (dp >= 0) next.push(p);
+      if (dp >= 0)
+        next.push(p);
       if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
         const Point2 at = p.p + (dp / (dp - dq)) * (q.p - p.p);
         next.push(dp > 0 ? Vertex{at, 1, j} : Vertex{at, p.side, p.edge});
@@ -90,13 +94,16 @@ inline void polish(const Curve &c, const Curve &d, Point2 &p) {
   for (int i = 0; i < 6; ++i) {
     const Point2 f = c.at(s) - d.at(t), cs = c.slope(s), dt = d.slope(t);
     const double det = -cross2(cs, dt);
-    if (std::abs(det) < 1e-12 * std::sqrt(dot2(cs, cs) * dot2(dt, dt))) return; // nearly parallel: keep the chords'
+    if (std::abs(det) < 1e-12 * std::sqrt(dot2(cs, cs) * dot2(dt, dt)))
+      return; // nearly parallel: keep the chords'
     const double ds = (-f.x * -dt.y + f.y * -dt.x) / det;
     const double step = (cs.x * -f.y + cs.y * f.x) / det;
     s += ds, t += step;
-    if (std::abs(ds) + std::abs(step) < 1e-15) break;
+    if (std::abs(ds) + std::abs(step) < 1e-15)
+      break;
   }
-  if (s > -0.5 && s < 1.5 && t > -0.5 && t < 1.5) p = c.at(s);
+  if (s > -0.5 && s < 1.5 && t > -0.5 && t < 1.5)
+    p = c.at(s);
 }
 
 // One-dimensional rules on [0, 1]: `t` along an edge, `r` from the apex with the weight r included.
@@ -125,7 +132,8 @@ void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curv
       const Point2 on = curve.straight ? p + rule.t[k] * (q - p) : curve.at(t);
       const Point2 along = curve.straight ? q - p : (t1 - t0) * curve.slope(t);
       const double jacobian = cross2(on - apex, along) * rule.wt[k];
-      for (int m = 0; m < rule.n; ++m) visit(apex + rule.r[m] * (on - apex), jacobian * rule.wr[m]);
+      for (int m = 0; m < rule.n; ++m)
+        visit(apex + rule.r[m] * (on - apex), jacobian * rule.wr[m]);
     }
   }
 }

@@ -16,7 +16,8 @@ struct Plane {
     return dot(d, n, 3);
   }
   void lift(Point2 p, double *x) const {
-    for (int a = 0; a < 3; ++a) x[a] = origin[a] + p.x * e1[a] + p.y * e2[a];
+    for (int a = 0; a < 3; ++a)
+      x[a] = origin[a] + p.x * e1[a] + p.y * e2[a];
   }
 };
 
@@ -26,7 +27,8 @@ inline Plane mean_plane(const Facet<double> &f) {
   double area[3] = {0, 0, 0};
   for (int a = 0; a < 3; ++a) {
     plane.origin[a] = 0;
-    for (int i = 0; i < corners; ++i) plane.origin[a] += f.x[i][a] / corners;
+    for (int i = 0; i < corners; ++i)
+      plane.origin[a] += f.x[i][a] / corners;
   }
   double p[3], q[3], c[3]; // half the cross product of the diagonals, or of two edges
   for (int a = 0; a < 3; ++a) {
@@ -34,29 +36,34 @@ inline Plane mean_plane(const Facet<double> &f) {
     q[a] = corners == 4 ? f.x[3][a] - f.x[1][a] : f.x[2][a] - f.x[1][a];
   }
   if (corners == 3)
-    for (int a = 0; a < 3; ++a) p[a] = f.x[1][a] - f.x[0][a];
+    for (int a = 0; a < 3; ++a)
+      p[a] = f.x[1][a] - f.x[0][a];
   cross(p, q, c);
-  for (int a = 0; a < 3; ++a) area[a] += c[a];
+  for (int a = 0; a < 3; ++a)
+    area[a] += c[a];
   normalize(area, 3);
-  for (int a = 0; a < 3; ++a) plane.n[a] = area[a];
+  for (int a = 0; a < 3; ++a)
+    plane.n[a] = area[a];
   frame(plane.n, plane.e1, plane.e2);
   return plane;
 }
 
 inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
   Curve curve{a, b, {0, 0}, true};
-  if (!middle) return curve;
+  if (!middle)
+    return curve;
   const Point2 chord = b - a;
   curve.bulge = 4.0 * (*middle - 0.5 * (a + b));
   curve.straight = std::abs(cross2(chord, curve.bulge)) < 4e-13 * dot2(chord, chord);
-  if (curve.straight) curve.bulge = {0, 0};
+  if (curve.straight)
+    curve.bulge = {0, 0};
   return curve;
 }
 
-// The pieces of a facet divided m x m, counter-clockwise; `to_plane` maps reference coordinates to the plane and returns
-// false where that fails. `reverse` turns the order (a target seen from the contactor). Back-facing pieces are left out.
-template <class Map>
-void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
+// The pieces of a facet divided m x m, counter-clockwise; `to_plane` maps reference coordinates to the plane and
+// returns false where that fails. `reverse` turns the order (a target seen from the contactor). Back-facing pieces are
+// left out.
+template <class Map> void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
   const bool triangle = f.triangle(), curved = quadratic(f.kind);
   auto grid = [&](double i, double j, double *xi) {
     xi[0] = triangle ? i / m : -1 + 2 * i / m, xi[1] = triangle ? j / m : -1 + 2 * j / m;
@@ -69,12 +76,16 @@ void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vec
     for (int i = 0; i < size; ++i) {
       const int k = reverse ? size - 1 - i : i, next = reverse ? (k + size - 1) % size : (k + 1) % size;
       grid(corner[k][0], corner[k][1], xi);
-      if (!to_plane(xi, piece.p[i])) return;
-      if (!curved) continue;
+      if (!to_plane(xi, piece.p[i]))
+        return;
+      if (!curved)
+        continue;
       grid(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]), xi);
-      if (!to_plane(xi, middle[i])) return;
+      if (!to_plane(xi, middle[i]))
+        return;
     }
-    if (signed_area(piece.p, size) <= 0) return;
+    if (signed_area(piece.p, size) <= 0)
+      return;
     for (int i = 0; i < size; ++i)
       piece.curve[i] = make_curve(piece.p[i], piece.p[(i + 1) % size], curved ? &middle[i] : nullptr);
     if (size == 3 || convex(piece.p, 4)) {
@@ -84,7 +95,8 @@ void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vec
     // A quadrilateral that is not convex in this plane: cut along the diagonal from its reflex corner.
     int reflex = 0;
     for (int i = 0; i < 4; ++i)
-      if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0) reflex = i;
+      if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0)
+        reflex = i;
     for (int half = 0; half < 2; ++half) {
       const int a = reflex, b = (reflex + (half == 0 ? 1 : 2)) % 4, c = (reflex + (half == 0 ? 2 : 3)) % 4;
       Piece part;
@@ -93,7 +105,8 @@ void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vec
       part.curve[0] = half == 0 ? piece.curve[a] : make_curve(piece.p[a], piece.p[b], nullptr);
       part.curve[1] = piece.curve[b];
       part.curve[2] = half == 0 ? make_curve(piece.p[c], piece.p[a], nullptr) : piece.curve[c];
-      if (signed_area(part.p, 3) > 0) out.push_back(part);
+      if (signed_area(part.p, 3) > 0)
+        out.push_back(part);
     }
   };
   for (int i = 0; i < m; ++i)

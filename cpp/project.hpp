@@ -15,13 +15,15 @@ template <class T> void cross(const T *a, const T *b, T *c) {
 }
 template <class T> void normalize(T *a, int dim) {
   const T length = std::sqrt(dot(a, a, dim));
-  for (int i = 0; i < dim; ++i) a[i] /= length;
+  for (int i = 0; i < dim; ++i)
+    a[i] /= length;
 }
 // Two unit vectors that complete the unit vector n to a right-handed frame (t1, t2, n).
 template <class T> void frame(const T *n, T *t1, T *t2) {
   int least = 0;
   for (int i = 1; i < 3; ++i)
-    if (std::abs(n[i]) < std::abs(n[least])) least = i;
+    if (std::abs(n[i]) < std::abs(n[least]))
+      least = i;
   T axis[3] = {0, 0, 0};
   axis[least] = 1;
   cross(axis, n, t1);
@@ -42,31 +44,36 @@ template <class T> struct Facet {
     shape(kind, xi, n, d);
     for (int a = 0; a < dim; ++a) {
       point[a] = tangent[0][a] = tangent[1][a] = T(0);
-      if (normal) normal[a] = T(0);
+      if (normal)
+        normal[a] = T(0);
     }
     for (int i = 0; i < nodes; ++i)
       for (int a = 0; a < dim; ++a) {
         point[a] += n[i] * x[i][a];
         tangent[0][a] += d[i][0] * x[i][a];
-        if (dim == 3) tangent[1][a] += d[i][1] * x[i][a];
-        if (normal) normal[a] += n[i] * normals[i][a];
+        if (dim == 3)
+          tangent[1][a] += d[i][1] * x[i][a];
+        if (normal)
+          normal[a] += n[i] * normals[i][a];
       }
-    if (normal) normalize(normal, dim);
+    if (normal)
+      normalize(normal, dim);
   }
 
   bool triangle() const { return kind == TRI3 || kind == TRI6; }
   // Reference coordinates of the middle.
-  void centre(T *xi) const {
-    xi[0] = xi[1] = triangle() ? T(1) / T(3) : T(0);
-  }
+  void centre(T *xi) const { xi[0] = xi[1] = triangle() ? T(1) / T(3) : T(0); }
   // Nearest point of the reference domain, componentwise; `slack` widens the domain.
   void clamp(T *xi, T slack = T(0)) const {
     if (triangle()) {
       const T over = xi[0] + xi[1] - (T(1) + slack);
-      if (over > T(0)) xi[0] -= T(0.5) * over, xi[1] -= T(0.5) * over;
-      for (int a = 0; a < 2; ++a) xi[a] = std::min(std::max(xi[a], -slack), T(1) + slack);
+      if (over > T(0))
+        xi[0] -= T(0.5) * over, xi[1] -= T(0.5) * over;
+      for (int a = 0; a < 2; ++a)
+        xi[a] = std::min(std::max(xi[a], -slack), T(1) + slack);
     } else {
-      for (int a = 0; a < dim - 1; ++a) xi[a] = std::min(std::max(xi[a], T(-1) - slack), T(1) + slack);
+      for (int a = 0; a < dim - 1; ++a)
+        xi[a] = std::min(std::max(xi[a], T(-1) - slack), T(1) + slack);
     }
   }
 };
@@ -78,22 +85,26 @@ template <class T> bool project(const Facet<T> &facet, const T *from, const T *t
   for (int iteration = 0; iteration < 25; ++iteration) {
     T point[3], tangent[2][3];
     facet.at(xi, point, tangent);
-    for (int a = 0; a < facet.dim; ++a) point[a] -= from[a];
+    for (int a = 0; a < facet.dim; ++a)
+      point[a] -= from[a];
     T step[2] = {T(0), T(0)};
     if (facet.dim == 2) {
       const T slope = dot(tangent[0], t1, 2);
-      if (slope == T(0)) return false;
+      if (slope == T(0))
+        return false;
       step[0] = dot(point, t1, 2) / slope;
     } else {
       const T a = dot(tangent[0], t1, 3), b = dot(tangent[1], t1, 3), c = dot(tangent[0], t2, 3),
               d = dot(tangent[1], t2, 3), p = dot(point, t1, 3), q = dot(point, t2, 3);
       const T det = a * d - b * c;
-      if (det == T(0)) return false;
+      if (det == T(0))
+        return false;
       step[0] = (d * p - b * q) / det, step[1] = (a * q - c * p) / det;
     }
     const T before[2] = {xi[0], xi[1]};
     xi[0] -= step[0];
-    if (facet.dim == 3) xi[1] -= step[1];
+    if (facet.dim == 3)
+      xi[1] -= step[1];
     facet.clamp(xi, slack);
     const T moved = std::abs(xi[0] - before[0]) + (facet.dim == 3 ? std::abs(xi[1] - before[1]) : T(0));
     if (moved < T(1e-9)) {

@@ -11,7 +11,8 @@ Facet<double> SurfaceView::facet(std::size_t f) const {
   for (int i = 0; i < out.nodes; ++i)
     for (int a = 0; a < dim; ++a) {
       out.x[i][a] = points[std::size_t(nodes[9 * f + i]) * dim + a];
-      if (normals) out.normals[i][a] = normals[(9 * f + i) * dim + a];
+      if (normals)
+        out.normals[i][a] = normals[(9 * f + i) * dim + a];
     }
   return out;
 }
@@ -20,8 +21,10 @@ namespace {
 
 Box box_of(const Facet<double> &f) {
   Box box;
-  for (int i = 0; i < f.nodes; ++i) box.add(f.x[i], f.dim);
-  if (quadratic(f.kind)) box.inflate(0.15 * box.diagonal(f.dim), f.dim);
+  for (int i = 0; i < f.nodes; ++i)
+    box.add(f.x[i], f.dim);
+  if (quadratic(f.kind))
+    box.inflate(0.15 * box.diagonal(f.dim), f.dim);
   return box;
 }
 
@@ -31,7 +34,8 @@ void pressure_values(int kind, int degree, const double *xi, const double *own, 
   if (degree == 0) {
     h[0] = 1;
   } else if (degree == 2 || !quadratic(kind)) {
-    for (int k = 0; k < NODES[kind]; ++k) h[k] = own[k];
+    for (int k = 0; k < NODES[kind]; ++k)
+      h[k] = own[k];
   } else {
     double d[MAX_FACET_NODES][3];
     shape(LINEAR[kind], xi, h, d);
@@ -54,31 +58,39 @@ public:
            const double *normal) {
     double h[MAX_FACET_NODES] = {0};
     pressure_values(kind, options_.degree, xi, nc, h);
-    if (std::abs(gap) < options_.rounding) gap = 0;
+    if (std::abs(gap) < options_.rounding)
+      gap = 0;
     hit_ = true;
     out_.covered[f_] += weight;
     const int width = options_.vectorial ? dim_ : 1;
     for (int k = 0; k < functions_; ++k) {
       const double wh = weight * h[k];
       out_.gap[9 * f_ + k] += wh * gap, out_.weight[9 * f_ + k] += wh;
-      for (int l = 0; l < functions_; ++l) out_.mass[81 * f_ + 9 * k + l] += wh * h[l];
+      for (int l = 0; l < functions_; ++l)
+        out_.mass[81 * f_ + 9 * k + l] += wh * h[l];
       for (int a = 0; a < width; ++a) {
         const double whn = options_.vectorial ? wh * normal[a] : wh;
-        for (int j = 0; j < nodes_; ++j) own_[k][j][a] += whn * nc[j];
-        for (int j = 0; j < target_nodes_; ++j) other_[k][j][a] += whn * nt[j];
+        for (int j = 0; j < nodes_; ++j)
+          own_[k][j][a] += whn * nc[j];
+        for (int j = 0; j < target_nodes_; ++j)
+          other_[k][j][a] += whn * nt[j];
       }
     }
-    if (options_.keep_points) keep(h, nc, nt, weight, gap, normal);
+    if (options_.keep_points)
+      keep(h, nc, nt, weight, gap, normal);
   }
 
   void end_target(const std::int32_t *nodes) {
-    if (!hit_) return;
-    if (out_.first_target[f_] < 0) out_.first_target[f_] = std::int32_t(t_);
+    if (!hit_)
+      return;
+    if (out_.first_target[f_] < 0)
+      out_.first_target[f_] = std::int32_t(t_);
     emit(out_.target, other_, nodes, target_nodes_);
   }
   void count_segment() { ++out_.segments[f_]; }
   void end(const std::int32_t *nodes) {
-    if (out_.segments[f_] > 0) emit(out_.contactor, own_, nodes, nodes_);
+    if (out_.segments[f_] > 0)
+      emit(out_.contactor, own_, nodes, nodes_);
   }
 
 private:
@@ -127,8 +139,10 @@ double sees(const Facet<double> &c, const double *v) {
     return -((v[0] - x[0]) * n[1] - (v[1] - x[1]) * n[0]);
   };
   double low = -1, high = 1, at_low = ahead(low), at_high = ahead(high);
-  if (at_low <= 0) return -1;
-  if (at_high >= 0) return 1;
+  if (at_low <= 0)
+    return -1;
+  if (at_high >= 0)
+    return 1;
   double xi = low + (high - low) * at_low / (at_low - at_high);
   for (int i = 0; i < 60; ++i) { // regula falsi safeguarded by bisection
     const double value = ahead(xi);
@@ -136,10 +150,13 @@ double sees(const Facet<double> &c, const double *v) {
       low = xi, at_low = value;
     else
       high = xi, at_high = value;
-    if (value == 0 || high - low < 1e-15) break;
+    if (value == 0 || high - low < 1e-15)
+      break;
     double next = low + (high - low) * at_low / (at_low - at_high);
-    if (i % 3 == 2) next = 0.5 * (low + high);
-    if (std::abs(next - xi) < 1e-16) break;
+    if (i % 3 == 2)
+      next = 0.5 * (low + high);
+    if (std::abs(next - xi) < 1e-16)
+      break;
     xi = next;
   }
   return xi;
@@ -147,7 +164,8 @@ double sees(const Facet<double> &c, const double *v) {
 
 void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rule, double reach, Accumulator &sums) {
   const double begin = sees(c, t.x[1]), end = sees(c, t.x[0]); // the target runs the other way
-  if (end - begin < 1e-14) return;
+  if (end - begin < 1e-14)
+    return;
   bool counted = false;
   double eta[2] = {0, 0};
   for (int q = -1; q < rule.n; ++q) {
@@ -155,19 +173,22 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
     double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
     c.at(&xi, x, tangent, n);
     const double along[2] = {-n[1], n[0]};
-    if (!project(t, x, along, along, eta)) return;
+    if (!project(t, x, along, along, eta))
+      return;
     t.at(eta, y, target_tangent);
     const double gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
     if (q < 0) {
       // The middle decides whether the two face each other within reach.
       const double outward = target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1];
-      if (outward >= 0 || std::abs(gap) > reach) return;
+      if (outward >= 0 || std::abs(gap) > reach)
+        return;
       continue;
     }
     double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
     c.values(&xi, nc, d), t.values(eta, nt, d);
     const double length = std::sqrt(dot(tangent[0], tangent[0], 2)), normal[2] = {-n[0], -n[1]};
-    if (!counted) sums.count_segment(), counted = true;
+    if (!counted)
+      sums.count_segment(), counted = true;
     sums.add(c.kind, &xi, nc, nt, rule.wt[q] * (end - begin) * length, gap, normal);
   }
 }
@@ -185,7 +206,8 @@ struct Contactor3 {
     flat = true;
     for (int i = 0; i < f.nodes; ++i) {
       double d[3];
-      for (int a = 0; a < 3; ++a) d[a] = f.normals[i][a] - plane.n[a];
+      for (int a = 0; a < 3; ++a)
+        d[a] = f.normals[i][a] - plane.n[a];
       flat = flat && dot(d, d, 3) < 1e-26;
     }
     flatten(
@@ -209,7 +231,8 @@ struct Contactor3 {
   // point of the facet is used.
   Point2 carry(const double *v) const {
     const Point2 start = plane.flat(v);
-    if (flat) return start;
+    if (flat)
+      return start;
     Point2 p = start;
     double xi[2];
     facet.centre(xi);
@@ -219,13 +242,15 @@ struct Contactor3 {
       double x[3], tangent[2][3], n[3];
       facet.at(xi, x, tangent, n);
       const double along = dot(n, plane.n, 3);
-      if (along < 0.1) return p;
+      if (along < 0.1)
+        return p;
       // Height of v above the facet's tangent plane region: the contactor point itself may stand off the mean plane.
       const double t = (plane.height(v) - plane.height(x)) / along;
       const Point2 next = start - t * Point2{dot(n, plane.e1, 3), dot(n, plane.e2, 3)};
       const Point2 moved = next - p;
       p = next;
-      if (dot2(moved, moved) < 1e-30 * (dot2(p, p) + 1e-300)) break;
+      if (dot2(moved, moved) < 1e-30 * (dot2(p, p) + 1e-300))
+        break;
     }
     return p;
   }
@@ -240,41 +265,50 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
     scale += std::abs(cross2(mine.p[i] - mine.p[0], mine.p[(i + 1) % mine.size] - mine.p[0]));
   }
   Polygon polygon = clip_convex(subject, theirs.p, theirs.size);
-  if (polygon.size < 3) return;
+  if (polygon.size < 3)
+    return;
   Point2 corner[MAX_CLIP], middle{0, 0};
   const std::array<Curve, 4> curves[2] = {mine.curve, theirs.curve};
   for (int i = 0; i < polygon.size; ++i) {
     Vertex &v = polygon.v[i];
     const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
     const Curve &in = curves[before.side][before.edge], &out = curves[v.side][v.edge];
-    if (before.side != v.side && !(in.straight && out.straight)) polish(in, out, v.p);
+    if (before.side != v.side && !(in.straight && out.straight))
+      polish(in, out, v.p);
     corner[i] = v.p;
     middle = middle + (1.0 / polygon.size) * v.p;
   }
-  if (std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale) return;
+  if (std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale)
+    return;
 
   double xi[2], eta[2];
   c.facet.centre(xi), t.centre(eta);
   // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen.
   double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
   auto look = [&](Point2 p) {
-    if (!c.locate(p, xi)) return HUGE_VAL;
+    if (!c.locate(p, xi))
+      return HUGE_VAL;
     c.facet.at(xi, x, tangent, n);
     double t1[3], t2[3];
     frame(n, t1, t2);
-    if (!project(t, x, t1, t2, eta)) return HUGE_VAL;
+    if (!project(t, x, t1, t2, eta))
+      return HUGE_VAL;
     t.at(eta, y, target_tangent);
     return (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1] + (y[2] - x[2]) * n[2];
   };
-  if (!(std::abs(look(middle)) <= reach)) return;
+  if (!(std::abs(look(middle)) <= reach))
+    return;
   double facing[3];
   cross(target_tangent[0], target_tangent[1], facing);
-  if (dot(facing, n, 3) >= 0) return;
+  if (dot(facing, n, 3) >= 0)
+    return;
   sums.count_segment();
   integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
-    if (weight == 0) return;
+    if (weight == 0)
+      return;
     const double gap = look(p);
-    if (gap == HUGE_VAL) return;
+    if (gap == HUGE_VAL)
+      return;
     double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3], area[3];
     c.facet.values(xi, nc, d), t.values(eta, nt, d);
     cross(tangent[0], tangent[1], area);
@@ -291,8 +325,10 @@ void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, co
     low = std::min(low, h), high = std::max(high, h);
   }
   double thickness = 0; // of the contactor facet itself about its mean plane
-  for (int i = 0; i < c.facet.nodes; ++i) thickness = std::max(thickness, std::abs(c.plane.height(c.facet.x[i])));
-  if (low - thickness > 2 * reach || high + thickness < -2 * reach) return;
+  for (int i = 0; i < c.facet.nodes; ++i)
+    thickness = std::max(thickness, std::abs(c.plane.height(c.facet.x[i])));
+  if (low - thickness > 2 * reach || high + thickness < -2 * reach)
+    return;
   pieces.clear();
   flatten(
       t, subdivide, true,
@@ -306,9 +342,12 @@ void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, co
   for (const Piece &mine : c.pieces)
     for (const Piece &theirs : pieces) {
       Box a, b;
-      for (int i = 0; i < mine.size; ++i) a.add(&mine.p[i].x, 2);
-      for (int i = 0; i < theirs.size; ++i) b.add(&theirs.p[i].x, 2);
-      if (a.meets(b, 2)) couple_pieces(c, t, mine, theirs, rule, reach, sums);
+      for (int i = 0; i < mine.size; ++i)
+        a.add(&mine.p[i].x, 2);
+      for (int i = 0; i < theirs.size; ++i)
+        b.add(&theirs.p[i].x, 2);
+      if (a.meets(b, 2))
+        couple_pieces(c, t, mine, theirs, rule, reach, sums);
     }
 }
 
@@ -322,22 +361,26 @@ double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &r
   f.centre(xi);
   for (const Piece &piece : own.pieces) {
     Polygon polygon;
-    for (int i = 0; i < piece.size; ++i) polygon.push({piece.p[i], 0, i});
+    for (int i = 0; i < piece.size; ++i)
+      polygon.push({piece.p[i], 0, i});
     const std::array<Curve, 4> curves[2] = {piece.curve, piece.curve};
     integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
-      if (!own.locate(p, xi)) return;
+      if (!own.locate(p, xi))
+        return;
       double x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
       f.at(xi, x, tangent);
       f.values(xi, n, d);
       cross(tangent[0], tangent[1], normal);
       weight *= std::sqrt(dot(normal, normal, 3)) / dot(normal, own.plane.n, 3);
       for (int i = 0; i < f.nodes; ++i)
-        for (int j = 0; j < f.nodes; ++j) sum[i][j] += weight * n[i] * n[j];
+        for (int j = 0; j < f.nodes; ++j)
+          sum[i][j] += weight * n[i] * n[j];
     });
   }
   double error = 0;
   for (int i = 0; i < f.nodes; ++i)
-    for (int j = 0; j < f.nodes; ++j) error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+    for (int j = 0; j < f.nodes; ++j)
+      error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
   return error / area;
 }
 
@@ -348,23 +391,28 @@ double moment_error_line(const Facet<double> &f, const Rule &rule, const double 
   double xi[2] = {0, 0};
   for (int q = 0; q < rule.n; ++q) {
     double from[2], x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
-    for (int a = 0; a < 2; ++a) from[a] = f.x[0][a] + rule.t[q] * (f.x[1][a] - f.x[0][a]);
-    if (!project(f, from, chord, chord, xi)) return HUGE_VAL;
+    for (int a = 0; a < 2; ++a)
+      from[a] = f.x[0][a] + rule.t[q] * (f.x[1][a] - f.x[0][a]);
+    if (!project(f, from, chord, chord, xi))
+      return HUGE_VAL;
     f.at(xi, x, tangent);
     f.values(xi, n, d);
     const double speed = std::sqrt(dot(tangent[0], tangent[0], 2)) / dot(tangent[0], chord, 2);
     const double span = (f.x[1][0] - f.x[0][0]) * chord[0] + (f.x[1][1] - f.x[0][1]) * chord[1];
     for (int i = 0; i < f.nodes; ++i)
-      for (int j = 0; j < f.nodes; ++j) sum[i][j] += rule.wt[q] * span * speed * n[i] * n[j];
+      for (int j = 0; j < f.nodes; ++j)
+        sum[i][j] += rule.wt[q] * span * speed * n[i] * n[j];
   }
   double error = 0;
   for (int i = 0; i < f.nodes; ++i)
-    for (int j = 0; j < f.nodes; ++j) error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+    for (int j = 0; j < f.nodes; ++j)
+      error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
   return error / length;
 }
 
 int subdivisions_needed(const Facet<double> &f) {
-  if (!quadratic(f.kind) || f.dim == 2) return 1;
+  if (!quadratic(f.kind) || f.dim == 2)
+    return 1;
   const Plane plane = mean_plane(f);
   const int corners = f.triangle() ? 3 : 4;
   double sagitta = 0;
@@ -405,19 +453,23 @@ void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, 
         }
         area += weight;
         for (int i = 0; i < facet.nodes; ++i)
-          for (int j = 0; j < facet.nodes; ++j) exact[i][j] += weight * n[i] * n[j];
+          for (int j = 0; j < facet.nodes; ++j)
+            exact[i][j] += weight * n[i] * n[j];
       }
     const int m = subdivisions_needed(facet);
     int n = 1;
     if (line) {
       for (; n < last; ++n)
-        if (moment_error_line(facet, rules.rule(n), exact, area) < tolerance) break;
+        if (moment_error_line(facet, rules.rule(n), exact, area) < tolerance)
+          break;
     } else {
       for (int i = 0; i < facet.nodes; ++i)
-        for (int a = 0; a < 3; ++a) facet.normals[i][a] = 0;
+        for (int a = 0; a < 3; ++a)
+          facet.normals[i][a] = 0;
       const Contactor3 own(facet, m);
       for (; n < last; ++n)
-        if (moment_error(facet, own, rules.rule(n), exact, area) < tolerance) break;
+        if (moment_error(facet, own, rules.rule(n), exact, area) < tolerance)
+          break;
     }
     points.push_back(n);
     subdivisions.push_back(m);
@@ -435,7 +487,8 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
 
   std::vector<Facet<double>> targets(target.facets);
   std::vector<Box> boxes(target.facets);
-  for (std::size_t t = 0; t < target.facets; ++t) targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
+  for (std::size_t t = 0; t < target.facets; ++t)
+    targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
   const Tree tree(boxes, dim);
 
   Accumulator sums(out, options, dim);
@@ -447,13 +500,15 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     for (int i = 0; i < c.nodes; ++i) {
       double far[3];
       for (int side = -1; side <= 1; side += 2) {
-        for (int a = 0; a < dim; ++a) far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
+        for (int a = 0; a < dim; ++a)
+          far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
         swept.add(far, dim);
       }
     }
     swept.inflate(1e-9 * swept.diagonal(dim), dim);
     tree.query(swept, found);
-    if (found.empty()) continue;
+    if (found.empty())
+      continue;
     sums.begin(f, c);
     if (dim == 2) {
       for (int t : found) {

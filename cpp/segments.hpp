@@ -11,7 +11,7 @@ struct SurfaceView {
   const double *points;
   std::size_t facets;
   const std::uint8_t *kinds;
-  const std::int32_t *nodes;      // facets x 9
+  const std::int32_t *nodes;       // facets x 9
   const double *normals = nullptr; // facets x 9 x dim, contactor only
   Facet<double> facet(std::size_t f) const;
 };
@@ -55,7 +55,7 @@ struct IntegrationPoints {
 
 struct Coupling {
   Entries contactor, target;
-  std::vector<double> gap, weight, mass, covered; // 9 f, 9 f, 81 f, f
+  std::vector<double> gap, weight, mass, covered;   // 9 f, 9 f, 81 f, f
   std::vector<std::int32_t> segments, first_target; // f: number of segments; f: one target facet, -1 if none
   IntegrationPoints points;
 };

@@ -16,20 +16,24 @@ struct Box {
     }
   }
   void add(const double *x, int dim) {
-    for (int a = 0; a < dim; ++a) low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
+    for (int a = 0; a < dim; ++a)
+      low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
   }
   void add(const Box &b, int dim) { add(b.low, dim), add(b.high, dim); }
   void inflate(double by, int dim) {
-    for (int a = 0; a < dim; ++a) low[a] -= by, high[a] += by;
+    for (int a = 0; a < dim; ++a)
+      low[a] -= by, high[a] += by;
   }
   double diagonal(int dim) const {
     double sum = 0;
-    for (int a = 0; a < dim; ++a) sum += (high[a] - low[a]) * (high[a] - low[a]);
+    for (int a = 0; a < dim; ++a)
+      sum += (high[a] - low[a]) * (high[a] - low[a]);
     return std::sqrt(sum);
   }
   bool meets(const Box &b, int dim) const {
     for (int a = 0; a < dim; ++a)
-      if (low[a] > b.high[a] || b.low[a] > high[a]) return false;
+      if (low[a] > b.high[a] || b.low[a] > high[a])
+        return false;
     return true;
   }
 };
@@ -38,21 +42,25 @@ class Tree {
 public:
   Tree(const std::vector<Box> &boxes, int dim) : boxes_(boxes), dim_(dim), order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0);
-    if (!boxes.empty()) build(0, int(boxes.size()));
+    if (!boxes.empty())
+      build(0, int(boxes.size()));
   }
 
   // Appends the numbers of all boxes that meet `box`, in ascending order.
   void query(const Box &box, std::vector<int> &found) const {
     found.clear();
-    if (nodes_.empty()) return;
+    if (nodes_.empty())
+      return;
     std::vector<int> stack{0};
     while (!stack.empty()) {
       const Node &node = nodes_[stack.back()];
       stack.pop_back();
-      if (!node.box.meets(box, dim_)) continue;
+      if (!node.box.meets(box, dim_))
+        continue;
       if (node.right < 0) {
         for (int i = node.begin; i < node.end; ++i)
-          if (boxes_[order_[i]].meets(box, dim_)) found.push_back(order_[i]);
+          if (boxes_[order_[i]].meets(box, dim_))
+            found.push_back(order_[i]);
       } else {
         stack.push_back(node.right);
         stack.push_back(node.left);
@@ -78,10 +86,12 @@ private:
       centres.add(c, dim_);
     }
     nodes_[id].box = box;
-    if (end - begin <= 4) return id;
+    if (end - begin <= 4)
+      return id;
     int axis = 0;
     for (int a = 1; a < dim_; ++a)
-      if (centres.high[a] - centres.low[a] > centres.high[axis] - centres.low[axis]) axis = a;
+      if (centres.high[a] - centres.low[a] > centres.high[axis] - centres.low[axis])
+        axis = a;
     const int middle = (begin + end) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int p, int q) {
       return boxes_[p].low[axis] + boxes_[p].high[axis] < boxes_[q].low[axis] + boxes_[q].high[axis];
@@ -92,7 +102,8 @@ private:
   }
 
   void centre(int i, double *c) const {
-    for (int a = 0; a < dim_; ++a) c[a] = 0.5 * (boxes_[i].low[a] + boxes_[i].high[a]);
+    for (int a = 0; a < dim_; ++a)
+      c[a] = 0.5 * (boxes_[i].low[a] + boxes_[i].high[a]);
   }
 
   const std::vector<Box> &boxes_;

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from patch import CELL_OF, errors, exact_displacement, model, two_blocks
 
 import abut
+from patch import CELL_OF, errors, exact_displacement, model, two_blocks
 
 LAWS = {"complementarity": {}, "constraint-function": {"law": "constraint-function", "epsilon": 1e-24}}
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")

@@ -44,7 +44,9 @@ def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int
     try:
         result = np.ascontiguousarray(value, dtype=dtype)
     except (TypeError, ValueError) as error:
-        raise InputError(f"{name}: expected an array of {np.dtype(dtype)}, got {type(value).__name__} ({error})") from None
+        raise InputError(
+            f"{name}: expected an array of {np.dtype(dtype)}, got {type(value).__name__} ({error})"
+        ) from None
     if len(shape) != result.ndim or any(want is not None and want != got for want, got in zip(shape, result.shape)):
         expected = "(" + ", ".join("any" if extent is None else str(extent) for extent in shape) + ")"
         raise InputError(f"{name}: expected shape {expected}, got {result.shape}")

@@ -34,7 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         if getattr(arguments, "debug", False):
             traceback.print_exc()
         print(f"abut: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
-        print("abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr)
+        print(
+            "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
+        )
         return BUG
 
 
@@ -88,7 +90,8 @@ def _run(arguments: argparse.Namespace) -> int:
         _print_result(solution, directory)
     if not solution.converged:
         where = "; ".join(
-            f"contact '{name}': facets {facets[:8].tolist()} go in and out" for name, facets in solution.steps[-1].cycling.items()
+            f"contact '{name}': facets {facets[:8].tolist()} go in and out"
+            for name, facets in solution.steps[-1].cycling.items()
         )
         raise ConvergenceError(
             f"step {solution.steps[-1].number} did not converge ({where or 'residual too large'}); the last state is in "
@@ -124,7 +127,9 @@ def _print_result(solution: Solution, directory: Path) -> None:
             f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
             f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
-    print(f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView")
+    print(
+        f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView"
+    )
 
 
 def _schema(arguments: argparse.Namespace) -> int:

@@ -1,5 +1,5 @@
 """The spine: from a model to its solution."""
 
-from abut.analysis.solve import solve
+from abut.analysis.static import solve
 
 __all__ = ["solve"]

@@ -53,7 +53,8 @@ def step_result(
         stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
-            on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0) for on in {s.on: s for s in model.supports}
+            on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0)
+            for on in {s.on: s for s in model.supports}
         },
         load=factor * applied_load(model).reshape(-1, dim).sum(axis=0),
         contacts=tuple(

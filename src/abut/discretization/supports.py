@@ -75,7 +75,7 @@ def supports(model: Model) -> Supports:
     return Supports(free, prescribed.ravel())
 
 
-def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Basis (dim, n_free) of the directions left free, and the displacement of the held ones."""
     axis = np.abs(matrix).argmax(axis=1)
     if np.array_equal(np.abs(matrix), np.eye(matrix.shape[1])[axis]):  # along the axes: keep zeros and ones exact

@@ -14,10 +14,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import couple_surfaces, plan_facets
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.interface.geometry import by_kind, facet_sizes, nodal_normals
 from abut.interface.quadrature import MOMENT_TOLERANCE, rule_tables
-from abut.cells import CELLS
 from abut.mesh.surface import Surface
 
 ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
@@ -122,7 +122,9 @@ def couple(
     )
 
 
-def _plan(surface: Surface, tables: NDArray[np.float64], points: int | str) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _plan(
+    surface: Surface, tables: NDArray[np.float64], points: int | str
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     order, split = plan_facets(surface.points, surface.kinds, surface.nodes, tables, MOMENT_TOLERANCE)
     if points != "auto":
         order = np.full_like(order, int(points))
@@ -154,7 +156,9 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
         row = np.nonzero(used)[0]
         value = sign * raw[f"point_{name}"][used][:, None] * raw["point_normal"][row]
         column = dim * (first + nodes[used][:, None].astype(np.int64)) + np.arange(dim)
-        operator = operator + sp.csr_matrix((value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape)
+        operator = operator + sp.csr_matrix(
+            (value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape
+        )
     facet = raw["point_contactor_facet"].astype(np.int64)
     columns = 9 * facet[:, None] + np.arange(9)
     pressure = sp.csr_matrix(

@@ -36,7 +36,9 @@ def by_kind(surface: Surface) -> list[tuple[str, NDArray[np.int64]]]:
     return [(BY_CODE[code].name, np.flatnonzero(surface.kinds == code)) for code in np.unique(surface.kinds)]
 
 
-def _area_vectors(surface: Surface, kind: str, facets: NDArray[np.int64], xi: NDArray[np.float64]) -> NDArray[np.float64]:
+def _area_vectors(
+    surface: Surface, kind: str, facets: NDArray[np.int64], xi: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Outward normal times area element at reference points xi, (facets, points, dim)."""
     cell = CELLS[kind]
     _, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))

@@ -30,7 +30,11 @@ class Linearisation:
 
 
 def linearise_active(
-    operator: Any, gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], scale: NDArray[np.float64]
+    operator: Any,
+    gap: NDArray[np.float64],
+    pressure: NDArray[np.float64],
+    active: NDArray[np.bool_],
+    scale: NDArray[np.float64],
 ) -> Linearisation:
     """Complementarity with a given active set: weighted gap = 0 where active, pressure = 0 elsewhere.
 

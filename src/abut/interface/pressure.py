@@ -14,10 +14,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.interface.coupling import Coupling, surface_degree
 from abut.interface.geometry import by_kind, full_moments, function_count
-from abut.cells import CELLS
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share of a multiplier's own support below which there is nothing to integrate
@@ -61,7 +61,7 @@ def resolve(name: str, contactor: Surface) -> tuple[str, int]:
 
 def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> PressureSpace:
     """Build the space ``name`` (as from ``resolve``) on the covered part of the contactor."""
-    row, local, node = _functions(contactor, coupling.degree)
+    row, node = _functions(contactor, coupling.degree)
     rows = 9 * len(contactor)
     if name in ("P1", "P2", "dual"):
         ids, column = np.unique(node, return_inverse=True)
@@ -95,7 +95,9 @@ def reduce(
     position[kept] = np.arange(len(kept))
     pattern = space.transfer.copy()
     pattern.data = np.ones_like(pattern.data)
-    facets = sp.csr_matrix((np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // 9, np.arange(pattern.shape[0] + 1)))
+    facets = sp.csr_matrix(
+        (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // 9, np.arange(pattern.shape[0] + 1))
+    )
     by_facet = facets.T @ pattern
     neighbours = (by_facet.T @ by_facet).tocsr()
     rows, columns = [*kept], [*position[kept]]
@@ -116,14 +118,14 @@ def reduce(
     )
 
 
-def _functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Row, local number and node of every facet-wise pressure function."""
+def _functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Row and node of every facet-wise pressure function."""
     count = np.zeros(len(contactor), dtype=np.int64)
     for kind, facets in by_kind(contactor):
         count[facets] = function_count(kind, degree)
     facet = np.repeat(np.arange(len(contactor)), count)
     local = np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count)
-    return 9 * facet + local, local, contactor.nodes[facet, local].astype(np.int64)
+    return 9 * facet + local, contactor.nodes[facet, local].astype(np.int64)
 
 
 def _block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Any:

@@ -6,6 +6,8 @@ carries the weight r of the cone, so that n x n points are exact for polynomials
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,13 +15,13 @@ MAX_POINTS = 12
 MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area
 
 
-def _gauss(n: int) -> tuple[NDArray[np.float64], ...]:
+def _gauss(n: int) -> tuple[NDArray[Any], ...]:
     x, w = np.polynomial.legendre.leggauss(n)
     t, wt = 0.5 * (x + 1.0), 0.5 * w
     return t, wt, t, wt * t
 
 
-def _newton_cotes(n: int) -> tuple[NDArray[np.float64], ...]:
+def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
     if n == 1:
         return _gauss(1)
     t = np.linspace(0.0, 1.0, n)

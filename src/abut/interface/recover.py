@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.interface.geometry import by_kind, function_count, node_coordinates, pressure_kind
 from abut.cells import BY_CODE, CELLS
+from abut.interface.geometry import by_kind, function_count, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
 
 

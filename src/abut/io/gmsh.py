@@ -302,7 +302,8 @@ def _collect(
         own = order[position]
         if permutation is not None:
             own = own[:, permutation]
-        for key in groups or [None]:
+        every: list[tuple[int, int] | None] = [*groups] or [None]
+        for key in every:
             name = "" if key is None else names.get(key, f"group_{key[0]}_{key[1]}")
             parts.setdefault(name, {}).setdefault(kind, []).append(own)
     return RawMesh(points, {n: {k: np.concatenate(v) for k, v in kinds.items()} for n, kinds in parts.items()})

@@ -113,7 +113,9 @@ def _history(solution: Solution) -> str:
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     force = [f"force_{a}" for a in "xyz"[:dim]]
-    table.writerow(["step", "factor", "converged", "contact", *force, "max_pressure", "area", "max_penetration", "active"])
+    table.writerow(
+        ["step", "factor", "converged", "contact", *force, "max_pressure", "area", "max_penetration", "active"]
+    )
     for step in solution.steps:
         for c in step.contacts:
             row = [step.number, step.factor, int(step.converged), c.name, *c.force.tolist()]

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.io.atomic import write_file
 from abut.io.raw import RawMesh
-from abut.cells import CELLS
 
 VTK_KIND = {cell.vtk: cell.name for cell in CELLS.values()}
 
@@ -99,12 +99,12 @@ def read_vtu(path: Path) -> RawMesh:
         own = np.flatnonzero(kinds == code)
         kind = VTK_KIND[int(code)]
         rows = nodes[offsets[own][:, None] + np.arange(CELLS[kind].nodes)].astype(np.int64)
-        for r in [None] if value is None else np.unique(value[own]):
-            if r is None:
-                name, picked = "", rows
-            else:
-                known = names is not None and 0 <= r < names.GetNumberOfValues()
-                name, picked = (str(names.GetValue(int(r))) if known else f"region_{r}"), rows[value[own] == r]
-            groups.setdefault(name, {}).setdefault(kind, []).append(picked)
+        if value is None:
+            groups.setdefault("", {}).setdefault(kind, []).append(rows)
+            continue
+        for r in np.unique(value[own]):
+            known = names is not None and 0 <= r < names.GetNumberOfValues()
+            name = str(names.GetValue(int(r))) if known else f"region_{r}"
+            groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[own] == r])
     joined = {name: {k: np.concatenate(v) for k, v in parts.items()} for name, parts in groups.items()}
     return RawMesh(points, joined)

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from abut.errors import InputError, nearest
-from abut.job.schema import JobFile, MeshTable
+from abut.job.schema import JobFile, MaterialTable, MeshTable
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -79,10 +79,7 @@ def load_job(path: str | Path) -> Job:
 
 
 def _model(file: JobFile, folder: Path) -> Model:
-    materials = {
-        name: _named(f"materials.{name}", lambda m=m: LinearElastic(m.young, m.poisson, m.density, m.expansion))
-        for name, m in file.materials.items()
-    }
+    materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
@@ -105,11 +102,11 @@ def _model(file: JobFile, folder: Path) -> Model:
     )
 
 
-def _named(where: str, build: Callable[[], Any]) -> Any:
+def _material(name: str, table: MaterialTable) -> LinearElastic:
     try:
-        return build()
+        return LinearElastic(table.young, table.poisson, table.density, table.expansion)
     except InputError as error:
-        raise InputError(f"{where}.{error}") from None
+        raise InputError(f"materials.{name}.{error}") from None
 
 
 def _load(table: BaseModel) -> Load:
@@ -118,12 +115,12 @@ def _load(table: BaseModel) -> Load:
     if isinstance(values["value"], list):
         values["value"] = tuple(values["value"])
     record = {"pressure": Pressure, "traction": Traction, "force": Force, "gravity": Gravity}[kind]
-    return record(**values)  # type: ignore[no-any-return]
+    return record(**values)
 
 
 def _mesh(table: MeshTable, folder: Path) -> Mesh:
     if (table.file is None) == (not table.bodies):
-        raise InputError("mesh: give either file = \"...\" or bodies ([mesh.bodies.NAME]), not both or neither")
+        raise InputError('mesh: give either file = "..." or bodies ([mesh.bodies.NAME]), not both or neither')
     if table.file is not None:
         return Mesh.read(folder / table.file)
     meshes = {}

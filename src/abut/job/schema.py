@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from abut.model import Integration, SolveOptions
+from abut.model import SolveOptions
 
 
 class Table(BaseModel):
@@ -84,7 +84,7 @@ LoadTable = Annotated[PressureTable | TractionTable | ForceTable | GravityTable,
 
 
 class IntegrationTable(Table):
-    rule: Literal["gauss", "newton-cotes"] = Integration.rule
+    rule: Literal["gauss", "newton-cotes"] = "gauss"
     points: Literal["auto"] | int = "auto"
 
 
@@ -129,5 +129,3 @@ class JobFile(Table):
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of a job file, for editors."""
     return JobFile.model_json_schema(by_alias=True)
-
-

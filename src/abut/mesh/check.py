@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from abut._core import shape_functions
-from abut.errors import InputError
 from abut.cells import CELLS
+from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 
@@ -57,9 +57,7 @@ def _check_cells(mesh: Mesh) -> None:
 
 def _check_doubles(mesh: Mesh) -> None:
     for block, first in zip(mesh.blocks, mesh.starts):
-        _, where, count = np.unique(
-            np.sort(block.nodes, axis=1), axis=0, return_index=True, return_counts=True
-        )
+        _, where, count = np.unique(np.sort(block.nodes, axis=1), axis=0, return_index=True, return_counts=True)
         if (count > 1).any():
             raise InputError(
                 f"mesh: cells {_some(first + where[count > 1])} stand in the mesh twice; save each body in one group only"

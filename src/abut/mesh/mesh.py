@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.errors import InputError, nearest
 from abut.cells import CELLS, MAX_FACET_NODES
+from abut.errors import InputError, nearest
 from abut.mesh.surface import Surface
 
 

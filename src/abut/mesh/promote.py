@@ -20,14 +20,18 @@ FAMILY = {"tri3": "tri", "quad4": "quad", "tet4": "tet", "hex8": "hex", "wedge6"
 Mover = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
-def _shared_middles(groups: NDArray[np.int64], first: int, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _shared_middles(
+    groups: NDArray[np.int64], first: int, points: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Numbers (cells, groups) and positions of new nodes in the middle of groups (cells, groups, k) of corners."""
     flat = np.sort(groups.reshape(-1, groups.shape[-1]), axis=1)
     unique, inverse = np.unique(flat, axis=0, return_inverse=True)
     return first + inverse.reshape(groups.shape[:2]), points[unique].mean(axis=1)
 
 
-def promote(points: NDArray[np.float64], cells: NDArray[np.int64], linear: str, kind: str) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def promote(
+    points: NDArray[np.float64], cells: NDArray[np.int64], linear: str, kind: str
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Points and connectivity of ``kind`` from linear cells; new nodes in the middle of edges, faces, cells."""
     cells = np.asarray(cells, dtype=np.int64)
     if kind == linear:

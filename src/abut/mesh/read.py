@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
-from abut.cells import CELLS
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import CellBlock, Mesh
 
@@ -69,7 +69,9 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
     return Mesh(bare.points, blocks, members, surfaces, node_sets)
 
 
-def _blocks(bodies: dict[str, dict[str, NDArray[np.int64]]]) -> tuple[tuple[CellBlock, ...], dict[str, NDArray[np.int64]]]:
+def _blocks(
+    bodies: dict[str, dict[str, NDArray[np.int64]]],
+) -> tuple[tuple[CellBlock, ...], dict[str, NDArray[np.int64]]]:
     """One block for each body and type; a cell listed in two bodies stands in the mesh twice and is found later."""
     blocks, members, first = [], {}, 0
     for name, parts in bodies.items():

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.mesh.mesh import Mesh
-from abut.solids.materials import LinearElastic
 from abut.mesh.quadrature import stiffness_rule, stress_rule
+from abut.solids.materials import LinearElastic
 
 CHUNK = 4096  # cells treated at once where NumPy does the work
 
@@ -74,7 +74,9 @@ def _chunks(mesh: Mesh) -> Iterator[tuple[str, NDArray[np.int32], slice]]:
         first += len(block.nodes)
 
 
-def _gradients(points: NDArray[np.float64], nodes: NDArray[np.int32], derivatives: NDArray[np.float64]) -> tuple[Any, Any]:
+def _gradients(
+    points: NDArray[np.float64], nodes: NDArray[np.int32], derivatives: NDArray[np.float64]
+) -> tuple[Any, Any]:
     """Gradients of the shape functions (cells, q, n, dim) and Jacobian determinants (cells, q)."""
     jacobian = np.einsum("cna,qnb->cqab", points[nodes], derivatives)
     return np.einsum("qnb,cqba->cqna", derivatives, np.linalg.inv(jacobian)), np.linalg.det(jacobian)
@@ -132,10 +134,7 @@ def nodal_stress(
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     constants = _by_cell(
         mesh,
-        {
-            body: (*lame(m, None), m.poisson, m.expansion * temperatures.get(body, 0.0))
-            for body, m in materials.items()
-        },
+        {body: (*lame(m, None), m.poisson, m.expansion * temperatures.get(body, 0.0)) for body, m in materials.items()},
     )
     for kind, nodes, cells in _chunks(mesh):
         xi, _ = stress_rule(kind)

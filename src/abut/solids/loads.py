@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
-from abut.mesh.surface import Surface
 from abut.mesh.quadrature import facet_rule
+from abut.mesh.surface import Surface
 
 
 def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: float) -> NDArray[np.float64]:

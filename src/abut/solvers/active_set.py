@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.discretization.pairs import Pair
@@ -168,7 +167,11 @@ def _report(
     internal = system.stiffness @ state.displacement
     force = max(np.abs(internal).max(initial=0.0), np.abs(factor * system.load).max(initial=0.0), 1e-300)
     gap = system.split(system.gap(state.displacement, factor))
-    depth = [float((-g / (_weight(pair) * pair.size)).max(initial=0.0)) for pair, g in zip(system.pairs, gap) if not pair.tied]
+    depth = [
+        float((-g / (_weight(pair) * pair.size)).max(initial=0.0))
+        for pair, g in zip(system.pairs, gap)
+        if not pair.tied
+    ]
     return Iteration(
         step=number,
         iteration=count,
@@ -223,10 +226,10 @@ def _smooth_laws(system: System, state: Unknowns, factor: float, reference: floa
         system.split(state.pressure),
         system.split(state.active),
     ):
-        if not pair.smooth:
+        at = pair.points
+        if at is None:
             laws.append(linearise_active(pair.operator, g, p, a, pair.scale))
             continue
-        at = pair.points
         laws.append(
             linearise_constraint_function(
                 at.test,

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.errors import InputError
 from abut.cells import CELLS
+from abut.errors import InputError
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.promote import promote
 
@@ -50,7 +50,7 @@ def grid(lines: Sequence[NDArray[np.float64]], cell: str, move: Move | None = No
     low, high = slice(None, -1), slice(1, None)
     if dim == 2:
         corners = [index[low, low], index[high, low], index[high, high], index[low, high]]
-        pieces = TRIANGLES if cell.startswith("tri") else None
+        pieces: tuple[tuple[int, ...], ...] | None = TRIANGLES if cell.startswith("tri") else None
     else:
         bottom = [(low, low), (high, low), (high, high), (low, high)]
         corners = [index[(*ij, k)] for k in (low, high) for ij in bottom]
@@ -64,9 +64,7 @@ def grid(lines: Sequence[NDArray[np.float64]], cell: str, move: Move | None = No
         for side, value in enumerate((0, shape[a] - 1)):
             on_side[NAMES[dim][2 * a + side]] = lattice[:, a] == value
     linear = LINEAR[cell[:3]]
-    surfaces = {
-        name: _facets_on(cells, linear, flag) for name, flag in on_side.items()
-    }
+    surfaces = {name: _facets_on(cells, linear, flag) for name, flag in on_side.items()}
     points, nodes = promote(points if move is None else move(points), cells, linear, cell)
     body = {"body": np.arange(len(nodes), dtype=np.int64)}
     return Mesh(np.ascontiguousarray(points), (CellBlock(cell, nodes),), body, surfaces)

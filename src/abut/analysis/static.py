@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import scipy.sparse as sp
 
@@ -76,7 +76,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     return Solution(model, tuple(steps), n_free, f"direct ({solver_name()})", tuple(notes), clock.timings)
 
 
-def _describe(pairs: Sequence[Pair], note: Observer) -> None:
+def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
     for p in pairs:
         facets = len(p.contactor)
         covered = int((p.coupling.segments > 0).sum())
@@ -97,5 +97,3 @@ class _Clock:
         now = time.perf_counter()
         self.timings[stage] = self.timings.get(stage, 0.0) + now - self._last
         self._last = now
-
-
