@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from abut.mesh.make.block import box, rectangle
 from abut.mesh.make.join import join
+from abut.mesh.make.round import half_disc, sphere_octant
 
-__all__ = ["box", "join", "rectangle"]
+__all__ = ["box", "half_disc", "join", "rectangle", "sphere_octant"]

@@ -1,0 +1,109 @@
+"""Round bodies: tensor grids bent into a half disc or the octant of a ball; all nodes of round sides lie on them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut import checks
+from abut.errors import InputError
+from abut.mesh.make.block import grid
+from abut.mesh.mesh import Mesh
+
+
+def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[np.float64]:
+    """Grid lines from 0 to ``total``: n equal ones up to ``fine``, then growing by ``growth``."""
+    if not 0.0 < fine < total:
+        raise InputError(f"fine: expected a length between 0 and {total:g}, got {fine!r}")
+    step = fine / n
+    lines = list(np.linspace(0.0, fine, n + 1))
+    rest = total - fine
+    count = 1
+    while step * growth * (growth**count - 1) / (growth - 1) < rest:
+        count += 1
+    low, high = 1.0 + 1e-12, 2.0 * growth
+    for _ in range(80):  # the growth with which ``count`` cells end at total
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if step * middle * (middle**count - 1) / (middle - 1) < rest else (low, middle)
+    lines += list(fine + np.cumsum(step * low ** np.arange(1, count + 1)))
+    lines[-1] = total
+    return np.array(lines)
+
+
+def half_disc(
+    radius: float = 1.0, fine: float | None = None, cells: int = 12, growth: float = 1.25, cell: str = "quad8"
+) -> Mesh:
+    """The lower half of a disc around the origin, round side down, graded toward its lowest point (0, -radius).
+
+    fine: half width of the evenly meshed zone at the lowest point (a tenth of the radius), with ``cells`` cells across
+    it; cells grow by ``growth`` outward. Surfaces round, flat; node set axis (the line x = 0, for a
+    symmetry support).
+    """
+    radius = checks.positive(radius, "radius")
+    fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
+    # On the rim the map below shortens lengths by sqrt(1/2).
+    along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
+    both = np.concatenate([-along[:0:-1], along])
+    up = -1.0 + graded(fine / radius, cells, 1.0, growth)
+    mesh = grid([both, up], cell, lambda x: radius * _disc_map(x))
+    surfaces = {
+        "round": np.concatenate([mesh.surfaces[n] for n in ("left", "bottom", "right")]),
+        "flat": mesh.surfaces["top"],
+    }
+    axis = np.flatnonzero(np.abs(mesh.points[:, 0]) < 1e-12 * radius).astype(np.int64)
+    return _on_circle(replace(mesh, surfaces=surfaces, node_sets={"axis": axis}), radius, ("round",))
+
+
+def _disc_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Square [-1, 1]^2 -> unit disc: concentric squares go to ellipse-like curves, the sides to the circle."""
+    u, v = x.T
+    return np.stack([u * np.sqrt(1.0 - 0.5 * v**2), v * np.sqrt(1.0 - 0.5 * u**2)], axis=1)
+
+
+def _on_circle(mesh: Mesh, radius: float, names: tuple[str, ...]) -> Mesh:
+    """Put all nodes of round surfaces at their radius from the origin."""
+    points = mesh.points.copy()
+    for name in names:
+        nodes = mesh.nodes_of(name)
+        points[nodes] *= radius / np.linalg.norm(points[nodes], axis=1, keepdims=True)
+    return replace(mesh, points=points)
+
+
+def sphere_octant(
+    radius: float = 1.0, fine: float | None = None, cells: int = 8, growth: float = 1.3, cell: str = "hex20"
+) -> Mesh:
+    """The octant x, y >= 0, z <= 0 of a ball around the origin, graded toward its lowest point (0, 0, -radius).
+
+    fine: extent of the evenly meshed zone (a tenth of the radius) with ``cells`` cells along it. Surfaces round (the
+    sphere), x0, y0, z0 (the flat sides).
+    """
+    radius = checks.positive(radius, "radius")
+    fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
+    # On the sphere near the pole the map below shortens lengths by sqrt(1/2).
+    side = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
+    up = graded(fine / radius, cells, 1.0, growth)
+    mesh = grid([side, side, up], cell, lambda x: radius * _octant_map(x))
+    surfaces = {
+        "round": np.concatenate([mesh.surfaces[n] for n in ("bottom", "right", "back")]),
+        "x0": mesh.surfaces["left"],
+        "y0": mesh.surfaces["front"],
+        "z0": mesh.surfaces["top"],
+    }
+    return _on_circle(replace(mesh, surfaces=surfaces), radius, ("round",))
+
+
+def _octant_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cube [0, 1]^3 -> octant of the unit ball, the three sides away from the centre to the sphere."""
+    p = np.stack([x[:, 0], x[:, 1], 1.0 - x[:, 2]], axis=1)
+    u, v, w = p.T
+    ball = np.stack(
+        [
+            u * np.sqrt(np.maximum(1 - v**2 / 2 - w**2 / 2 + v**2 * w**2 / 3, 0)),
+            v * np.sqrt(np.maximum(1 - w**2 / 2 - u**2 / 2 + w**2 * u**2 / 3, 0)),
+            w * np.sqrt(np.maximum(1 - u**2 / 2 - v**2 / 2 + u**2 * v**2 / 3, 0)),
+        ],
+        axis=1,
+    )
+    return ball * np.array([1.0, 1.0, -1.0])
