@@ -26,3 +26,7 @@ build:
 	$(BIN)/cmake --build build/dev
 
 .PHONY: demo test lint build bench
+
+bench: .venv/installed-bench
+	$(BIN)/python bench/segments.py
+	$(BIN)/python bench/assembly.py
