@@ -240,6 +240,22 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
+        self._check_facets()
+
+    def _check_facets(self) -> None:
+        """A facet that carries the pressure of one pair must not belong to another: it would be held twice."""
+        owner: dict[tuple[int, int], tuple[str, str]] = {}
+        for i, contact in enumerate(self.contacts):
+            for side in ("contactor", "target"):
+                facets = {(int(c), int(f)) for c, f in self.mesh.surfaces[getattr(contact, side)]}
+                for facet in facets & owner.keys():
+                    name, role = owner[facet]
+                    if name != contact.name and "contactor" in (side, role):
+                        raise InputError(
+                            f"contacts[{i}].{side}: facets of '{getattr(contact, side)}' (cell {facet[0]}, ...) already "
+                            f"belong to contact '{name}' as {role}; give each facet to one pair"
+                        )
+                owner |= dict.fromkeys(facets, (contact.name, side))
 
 
 def _known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:

@@ -85,7 +85,7 @@ def read_vtu(path: Path) -> RawMesh:
     if failures or grid is None or grid.GetNumberOfCells() == 0:
         raise InputError(f"{path}: not a readable VTU file with cells (truncated or of another kind?); write it again")
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-    kinds = vtk_to_numpy(grid.GetCellTypesArray() if hasattr(grid, "GetCellTypesArray") else grid.GetCellTypes())
+    kinds = np.array([grid.GetCellType(i) for i in range(grid.GetNumberOfCells())])
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
     nodes = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     unknown = sorted(set(kinds.tolist()) - set(VTK_KIND))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.mesh.make.grading import graded_axis
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.promote import promote
 
@@ -27,6 +28,8 @@ Move = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 def axis(limits: Sequence[float], cells: int | Sequence[float], name: str) -> NDArray[np.float64]:
     """Coordinates of grid lines: ``cells`` equal ones between the two limits, or the lines themselves."""
     if not isinstance(cells, int):
+        if isinstance(cells, (str, float)):
+            raise InputError(f"{name}: expected a whole number of cells, got {cells!r}")
         lines = checks.array(cells, f"{name}: grid lines", shape=(None,))
         if len(lines) < 2 or (np.diff(lines) <= 0).any():
             raise InputError(f"{name}: grid lines must increase, got {list(cells)}")
@@ -83,12 +86,15 @@ def rectangle(
     y: Sequence[float] = (0.0, 1.0),
     cells: Sequence[int] = (4, 4),
     cell: str = "quad8",
+    fine: Mapping[str, Sequence[float]] | None = None,
+    growth: float = 1.25,
 ) -> Mesh:
     """A rectangle of ``cells`` = (nx, ny) quadrilaterals, or twice as many triangles.
 
     x, y: [low, high], or more than two values: the grid lines themselves. Surfaces left right bottom top.
+    fine: zones like {x = [-1, 1]} that get the cells of that axis; outside they grow by ``growth``.
     """
-    return grid(_axes((x, y), cells, "rectangle"), cell)
+    return grid(_axes((x, y), cells, fine, growth, "rectangle"), cell)
 
 
 def box(
@@ -97,18 +103,37 @@ def box(
     z: Sequence[float] = (0.0, 1.0),
     cells: Sequence[int] = (4, 4, 4),
     cell: str = "hex8",
+    fine: Mapping[str, Sequence[float]] | None = None,
+    growth: float = 1.25,
 ) -> Mesh:
     """A box of ``cells`` = (nx, ny, nz) hexahedra, or as many times two wedges or six tetrahedra.
 
     x, y, z: [low, high], or more than two values: the grid lines themselves. Surfaces left right (x), front back (y),
-    bottom top (z).
+    bottom top (z). fine, growth: as for ``rectangle``.
     """
-    return grid(_axes((x, y, z), cells, "box"), cell)
+    return grid(_axes((x, y, z), cells, fine, growth, "box"), cell)
 
 
-def _axes(limits: Sequence[Sequence[float]], cells: Sequence[int], what: str) -> list[NDArray[np.float64]]:
+def _axes(
+    limits: Sequence[Sequence[float]],
+    cells: Sequence[int],
+    fine: Mapping[str, Sequence[float]] | None,
+    growth: float,
+    what: str,
+) -> list[NDArray[np.float64]]:
     if isinstance(cells, (int, str)) or len(cells) != len(limits):
         raise InputError(f"{what}: cells: expected {len(limits)} whole numbers, got {cells!r}")
-    return [
-        axis(pair, pair if len(pair) > 2 else int(n), f"{what}: {name}") for pair, n, name in zip(limits, cells, "xyz")
-    ]
+    if checks.finite(growth, f"{what}: growth") <= 1.0:
+        raise InputError(f"{what}: growth: expected a number > 1, got {growth!r}")
+    zones = dict(fine or {})
+    unknown = sorted(set(zones) - set("xyz"[: len(limits)]))
+    if unknown:
+        raise InputError(f"{what}: fine: no axis {unknown[0]!r}; use {', '.join('xyz'[: len(limits)])}")
+    lines = []
+    for pair, n, name in zip(limits, cells, "xyz"):
+        if name in zones:
+            axis(pair, n, f"{what}: {name}")  # checks limits and count
+            lines.append(graded_axis(pair, zones[name], n, growth, f"{what}: {name}"))
+        else:
+            lines.append(axis(pair, pair if len(pair) > 2 else n, f"{what}: {name}"))
+    return lines

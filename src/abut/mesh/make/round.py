@@ -2,40 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.errors import InputError
 from abut.mesh.make.block import grid
+from abut.mesh.make.grading import graded
 from abut.mesh.mesh import Mesh
 
 
-def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[np.float64]:
-    """Grid lines from 0 to ``total``: n equal ones up to ``fine``, then growing by ``growth``."""
-    if not 0.0 < fine < total:
-        raise InputError(f"fine: expected a length between 0 and {total:g}, got {fine!r}")
-    step = fine / n
-    lines = list(np.linspace(0.0, fine, n + 1))
-    rest = total - fine
-    count = 1
-    while step * growth * (growth**count - 1) / (growth - 1) < rest:
-        count += 1
-    low, high = 1.0 + 1e-12, 2.0 * growth
-    for _ in range(80):  # the growth with which ``count`` cells end at total
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if step * middle * (middle**count - 1) / (middle - 1) < rest else (low, middle)
-    lines += list(fine + np.cumsum(step * low ** np.arange(1, count + 1)))
-    lines[-1] = total
-    return np.array(lines)
-
-
 def half_disc(
-    radius: float = 1.0, fine: float | None = None, cells: int = 12, growth: float = 1.25, cell: str = "quad8"
+    radius: float = 1.0,
+    centre: Sequence[float] = (0.0, 0.0),
+    fine: float | None = None,
+    cells: int = 12,
+    growth: float = 1.25,
+    cell: str = "quad8",
 ) -> Mesh:
-    """The lower half of a disc around the origin, round side down, graded toward its lowest point (0, -radius).
+    """The lower half of a disc, round side down, graded toward its lowest point.
 
     fine: half width of the evenly meshed zone at the lowest point (a tenth of the radius), with ``cells`` cells across
     it; cells grow by ``growth`` outward. Surfaces round, flat; node set axis (the line x = 0, for a
@@ -53,7 +40,7 @@ def half_disc(
         "flat": mesh.surfaces["top"],
     }
     axis = np.flatnonzero(np.abs(mesh.points[:, 0]) < 1e-12 * radius).astype(np.int64)
-    return _on_circle(replace(mesh, surfaces=surfaces, node_sets={"axis": axis}), radius, ("round",))
+    return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": axis}), radius, centre)
 
 
 def _disc_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -62,19 +49,23 @@ def _disc_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([u * np.sqrt(1.0 - 0.5 * v**2), v * np.sqrt(1.0 - 0.5 * u**2)], axis=1)
 
 
-def _on_circle(mesh: Mesh, radius: float, names: tuple[str, ...]) -> Mesh:
-    """Put all nodes of round surfaces at their radius from the origin."""
+def _finish(mesh: Mesh, radius: float, centre: Sequence[float]) -> Mesh:
+    """Put all nodes of the round side at their radius from the origin, and the origin at the centre."""
     points = mesh.points.copy()
-    for name in names:
-        nodes = mesh.nodes_of(name)
-        points[nodes] *= radius / np.linalg.norm(points[nodes], axis=1, keepdims=True)
-    return replace(mesh, points=points)
+    nodes = mesh.nodes_of("round")
+    points[nodes] *= radius / np.linalg.norm(points[nodes], axis=1, keepdims=True)
+    return replace(mesh, points=points + checks.array(centre, "centre", shape=(mesh.dim,)))
 
 
 def sphere_octant(
-    radius: float = 1.0, fine: float | None = None, cells: int = 8, growth: float = 1.3, cell: str = "hex20"
+    radius: float = 1.0,
+    centre: Sequence[float] = (0.0, 0.0, 0.0),
+    fine: float | None = None,
+    cells: int = 8,
+    growth: float = 1.3,
+    cell: str = "hex20",
 ) -> Mesh:
-    """The octant x, y >= 0, z <= 0 of a ball around the origin, graded toward its lowest point (0, 0, -radius).
+    """The octant of a ball toward +x, +y and -z of its centre, graded toward its lowest point.
 
     fine: extent of the evenly meshed zone (a tenth of the radius) with ``cells`` cells along it. Surfaces round (the
     sphere), x0, y0, z0 (the flat sides).
@@ -91,7 +82,7 @@ def sphere_octant(
         "y0": mesh.surfaces["front"],
         "z0": mesh.surfaces["top"],
     }
-    return _on_circle(replace(mesh, surfaces=surfaces), radius, ("round",))
+    return _finish(replace(mesh, surfaces=surfaces), radius, centre)
 
 
 def _octant_map(x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,0 +1,47 @@
+"""Grid lines that are fine where bodies touch and grow away from there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut import checks
+from abut.errors import InputError
+
+
+def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[np.float64]:
+    """Grid lines from 0 to ``total``: n equal ones up to ``fine``, then growing by ``growth``."""
+    if not 0.0 < fine < total:
+        raise InputError(f"fine: expected a length between 0 and {total:g}, got {fine!r}")
+    step = fine / n
+    lines = list(np.linspace(0.0, fine, n + 1))
+    rest = total - fine
+    count = 1
+    while step * growth * (growth**count - 1) / (growth - 1) < rest:
+        count += 1
+    low, high = 1.0 + 1e-12, 2.0 * growth
+    for _ in range(80):  # the growth with which ``count`` cells end at total
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if step * middle * (middle**count - 1) / (middle - 1) < rest else (low, middle)
+    lines += list(fine + np.cumsum(step * low ** np.arange(1, count + 1)))
+    lines[-1] = total
+    return np.array(lines)
+
+
+def graded_axis(
+    limits: Sequence[float], zone: Sequence[float], n: int, growth: float, name: str
+) -> NDArray[np.float64]:
+    """Grid lines from limits[0] to limits[1]: n equal cells in ``zone``, growing on both sides of it."""
+    low, high = checks.array(limits, name, shape=(2,))
+    begin, end = checks.array(zone, f"{name}: fine", shape=(2,))
+    if not low <= begin < end <= high:
+        raise InputError(f"{name}: fine: expected a part of [{low:g}, {high:g}], got {list(zone)}")
+    width = end - begin
+    lines = [np.linspace(begin, end, n + 1)]
+    if begin > low:
+        lines.insert(0, begin + width - graded(width, n, width + begin - low, growth)[:n:-1])
+    if end < high:
+        lines.append(end - width + graded(width, n, width + high - end, growth)[n + 1 :])
+    return np.concatenate(lines)

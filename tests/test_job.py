@@ -1,0 +1,125 @@
+"""Job files and the command line: what is wrong, where, how to mend it; the exit status; nothing half written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from abut.cli import main
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "two-blocks" / "job.toml"
+TEXT = EXAMPLE.read_text()
+MESH = TEXT[TEXT.index("[mesh.bodies.lower]") : TEXT.index("[materials")]
+TWICE = '[[contacts]]\nname = "first"\ncontactor = "upper.bottom"\ntarget = "lower.right"\n[materials.steel]'
+
+
+def run(tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, str]:
+    job = tmp_path / "job.toml"
+    job.write_text(text)
+    status = main(["run", str(job), *options])
+    return status, capsys.readouterr().err
+
+
+# fmt: off
+BAD = {
+    "unknown key": ("target = ", "tagret = ", "contacts[0].tagret: unknown key; did you mean 'target'?"),
+    "unknown surface": ('"lower.top"', '"lower.topp"', "did you mean 'lower.top'?"),
+    "unknown material": ('material = "steel"', 'material = "stel"', "did you mean 'steel'?"),
+    "unknown body": ('body = "upper"', 'body = "uper"', "did you mean 'upper'?"),
+    "nan": ("young = 210e3", "young = nan", "materials.steel.young"),
+    "negative": ("young = 210e3", "young = -1", "expected a number > 0"),
+    "poisson": ("poisson = 0.3", "poisson = 0.5", "expected -1 < nu < 0.5"),
+    "text for a number": ("young = 210e3", 'young = "stiff"', "materials.steel.young"),
+    "version": ("schema = 1", "schema = 2", "expected 1, got 2"),
+    "syntax": ("[[contacts]]", "[[contacts]", "not valid TOML"),
+    "generator": ('kind = "box"', 'kind = "bix"', "did you mean 'box'?"),
+    "generator key": ("cells = [6, 6, 6]", "celss = [6, 6, 6]", "did you mean 'cells'?"),
+    "zero cells": ("cells = [6, 6, 6]", "cells = [0, 6, 6]", "whole numbers >= 1"),
+    "same surface": ('"lower.top"', '"upper.bottom"', "same surface"),
+    "plane in 3D": ("[materials.steel]", '[model]\nplane = "strain"\n[materials.steel]', "the mesh is 3D"),
+    "wrong side": ('"lower.top"', '"lower.bottom"', "faces"),
+    "missing solid": ('[[solids]]\nbody = "upper"\nmaterial = "steel"\n', "", "no material for body 'upper'"),
+    "no mesh file": (MESH, '[mesh]\nfile = "no.msh"\n', "does not exist"),
+    "facet in two pairs": ("[materials.steel]", TWICE, "already belong to contact 'first'"),
+}
+# fmt: on
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_jobs(case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    old, new, message = BAD[case]
+    assert old in TEXT
+    status, error = run(tmp_path, TEXT.replace(old, new), capsys)
+    assert message in error
+    assert status == 2
+    assert "Traceback" not in error
+    assert [p.name for p in tmp_path.iterdir()] == ["job.toml"]
+
+
+def test_free_body_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, error = run(tmp_path, TEXT.replace("x = 0\ny = 0\nz = -0.02", "z = -0.02"), capsys)
+    assert status == 4
+    assert "body 'upper' can" in error
+    assert not (tmp_path / "results").exists()
+
+
+def test_contradicting_supports(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, error = run(tmp_path, TEXT + '\n[[supports]]\non = "upper.top"\nz = 0.5\n', capsys)
+    assert status == 4
+    assert "contradict each other" in error
+
+
+def test_no_convergence_writes_the_last_state(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The blocks are pressed and the upper one tilted: more than one iteration is needed."""
+    text = TEXT.replace("z = -0.02", "z = -0.02").replace(
+        'target = "lower.top"', 'target = "lower.top"\noffset = 0.015\n[solve]\nmax_iterations = 1'
+    )
+    status, error = run(tmp_path, text, capsys)
+    assert status == 3
+    assert "did not converge" in error
+    summary = json.loads((tmp_path / "results" / "summary.json").read_text())
+    assert summary["status"] == "not converged"
+
+
+def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A good run: every promised file, forces that balance, VTU files that VTK reads."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    status, error = run(tmp_path, TEXT + "\n[solve]\nsteps = 2\n", capsys)
+    assert (status, error) == (0, "")
+    results = tmp_path / "results"
+    names = sorted(p.name for p in results.iterdir())
+    assert names == sorted(
+        ["summary.json", "history.csv", "run.jsonl", "fields.pvd", "contact_blocks.pvd"]
+        + [f"{stem}_{n:04d}.vtu" for stem in ("fields", "contact_blocks") for n in (1, 2)]
+    )
+    summary = json.loads((results / "summary.json").read_text())
+    for step in summary["steps"]:
+        contact = step["contacts"][0]
+        assert contact["force"][2] == pytest.approx(-step["reactions"]["upper.top"][2], rel=1e-9)
+        assert contact["force"][2] == pytest.approx(step["reactions"]["lower.bottom"][2], rel=1e-9)
+        assert step["balance_error"] < 1e-9
+    for name in names:
+        if name.endswith(".vtu"):
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName(str(results / name))
+            reader.Update()
+            assert reader.GetOutput().GetNumberOfCells() > 0
+            assert reader.GetOutput().GetPointData().GetArray("displacement").GetNumberOfComponents() == 3
+
+
+def test_output_directory_in_the_way(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "results").write_text("a file")
+    status, error = run(tmp_path, TEXT, capsys)
+    assert status == 2
+    assert "cannot create the output directory" in error
+
+
+def test_schema_lists_all_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert {"schema", "mesh", "materials", "solids", "supports", "loads", "contacts", "solve", "output"} <= set(
+        schema["properties"]
+    )
