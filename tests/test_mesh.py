@@ -10,7 +10,7 @@ import pytest
 from abut.errors import InputError
 from abut.io.vtu import write_vtu
 from abut.mesh.check import check_mesh
-from abut.mesh.make import box, half_disc, join, rectangle, sphere_octant
+from abut.mesh.make import box, cylinder, disc, half_disc, join, rectangle, sphere_octant
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.solids.elements import gravity_load
 
@@ -163,6 +163,20 @@ def test_half_disc(cell: str) -> None:
     check_mesh(mesh)
     assert volume(mesh) == pytest.approx(2.0 * np.pi, rel=0.02)
     assert np.linalg.norm(mesh.points[mesh.nodes_of("round")], axis=1) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("cell", ["tri6", "quad8"])
+def test_disc(cell: str) -> None:
+    mesh = disc(2.0, centre=(1.0, 2.0), cells=6, cell=cell)
+    check_mesh(mesh)
+    assert volume(mesh) == pytest.approx(4.0 * np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("cell", ["tet10", "hex8", "hex20", "hex27", "wedge15"])
+def test_cylinder(cell: str) -> None:
+    mesh = cylinder(2.0, z=(0.0, 3.0), cells=(8, 2), cell=cell)
+    check_mesh(mesh)
+    assert volume(mesh) == pytest.approx(12.0 * np.pi, rel=0.03)
 
 
 @pytest.mark.parametrize("cell", ["tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "wedge15"])

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from abut.mesh.make.block import box, rectangle
 from abut.mesh.make.join import join
-from abut.mesh.make.round import half_disc, sphere_octant
+from abut.mesh.make.round import cylinder, disc, half_disc, sphere_octant
 
-__all__ = ["box", "half_disc", "join", "rectangle", "sphere_octant"]
+__all__ = ["box", "cylinder", "disc", "half_disc", "join", "rectangle", "sphere_octant"]

@@ -1,4 +1,4 @@
-"""Round bodies: tensor grids bent into a half disc or the octant of a ball; all nodes of round sides lie on them."""
+"""Round bodies: tensor grids bent into discs, cylinders and the octant of a ball; nodes of round sides lie on them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,51 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.mesh.make.block import grid
+from abut.errors import InputError
+from abut.mesh.make.block import axis, grid
 from abut.mesh.make.grading import graded
 from abut.mesh.mesh import Mesh
+
+
+def disc(
+    radius: float = 1.0,
+    centre: Sequence[float] = (0.0, 0.0),
+    fine: float | None = None,
+    cells: int = 12,
+    growth: float = 1.25,
+    cell: str = "quad8",
+) -> Mesh:
+    """A disc, graded toward its lowest point. fine, cells, growth as for ``half_disc``. Surface round; node set axis."""
+    radius, along, up = _lines(radius, fine, cells, growth)
+    both = np.concatenate([-along[:0:-1], along])
+    mesh = grid([both, np.concatenate([up, -up[-2::-1]])], cell, lambda x: radius * _disc_map(x))
+    surfaces = {"round": np.concatenate(list(mesh.surfaces.values()))}
+    return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": _axis(mesh, radius)}), radius, centre)
+
+
+def cylinder(
+    radius: float = 1.0,
+    z: Sequence[float] = (0.0, 1.0),
+    cells: Sequence[int] = (8, 8),
+    cell: str = "hex20",
+) -> Mesh:
+    """A solid cylinder along z: ``cells`` = (across the diameter, along the axis). Surfaces round, bottom, top."""
+    radius = checks.positive(radius, "radius")
+    if isinstance(cells, (int, str)) or len(cells) != 2:
+        raise InputError(f"cells: expected 2 whole numbers, got {cells!r}")
+    across = axis((-1.0, 1.0), cells[0], "cylinder: cells across")
+
+    def bend(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.column_stack([radius * _disc_map(x[:, :2]), x[:, 2]])
+
+    mesh = grid([across, across, axis(z, cells[1], "cylinder: z")], cell, bend)
+    sides = [mesh.surfaces[n] for n in ("left", "right", "front", "back")]
+    surfaces = {"round": np.concatenate(sides), "bottom": mesh.surfaces["bottom"], "top": mesh.surfaces["top"]}
+    mesh = replace(mesh, surfaces=surfaces)
+    points = mesh.points.copy()
+    nodes = mesh.nodes_of("round")
+    points[nodes, :2] *= radius / np.linalg.norm(points[nodes, :2], axis=1, keepdims=True)
+    return replace(mesh, points=points)
 
 
 def half_disc(
@@ -28,19 +70,29 @@ def half_disc(
     it; cells grow by ``growth`` outward. Surfaces round, flat; node set axis (the line x = 0, for a
     symmetry support).
     """
-    radius = checks.positive(radius, "radius")
-    fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
-    # On the rim the map below shortens lengths by sqrt(1/2).
-    along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
+    radius, along, up = _lines(radius, fine, cells, growth)
     both = np.concatenate([-along[:0:-1], along])
-    up = -1.0 + graded(fine / radius, cells, 1.0, growth)
     mesh = grid([both, up], cell, lambda x: radius * _disc_map(x))
     surfaces = {
         "round": np.concatenate([mesh.surfaces[n] for n in ("left", "bottom", "right")]),
         "flat": mesh.surfaces["top"],
     }
-    axis = np.flatnonzero(np.abs(mesh.points[:, 0]) < 1e-12 * radius).astype(np.int64)
-    return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": axis}), radius, centre)
+    return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": _axis(mesh, radius)}), radius, centre)
+
+
+def _lines(
+    radius: float, fine: float | None, cells: int, growth: float
+) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    """Radius, and grid lines on [0, 1] across and [-1, 0] upward: fine near the lowest point."""
+    radius = checks.positive(radius, "radius")
+    fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
+    # On the rim the map to the disc shortens lengths by sqrt(1/2).
+    along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
+    return radius, along, -1.0 + graded(fine / radius, cells, 1.0, growth)
+
+
+def _axis(mesh: Mesh, radius: float) -> NDArray[np.int64]:
+    return np.flatnonzero(np.abs(mesh.points[:, 0]) < 1e-12 * radius).astype(np.int64)
 
 
 def _disc_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -70,11 +122,9 @@ def sphere_octant(
     fine: extent of the evenly meshed zone (a tenth of the radius) with ``cells`` cells along it. Surfaces round (the
     sphere), x0, y0, z0 (the flat sides).
     """
-    radius = checks.positive(radius, "radius")
-    fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
-    # On the sphere near the pole the map below shortens lengths by sqrt(1/2).
-    side = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
-    up = graded(fine / radius, cells, 1.0, growth)
+    # Near the pole the map to the ball shortens lengths as that to the disc does.
+    radius, side, up = _lines(radius, fine, cells, growth)
+    up = up + 1.0
     mesh = grid([side, side, up], cell, lambda x: radius * _octant_map(x))
     surfaces = {
         "round": np.concatenate([mesh.surfaces[n] for n in ("bottom", "right", "back")]),

@@ -1,0 +1,29 @@
+"""Every job file in examples/ is found, loads, and (but for the long ones) runs to balance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import abut
+from abut.job import load_job
+
+JOBS = sorted((Path(__file__).parents[1] / "examples").rglob("*.toml"))
+LONG = {"pin-lug", "hertz-sphere"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(p, marks=[pytest.mark.long] if p.parent.name in LONG else []) for p in JOBS],
+    ids=lambda p: f"{p.parent.name}-{p.stem}",
+)
+def test_example_runs_and_balances(path: Path) -> None:
+    """Supports carry what the loads bring; the contact carries it from body to body (to 1e-9 of the load)."""
+    solution = abut.solve(load_job(path).model)
+    assert solution.converged
+    step = solution.steps[-1]
+    size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
+    assert np.abs(step.load + step.reaction).max() < 1e-9 * size
+    assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
