@@ -65,6 +65,22 @@ def test_free_body_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert not (tmp_path / "results").exists()
 
 
+def test_body_pulled_off_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pull = '\n[[loads]]\nkind = "force"\non = "upper.top"\nvalue = [0, 0, 100]\n'
+    status, error = run(tmp_path, TEXT.replace("z = -0.02", "") + pull, capsys)
+    assert status == 4
+    assert "body 'upper' can shift along z" in error
+    assert not (tmp_path / "results").exists()
+
+
+def test_absurd_units(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    push = '\n[[loads]]\nkind = "pressure"\non = "upper.top"\nvalue = 1\n'
+    text = TEXT.replace("z = -0.02", "").replace("210e3", "210e-9") + push
+    status, error = run(tmp_path, text, capsys)
+    assert status == 4
+    assert "check the units" in error
+
+
 def test_contradicting_supports(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, error = run(tmp_path, TEXT + '\n[[supports]]\non = "upper.top"\nz = 0.5\n', capsys)
     assert status == 4

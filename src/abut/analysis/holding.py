@@ -38,7 +38,7 @@ class Holding:
         if motions.shape[1]:
             others = f" (and {motions.shape[1] - 1} more motions)" if motions.shape[1] > 1 else ""
             raise SingularModelError(
-                f"{describe(self.rigid, motions[:, 0])} without resistance{others}: neither supports nor contact hold it; "
+                f"{describe(self.rigid, motions)} without resistance{others}: neither supports nor contact hold it; "
                 "add a support, or a symmetry plane (normal = 0)"
             )
 
@@ -55,10 +55,17 @@ class Holding:
             own |= clearance <= clearance.min() + 0.01
         return result if self._holds(result) else np.ones_like(active)
 
-    def _holds(self, active: NDArray[np.bool_]) -> bool:
+    def freed(self, active: NDArray[np.bool_]) -> str:
+        """Which body an active set lets go, in words."""
+        motions = free_motions([self.supports, *self._rows(active)])
+        return describe(self.rigid, motions) if motions.shape[1] else "no body is let go"
+
+    def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
-        grams = [resistance_of_rows(self.rigid, p.rows[own]) for p, own in zip(self.pairs, np.split(active, splits))]
-        return free_motions([self.supports, *grams]).shape[1] == 0
+        return [resistance_of_rows(self.rigid, p.rows[own]) for p, own in zip(self.pairs, np.split(active, splits))]
+
+    def _holds(self, active: NDArray[np.bool_]) -> bool:
+        return free_motions([self.supports, *self._rows(active)]).shape[1] == 0
 
 
 def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:

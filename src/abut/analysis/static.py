@@ -5,18 +5,23 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
+import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import external_load
 from abut.analysis.results import step_result
 from abut.discretization.pairs import Pair, pair
 from abut.discretization.supports import supports
+from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
 from abut.solvers.active_set import System, solve_step, start
 from abut.solvers.direct import solver_name
 from abut.state import Observer, Solution, Step
+
+ABSURD = 1e6  # displacement over model size that no units explain
 
 
 def _silent(_: object) -> None:
@@ -56,6 +61,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         pairs=pairs,
         operator=sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free)),
         complete=held_by.complete,
+        freed=held_by.freed,
     )
     note(f"{n_free} free displacements, {sum(map(len, pairs))} multipliers, direct solver {solver_name()}")
     clock.mark("set-up")
@@ -68,6 +74,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         outcome = solve_step(system, state, factor, number, model.solve.max_iterations, observe)
         state = outcome.unknowns
         clock.mark("solve")
+        _check_size(model, held.free @ state.displacement + factor * held.prescribed, note)
         steps.append(step_result(model, full_stiffness, load, held, system, outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
@@ -83,6 +90,21 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         note(
             f"contact '{p.contact.name}': {p.coupling.segments.sum()} segments on {covered} of {facets} facets, "
             f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (without support or fixed)"
+        )
+
+
+def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:
+    """Displacements beyond the size of the model mean wrong units, or a matrix that is singular in all but name."""
+    extent = float(np.ptp(model.mesh.points, axis=0).max())
+    largest = float(np.abs(displacement).max(initial=0.0))
+    if not largest < ABSURD * extent:
+        raise SingularModelError(
+            f"displacements of {largest:.2g} in a model of size {extent:.2g} make no sense: check the units of Young's "
+            "moduli, loads and mesh, and that supports hold every body"
+        )
+    if largest > extent:
+        note(
+            f"displacements of {largest:.2g} exceed the model's size {extent:.2g}: check units (displacements must be small)"
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,16 +79,19 @@ def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
     return np.asarray(vectors[:, values < FREE * max(values.max(initial=0.0), 1e-300)])
 
 
-def describe(rigid: RigidModes, motion: NDArray[np.float64]) -> str:
-    """Say which body moves and how."""
+def describe(rigid: RigidModes, motions: NDArray[np.float64]) -> str:
+    """Say which body moves and how, from the free motions (n_modes, n_free): a shift or turn along an axis if one of
+    them is, else the first."""
+    size = np.linalg.norm(motions, axis=1)  # of each single mode's share in the free motions
+    pure = np.flatnonzero(size > 0.999)
+    motion = np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0]
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
     own = parts[group]
     dim = 2 if rigid.per_group == 3 else 3
     shift, turn = own[:dim], own[dim:]
     bodies = " + ".join(f"'{name}'" for name in rigid.groups[group])
-    kinds: Mapping[bool, str] = {True: "shift", False: "turn"}
-    if kinds[bool(np.abs(shift).max() >= np.abs(turn).max())] == "shift":
+    if np.abs(shift).max() >= np.abs(turn).max():
         return f"body {bodies} can shift along {_axis(shift)}"
     return f"body {bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
 

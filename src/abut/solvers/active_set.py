@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.discretization.pairs import Pair
+from abut.errors import SingularModelError
 from abut.interface.laws import Linearisation, linearise_active, linearise_constraint_function
 from abut.solvers.blocks import newton_step
 from abut.state import Iteration
@@ -31,14 +32,15 @@ class Unknowns:
 
 @dataclass(frozen=True)
 class System:
-    """What stays the same over all iterations and steps. ``support`` decides whether an active set holds every body,
-    and completes it where it does not."""
+    """What stays the same over all iterations and steps. ``complete`` adds to an active set that lets a body go the
+    multipliers closest to contact; ``freed`` says in words which body it lets go."""
 
     stiffness: Any
     load: NDArray[np.float64]  # at full load
     pairs: Sequence[Pair]
     operator: Any  # all pairs stacked, (n, n_free)
     complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
+    freed: Callable[[NDArray[np.bool_]], str]
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers, pair by pair."""
@@ -96,6 +98,10 @@ def solve_step(
         history.append(active)
         if not changed.any():
             return _finish_smooth(system, solved, factor, number, limit, done, observe)
+        if np.array_equal(system.complete(wanted, system.gap(solved.displacement, factor)) | tied, active):
+            raise SingularModelError(
+                f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
+            )
         seen.add(active.tobytes())
         if wanted.tobytes() in seen or keep_largest:
             keep_largest = 0.3 if not keep_largest else min(1.0, 1.5 * keep_largest)
