@@ -1,4 +1,4 @@
-"""Hertz's line contact from the example's own job files (reference values: NAFEMS R0094 and the closed formula)."""
+"""Hertz's contacts from the examples' own job files (NAFEMS R0094, ANSYS VM63; values from the closed formulas)."""
 
 from __future__ import annotations
 
@@ -39,6 +39,23 @@ def test_line_contact(kind: str, tolerance: float) -> None:
     # (Within two node spacings of the edge the kink of Hertz's own pressure lies inside a facet.)
     inside = np.abs(x[1:-1]) < HALF_WIDTH - (8.0 / 12 if kind == "quad8" else 2 * 8.0 / 32)
     assert np.diff(slopes)[inside].max() < 1e-3 * PEAK / HALF_WIDTH
+
+
+def test_ball_on_a_plane() -> None:
+    """Octant with both symmetry planes through the contact, hex20, from the example: largest pressure within 2 %.
+
+    With six facets on the contact radius the edge of contact spreads over the outer half of it; the inner half is
+    within 3 % everywhere.
+    """
+    radius, peak = 1.00964, 88.290
+    contact = abut.solve(load_job(EXAMPLES / "hertz-sphere" / "job.toml").model).contacts[0]
+    assert contact.force[2] == pytest.approx(15 * np.pi, rel=1e-9)
+    assert contact.max_pressure == pytest.approx(peak, rel=0.02)
+    surface = contact.contactor
+    used = (surface.nodes >= 0) & contact.covered[:, None]
+    r = np.linalg.norm(surface.points[surface.nodes[used], :2], axis=1)
+    exact = peak * np.sqrt(np.maximum(0.0, 1.0 - (r / radius) ** 2))
+    assert np.abs(contact.pressure[used] - exact)[r < 0.5 * radius].max() < 0.03 * peak
 
 
 def test_units_do_not_matter() -> None:
