@@ -1,0 +1,167 @@
+// How many integration points and subdivisions each facet needs, from its own moments.
+#include "contactor.hpp"
+
+namespace abut {
+
+namespace {
+
+// Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area.
+double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &rule, const double (*exact)[9],
+                    double area) {
+  double sum[9][9] = {{0}};
+  double xi[2];
+  f.centre(xi);
+  for (const Piece &piece : own.pieces) {
+    Polygon polygon;
+    for (int i = 0; i < piece.size; ++i)
+      polygon.push({piece.p[i], 0, i});
+    const std::array<Curve, 4> curves[2] = {piece.curve, piece.curve};
+    integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
+      if (!own.locate(p, xi))
+        return;
+      double x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
+      f.at(xi, x, tangent);
+      f.values(xi, n, d);
+      cross(tangent[0], tangent[1], normal);
+      weight *= std::sqrt(dot(normal, normal, 3)) / dot(normal, own.plane.n, 3);
+      for (int i = 0; i < f.nodes; ++i)
+        for (int j = 0; j < f.nodes; ++j)
+          sum[i][j] += weight * n[i] * n[j];
+    });
+  }
+  double error = 0;
+  for (int i = 0; i < f.nodes; ++i)
+    for (int j = 0; j < f.nodes; ++j)
+      error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+  return error / area;
+}
+
+// The same in 2D, integrating over the chord so that the inverse map is exercised.
+double moment_error_line(const Facet<double> &f, const Rule &rule, const double (*exact)[9], double length) {
+  double sum[9][9] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
+  normalize(chord, 2);
+  double xi[2] = {0, 0};
+  for (int q = 0; q < rule.n; ++q) {
+    double from[2], x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+    for (int a = 0; a < 2; ++a)
+      from[a] = f.x[0][a] + rule.t[q] * (f.x[1][a] - f.x[0][a]);
+    if (!project(f, from, chord, chord, xi))
+      return HUGE_VAL;
+    f.at(xi, x, tangent);
+    f.values(xi, n, d);
+    const double speed = std::sqrt(dot(tangent[0], tangent[0], 2)) / dot(tangent[0], chord, 2);
+    const double span = (f.x[1][0] - f.x[0][0]) * chord[0] + (f.x[1][1] - f.x[0][1]) * chord[1];
+    for (int i = 0; i < f.nodes; ++i)
+      for (int j = 0; j < f.nodes; ++j)
+        sum[i][j] += rule.wt[q] * span * speed * n[i] * n[j];
+  }
+  double error = 0;
+  for (int i = 0; i < f.nodes; ++i)
+    for (int j = 0; j < f.nodes; ++j)
+      error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
+  return error / length;
+}
+
+// Is the map from the reference domain affine: every node where the first corners put it?
+bool affine(const Facet<double> &f) {
+  double origin[3], edge[2][3], size = 0; // x = origin + sum of edges times reference coordinates
+  const double scale = f.dim == 2 || !f.triangle() ? 0.5 : 1.0;
+  for (int a = 0; a < f.dim; ++a) {
+    edge[0][a] = scale * (f.x[1][a] - f.x[0][a]);
+    edge[1][a] = f.dim == 2 ? 0.0 : scale * (f.triangle() ? f.x[2][a] - f.x[0][a] : f.x[3][a] - f.x[0][a]);
+    origin[a] = f.triangle() ? f.x[0][a] : f.x[0][a] + edge[0][a] + edge[1][a];
+    size = std::max({size, std::abs(edge[0][a]), std::abs(edge[1][a])});
+  }
+  static constexpr double line[3] = {-1, 1, 0};
+  static constexpr double triangle[6][2] = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
+  for (int i = 0; i < f.nodes; ++i)
+    for (int a = 0; a < f.dim; ++a) {
+      double x = origin[a];
+      if (f.dim == 2)
+        x += line[i] * edge[0][a];
+      else if (f.triangle())
+        x += triangle[i][0] * edge[0][a] + triangle[i][1] * edge[1][a];
+      else if (i < 8)
+        x += detail::QUAD_SIGN[i][0] * edge[0][a] + detail::QUAD_SIGN[i][1] * edge[1][a];
+      if (std::abs(x - f.x[i][a]) > 1e-13 * size)
+        return false;
+    }
+  return true;
+}
+
+int subdivisions_needed(const Facet<double> &f) {
+  if (!quadratic(f.kind) || f.dim == 2)
+    return 1;
+  const Plane plane = mean_plane(f);
+  const int corners = f.triangle() ? 3 : 4;
+  double sagitta = 0;
+  for (int i = 0; i < corners; ++i) {
+    const Point2 a = plane.flat(f.x[i]), b = plane.flat(f.x[(i + 1) % corners]), m = plane.flat(f.x[corners + i]);
+    sagitta = std::max(sagitta, std::abs(cross2(b - a, m - a)) / dot2(b - a, b - a));
+  }
+  // The error of a segment whose topology the chords get wrong goes with the square of the sagitta.
+  return std::min(12, std::max(1, int(std::ceil(std::sqrt(sagitta / 0.03) - 1e-9))));
+}
+
+} // namespace
+
+void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, std::vector<std::int32_t> &points,
+          std::vector<std::int32_t> &subdivisions) {
+  const int last = int(rules.count);
+  const Rule fine = rules.rule(last);
+  std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
+  for (std::size_t f = 0; f < surface.facets; ++f) {
+    Facet<double> facet = surface.facet(f);
+    const bool plain = affine(facet);
+    if (plain && affine_points[facet.kind]) {
+      points.push_back(affine_points[facet.kind]);
+      subdivisions.push_back(1);
+      continue;
+    }
+    double exact[9][9] = {{0}}, area = 0;
+    const bool triangle = facet.triangle(), line = surface.dim == 2;
+    for (int p = 0; p < fine.n; ++p)
+      for (int q = 0; q < (line ? 1 : fine.n); ++q) {
+        double xi[2], weight, x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
+        if (line)
+          xi[0] = 2 * fine.t[p] - 1, weight = 2 * fine.wt[p];
+        else if (triangle)
+          xi[0] = fine.r[q] * (1 - fine.t[p]), xi[1] = fine.r[q] * fine.t[p], weight = fine.wt[p] * fine.wr[q];
+        else
+          xi[0] = 2 * fine.t[p] - 1, xi[1] = 2 * fine.t[q] - 1, weight = 4 * fine.wt[p] * fine.wt[q];
+        facet.at(xi, x, tangent);
+        facet.values(xi, n, d);
+        if (line) {
+          weight *= std::sqrt(dot(tangent[0], tangent[0], 2));
+        } else {
+          cross(tangent[0], tangent[1], normal);
+          weight *= std::sqrt(dot(normal, normal, 3));
+        }
+        area += weight;
+        for (int i = 0; i < facet.nodes; ++i)
+          for (int j = 0; j < facet.nodes; ++j)
+            exact[i][j] += weight * n[i] * n[j];
+      }
+    const int m = subdivisions_needed(facet);
+    int n = 1;
+    if (line) {
+      for (; n < last; ++n)
+        if (moment_error_line(facet, rules.rule(n), exact, area) < tolerance)
+          break;
+    } else {
+      for (int i = 0; i < facet.nodes; ++i)
+        for (int a = 0; a < 3; ++a)
+          facet.normals[i][a] = 0;
+      const Contactor3 own(facet, m);
+      for (; n < last; ++n)
+        if (moment_error(facet, own, rules.rule(n), exact, area) < tolerance)
+          break;
+    }
+    if (plain)
+      affine_points[facet.kind] = n;
+    points.push_back(n);
+    subdivisions.push_back(m);
+  }
+}
+
+} // namespace abut
