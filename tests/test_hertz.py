@@ -36,16 +36,16 @@ def test_line_contact(kind: str, tolerance: float) -> None:
     assert edge == pytest.approx(HALF_WIDTH, abs=facet)
     # Hertz's ellipse is concave: inside contact no second difference is positive.
     slopes = np.diff(p) / np.diff(x)
-    # (Within two node spacings of the edge the kink of Hertz's own pressure lies inside a facet.)
-    inside = np.abs(x[1:-1]) < HALF_WIDTH - (8.0 / 12 if kind == "quad8" else 2 * 8.0 / 32)
-    assert np.diff(slopes)[inside].max() < 1e-3 * PEAK / HALF_WIDTH
+    inside = np.abs(x[1:-1]) < HALF_WIDTH - 0.5 * facet  # the kink of Hertz's own pressure is within half a facet
+    assert np.diff(slopes)[inside].max() < 0.0
+    exact = PEAK * np.sqrt(np.maximum(0.0, 1.0 - (x / HALF_WIDTH) ** 2))
+    assert np.abs(p - exact)[np.abs(x) < 0.9 * HALF_WIDTH].max() < 0.01 * PEAK
 
 
 def test_ball_on_a_plane() -> None:
     """Octant with both symmetry planes through the contact, hex20, from the example: largest pressure within 2 %.
 
-    With six facets on the contact radius the edge of contact spreads over the outer half of it; the inner half is
-    within 3 % everywhere.
+    Inside 0.9 a it is within 3 % of Hertz everywhere, of which 0.8 % are the ball's own: a / R = 0.13 is not small.
     """
     radius, peak = 1.00964, 88.290
     contact = abut.solve(load_job(EXAMPLES / "hertz-sphere" / "job.toml").model).contacts[0]
@@ -55,7 +55,7 @@ def test_ball_on_a_plane() -> None:
     used = (surface.nodes >= 0) & contact.covered[:, None]
     r = np.linalg.norm(surface.points[surface.nodes[used], :2], axis=1)
     exact = peak * np.sqrt(np.maximum(0.0, 1.0 - (r / radius) ** 2))
-    assert np.abs(contact.pressure[used] - exact)[r < 0.5 * radius].max() < 0.03 * peak
+    assert np.abs(contact.pressure[used] - exact)[r < 0.9 * radius].max() < 0.03 * peak
 
 
 def test_units_do_not_matter() -> None:

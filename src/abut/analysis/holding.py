@@ -30,6 +30,7 @@ class Holding:
     supports: NDArray[np.float64]
     pairs: Sequence[Pair]
     by_supports: bool  # supports and ties alone hold every body
+    free: NDArray[np.float64]  # (dim n_points, m) rigid motions that the supports alone leave free
 
     def check(self) -> None:
         """Raise SingularModelError where a body can move even with all contact closed."""
@@ -73,4 +74,6 @@ def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
     rigid = rigid_modes(mesh)
     support = resistance_of_supports(rigid, held.free)
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
-    return Holding(rigid, support, pairs, free_motions([support, *ties]).shape[1] == 0)
+    return Holding(
+        rigid, support, pairs, free_motions([support, *ties]).shape[1] == 0, rigid.modes @ free_motions([support])
+    )

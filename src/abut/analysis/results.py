@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from abut.analysis.loads import applied_load
 from abut.discretization.pairs import Pair
-from abut.discretization.supports import Supports
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
 from abut.solids.elements import nodal_stress
@@ -21,7 +20,7 @@ def step_result(
     model: Model,
     stiffness: Any,
     load: NDArray[np.float64],
-    held: Supports,
+    displacement: NDArray[np.float64],
     system: System,
     outcome: Outcome,
     number: int,
@@ -30,7 +29,6 @@ def step_result(
     """Collect displacement, stress, reactions and contact results at a share ``factor`` of the load."""
     dim = model.dim
     unknowns = outcome.unknowns
-    displacement = held.free @ unknowns.displacement + factor * held.prescribed
     pressures = system.split(unknowns.pressure)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -62,7 +60,7 @@ def step_result(
             for pair, pressure, gap, active in zip(
                 system.pairs,
                 pressures,
-                system.split(system.gap(unknowns.displacement, factor)),
+                system.split(system.gap(unknowns, factor)),
                 system.split(unknowns.active),
             )
         ),

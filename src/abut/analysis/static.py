@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,6 +19,8 @@ from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
 from abut.solvers.active_set import System, solve_step, start
+from abut.solvers.blocks import newton_step
+from abut.solvers.condensed import condense
 from abut.solvers.direct import solver_name
 from abut.state import Observer, Solution, Step
 
@@ -55,16 +58,22 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     held_by.check()
     reduced = (held.free.T @ full_stiffness @ held.free).tocsr()
     n_free = reduced.shape[0]
+    operator = sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
     system = System(
         stiffness=reduced,
         load=held.free.T @ (load - full_stiffness @ held.prescribed),
         pairs=pairs,
-        operator=sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free)),
+        operator=operator,
         complete=held_by.complete,
         freed=held_by.freed,
+        step=partial(newton_step, reduced, operator),
     )
     note(f"{n_free} free displacements, {sum(map(len, pairs))} multipliers, direct solver {solver_name()}")
     clock.mark("set-up")
+    condensed = condense(system, held.free.T @ held_by.free)
+    if condensed is not None:
+        note(f"displacements eliminated but {len(condensed.kept)}: what is left to solve is dense")
+        system = condensed.system
 
     state = start(system)
     steps: list[Step] = []
@@ -73,9 +82,13 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         factor = number / count
         outcome = solve_step(system, state, factor, number, model.solve.max_iterations, observe)
         state = outcome.unknowns
+        displacement = state.displacement
+        if condensed is not None:
+            displacement = condensed.expand(state, factor)
+        displacement = held.free @ displacement + factor * held.prescribed
         clock.mark("solve")
-        _check_size(model, held.free @ state.displacement + factor * held.prescribed, note)
-        steps.append(step_result(model, full_stiffness, load, held, system, outcome, number, factor))
+        _check_size(model, displacement, note)
+        steps.append(step_result(model, full_stiffness, load, displacement, system, outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")

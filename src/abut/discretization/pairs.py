@@ -18,16 +18,20 @@ from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
+SHARPNESS = (
+    30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
+)
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
 
 
 @dataclass(frozen=True)
 class PairPoints:
-    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, prescribed (n_points,);
-    operator (n_points, n_free) change of the gap by the free displacements."""
+    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, prescribed, stiffness
+    (n_points,); operator (n_points, n_free) change of the gap by the free displacements."""
 
     test: Any
     weight: NDArray[np.float64]
+    stiffness: NDArray[np.float64]  # of the constraint function, pressure per length
     gap: NDArray[np.float64]
     operator: Any
     prescribed: NDArray[np.float64]
@@ -90,8 +94,9 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
             "names, that both surfaces' normals point out of their bodies, and the distance between them"
         )
     space = pressure_space(name, contactor, coupling)
-    size = float(np.median(facet_sizes(contactor)))
-    stiffness = _modulus(model, contactor, target) / size
+    sizes = facet_sizes(contactor)
+    size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
+    stiffness = modulus / size
     if tied:
         return _tied(contact, contactor, target, coupling, space, held, size, stiffness)
     space = _without_held(space, contactor, coupling, held)
@@ -107,17 +112,20 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
         prescribed=rows @ held.prescribed,
         gap=space.transfer.T @ coupling.gap + contact.offset * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
-        points=_points(contact, coupling, space, held),
+        points=_points(contact, coupling, space, held, modulus / sizes),
     )  # fmt: skip
 
 
-def _points(contact: Contact, coupling: Coupling, space: PressureSpace, held: Supports) -> PairPoints | None:
+def _points(
+    contact: Contact, coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64]
+) -> PairPoints | None:
     if coupling.points is None:
         return None
     at = coupling.points
     return PairPoints(
         test=(at.pressure @ space.transfer).tocsr(),
         weight=at.weight,
+        stiffness=SHARPNESS * stiffness[at.facet],
         gap=at.gap + contact.offset,
         operator=(at.gap_operator @ held.free).tocsr(),
         prescribed=at.gap_operator @ held.prescribed,

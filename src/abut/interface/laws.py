@@ -13,28 +13,30 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+TENSION = 30.0  # how much more a point in tension counts than one in compression
+TENSION_START = 1e-3  # of the largest pressure: tension below it counts less, lest Newton chases the last ripples
+
 
 @dataclass(frozen=True)
 class Linearisation:
-    """residual: (n,); active: (n,) bool; by_displacement (n, n_u) and by_pressure (n, n): sparse derivatives.
+    """A law near the present state, for one pair.
 
-    ``symmetric``: by_displacement is minus the active rows of the operator and the inactive pressures are decoupled, so
-    that the solver may use a symmetric factorisation.
+    residual: (n,); active: (n,) bool, multipliers in contact; by_gap: (n, n_gaps) sparse, derivative by the gaps that the
+    law looks at; by_pressure: (n, n) sparse, derivative by the pressure coefficients.
+    at_points: the gaps are those at the integration points, else the n weighted ones;
+    ``decoupled``: (n,) bool, rows that hold nothing but their own pressure.
     """
 
     residual: NDArray[np.float64]
     active: NDArray[np.bool_]
-    by_displacement: Any
+    by_gap: Any
     by_pressure: Any
-    symmetric: bool
+    at_points: bool
+    decoupled: NDArray[np.bool_]
 
 
 def linearise_active(
-    operator: Any,
-    gap: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    active: NDArray[np.bool_],
-    scale: NDArray[np.float64],
+    gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], scale: NDArray[np.float64]
 ) -> Linearisation:
     """Complementarity with a given active set: weighted gap = 0 where active, pressure = 0 elsewhere.
 
@@ -42,11 +44,14 @@ def linearise_active(
     The semi-smooth Newton derivative of min(gap, scale * pressure) is just this (Hintermueller, Ito and Kunisch 2002).
     """
     on = active.astype(float)
-    rows = operator.copy()
-    rows.data = rows.data * np.repeat(-on, np.diff(rows.indptr))
-    n = len(active)
-    diagonal = sp.csr_matrix((-(1.0 - on) * scale, np.arange(n), np.arange(n + 1)), shape=(n, n))
-    return Linearisation(np.where(active, -gap, -scale * pressure), active, rows, diagonal, True)
+    return Linearisation(
+        residual=np.where(active, -gap, -scale * pressure),
+        active=active,
+        by_gap=sp.diags(-on, format="csr"),
+        by_pressure=sp.diags((on - 1.0) * scale, format="csr"),
+        at_points=False,
+        decoupled=~active,
+    )
 
 
 def constraint_function(
@@ -67,23 +72,34 @@ def constraint_function(
 def linearise_constraint_function(
     test: Any,
     weight: NDArray[np.float64],
-    gap_operator: Any,
     gap: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    stiffness: float,
+    coefficients: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
     epsilon: float,
+    reference: float,
 ) -> Linearisation:
-    """int H_k w(c g, l) = 0, with w evaluated at the integration points (paper, eq. 21).
+    """int H_k (w(c g, l) + TENSION t(l)) = 0, evaluated at the integration points (paper, eq. 21).
 
-    test: (n_points, n) values of the pressure functions at the integration points; weight, gap, pressure: (n_points,);
-    gap_operator: (n_points, n_u); stiffness c: pressure per length, puts the gap on the scale of the pressure.
+    test: (n_points, n) values of the pressure functions at the integration points; weight, gap: (n_points,);
+    coefficients: (n,) of the pressure l;
+    stiffness c: (n_points,) pressure per length, puts the gap on the scale of the pressure;
+    reference: the largest pressure, to which epsilon is relative.
+    The second term, t(l) = min(l, 0) but for a smooth start, is not in the paper: behind the edge of contact w = l, and
+    zero means against every H_k leave room for a pressure that swings about zero.
     """
-    value, by_gap, by_pressure = constraint_function(stiffness * gap, pressure, epsilon)
+    pressure = test @ coefficients
+    value, by_gap, by_pressure = constraint_function(stiffness * gap, pressure, epsilon * reference**2)
+    width = TENSION_START * reference
+    pull = np.minimum(pressure, 0.0)
+    value = value + TENSION * np.where(pull > -width, -0.5 * pull**2 / width, pull + 0.5 * width)
+    by_pressure = by_pressure + TENSION * np.minimum(-pull / width, 1.0)
     weighted = (test.T @ sp.diags(weight)).tocsr()
+    closed = (pressure > stiffness * gap) & (pressure > 0.0)
     return Linearisation(
         residual=weighted @ value,
-        active=np.asarray(weighted @ (pressure > stiffness * gap).astype(float)) > 0.0,
-        by_displacement=(weighted @ sp.diags(stiffness * by_gap) @ gap_operator).tocsr(),
+        active=np.asarray(weighted @ (closed - 0.5)) > 0.0,
+        by_gap=(weighted @ sp.diags(stiffness * by_gap)).tocsr(),
         by_pressure=(weighted @ sp.diags(by_pressure) @ test).tocsr(),
-        symmetric=False,
+        at_points=True,
+        decoupled=np.zeros(len(coefficients), dtype=bool),
     )

@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.discretization.pairs import Pair
 from abut.errors import SingularModelError
 from abut.interface.laws import Linearisation, linearise_active, linearise_constraint_function
-from abut.solvers.blocks import newton_step
 from abut.state import Iteration
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
-TOLERANCE = 1e-10  # of the relative residuals, for laws that are not piecewise linear
+TOLERANCE = 1e-8  # of the relative residuals, for laws that are not piecewise linear
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,30 @@ class Unknowns:
 
 
 @dataclass(frozen=True)
+class Rows:
+    """The laws of all pairs near the present state, in the unknowns: residual + by_displacement du + by_pressure dp = 0.
+
+    ``decoupled`` rows hold nothing but their own pressure. ``symmetric``: all others are minus the rows of the operator.
+    """
+
+    residual: NDArray[np.float64]
+    by_displacement: Any
+    by_pressure: Any
+    decoupled: NDArray[np.bool_]
+    symmetric: bool
+
+
+Step = Callable[[Rows, NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
+@dataclass(frozen=True)
 class System:
-    """What stays the same over all iterations and steps. ``complete`` adds to an active set that lets a body go the
-    multipliers closest to contact; ``freed`` says in words which body it lets go."""
+    """What stays the same over all iterations and steps.
+
+    ``complete`` adds to an active set that lets a body go the multipliers closest to contact; ``freed`` says in words
+    which body it lets go. ``step``: (rows, residual of equilibrium, pressure) -> (du, dp). Where displacements have been
+    eliminated, ``compliance`` (n, n) and ``opening`` (n,) are the gaps that come of them, by pressures and by full load.
+    """
 
     stiffness: Any
     load: NDArray[np.float64]  # at full load
@@ -41,6 +62,9 @@ class System:
     operator: Any  # all pairs stacked, (n, n_free)
     complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
     freed: Callable[[NDArray[np.bool_]], str]
+    step: Step
+    compliance: NDArray[np.float64] | None = None
+    opening: NDArray[np.float64] | None = None
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers, pair by pair."""
@@ -49,10 +73,37 @@ class System:
     def join(self, values: Sequence[NDArray[Any]]) -> NDArray[Any]:
         return np.concatenate(values) if len(values) else np.zeros(0)
 
-    def gap(self, displacement: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    def gap(self, state: Unknowns, factor: float) -> NDArray[np.float64]:
         """Weighted gaps of all multipliers at a share ``factor`` of the load."""
         fixed = self.join([pair.gap + factor * pair.prescribed for pair in self.pairs])
-        return np.asarray(fixed + self.operator @ displacement) if len(fixed) else fixed
+        if not len(fixed):
+            return fixed
+        gap = fixed + self.operator @ state.displacement
+        if self.compliance is not None and self.opening is not None:
+            gap = gap + self.compliance @ state.pressure + factor * self.opening
+        return np.asarray(gap)
+
+    def rows(self, laws: Sequence[Linearisation]) -> Rows:
+        """The laws of all pairs in terms of the unknowns."""
+        by_displacement, by_compliance, first = [], [], 0
+        for pair, law in zip(self.pairs, laws):
+            here = slice(first, first + len(pair))
+            first += len(pair)
+            own = pair.points.operator if law.at_points and pair.points is not None else self.operator[here]
+            by_displacement.append(sp.csr_matrix(law.by_gap @ own))
+            if self.compliance is not None:
+                empty = law.at_points  # all displacements of such pairs have been kept
+                by_compliance.append(
+                    np.zeros((len(pair), len(self.compliance))) if empty else law.by_gap @ self.compliance[here]
+                )
+        by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
+        return Rows(
+            residual=np.concatenate([law.residual for law in laws]),
+            by_displacement=sp.vstack(by_displacement).tocsr(),
+            by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
+            decoupled=np.concatenate([law.decoupled for law in laws]),
+            symmetric=not any(law.at_points for law in laws),
+        )
 
 
 @dataclass(frozen=True)
@@ -65,14 +116,16 @@ class Outcome:
 
 def start(system: System) -> Unknowns:
     """Zero displacement; multipliers that touch at the outset are active."""
-    gap = system.gap(np.zeros(system.stiffness.shape[0]), 0.0)
+    n = sum(map(len, system.pairs))
+    rest = Unknowns(np.zeros(system.stiffness.shape[0]), np.zeros(n), np.zeros(n, dtype=bool))
+    gap = system.gap(rest, 0.0)
     active = system.join(
         [
             np.full(len(pair), True) if pair.tied else g <= TOUCHING * pair.size * _weight(pair)
             for pair, g in zip(system.pairs, system.split(gap))
         ]
     ).astype(bool)
-    return Unknowns(np.zeros(system.stiffness.shape[0]), np.zeros(len(active)), active)
+    return replace(rest, active=active)
 
 
 def solve_step(
@@ -88,7 +141,7 @@ def solve_step(
     changed = np.zeros(len(state.active), dtype=bool)
     for count in range(1, limit + 1):
         clock = time.perf_counter()
-        active = system.complete(state.active, system.gap(state.displacement, factor)) | tied
+        active = system.complete(state.active, system.gap(state, factor)) | tied
         solved = _solve_active(system, replace(state, active=active), factor)
         wanted, violation = _next_active(system, solved, factor, tied)
         changed = wanted != active
@@ -98,7 +151,7 @@ def solve_step(
         history.append(active)
         if not changed.any():
             return _finish_smooth(system, solved, factor, number, limit, done, observe)
-        if np.array_equal(system.complete(wanted, system.gap(solved.displacement, factor)) | tied, active):
+        if np.array_equal(system.complete(wanted, system.gap(solved, factor)) | tied, active):
             raise SingularModelError(
                 f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
             )
@@ -116,10 +169,10 @@ def solve_step(
 
 def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
     laws = [
-        linearise_active(pair.operator, g, p, a, pair.scale)
+        linearise_active(g, p, a, pair.scale)
         for pair, g, p, a in zip(
             system.pairs,
-            system.split(system.gap(state.displacement, factor)),
+            system.split(system.gap(state, factor)),
             system.split(state.pressure),
             system.split(state.active),
         )
@@ -129,7 +182,7 @@ def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
 
 def _advance(system: System, state: Unknowns, factor: float, laws: Sequence[Linearisation]) -> Unknowns:
     residual = _equilibrium(system, state, factor)
-    du, dp = newton_step(system.stiffness, system.operator, laws, residual, state.pressure)
+    du, dp = system.step(system.rows(laws), residual, state.pressure)
     return replace(state, displacement=state.displacement + du, pressure=state.pressure + dp)
 
 
@@ -150,7 +203,7 @@ def _next_active(
     """The active set that the law asks for, and by how much (pressure) each multiplier breaks it now."""
     if not len(state.pressure):
         return state.active, np.zeros(0)
-    gap = system.gap(state.displacement, factor)
+    gap = system.gap(state, factor)
     push = -gap / system.join([pair.scale for pair in system.pairs])  # penetration as a pressure
     reference = np.abs(state.pressure[~tied]).max(initial=0.0)
     small = FLAT * max(reference, 1e-300)
@@ -172,7 +225,7 @@ def _report(
 ) -> Iteration:
     internal = system.stiffness @ state.displacement
     force = max(np.abs(internal).max(initial=0.0), np.abs(factor * system.load).max(initial=0.0), 1e-300)
-    gap = system.split(system.gap(state.displacement, factor))
+    gap = system.split(system.gap(state, factor))
     depth = [
         float((-g / (_weight(pair) * pair.size)).max(initial=0.0))
         for pair, g in zip(system.pairs, gap)
@@ -228,23 +281,23 @@ def _smooth_laws(system: System, state: Unknowns, factor: float, reference: floa
     laws = []
     for pair, g, p, a in zip(
         system.pairs,
-        system.split(system.gap(state.displacement, factor)),
+        system.split(system.gap(state, factor)),
         system.split(state.pressure),
         system.split(state.active),
     ):
         at = pair.points
         if at is None:
-            laws.append(linearise_active(pair.operator, g, p, a, pair.scale))
+            laws.append(linearise_active(g, p, a, pair.scale))
             continue
         laws.append(
             linearise_constraint_function(
                 at.test,
                 at.weight,
-                at.operator,
                 at.gap + at.operator @ state.displacement + factor * at.prescribed,
-                at.test @ p,
-                pair.stiffness,
-                pair.contact.epsilon * reference**2,
+                p,
+                at.stiffness,
+                pair.contact.epsilon,
+                reference,
             )
         )
     return laws

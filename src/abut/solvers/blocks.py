@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.interface.laws import Linearisation
 from abut.solvers import direct
+from abut.solvers.active_set import Rows
 
 
 def newton_step(
     stiffness: Any,
     operator: Any,
-    laws: Sequence[Linearisation],
+    rows: Rows,
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -24,61 +23,40 @@ def newton_step(
 
     stiffness: (n_u, n_u) sparse symmetric; operator B: (n, n_u), all pairs stacked; residual: K u - B^T p - f.
     """
-    law_residual = np.concatenate([law.residual for law in laws]) if laws else np.zeros(0)
-    if all(law.symmetric for law in laws):
-        return _symmetric_step(stiffness, operator, laws, residual, law_residual, pressure)
-    # Rows and pressures are scaled so that all blocks have entries of one size: dp = s q, law rows times t.
-    unit = np.median(stiffness.diagonal())
-    by_displacement = sp.vstack([law.by_displacement for law in laws]).tocsr()
-    by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
-    s = unit / _row_max(operator)
-    rows = np.maximum(_row_max(by_displacement), _row_max(by_pressure @ sp.diags(s)))
-    t = sp.diags(unit / rows)
-    matrix = sp.bmat(
-        [[stiffness, -(operator.T @ sp.diags(s))], [t @ by_displacement, t @ by_pressure @ sp.diags(s)]], format="csr"
-    )
-    rhs = -np.concatenate([residual, t @ law_residual])
-    solution = direct.solve(_store_diagonal(matrix), rhs, symmetric=False)
-    return solution[: len(residual)], s * solution[len(residual) :]
-
-
-def _symmetric_step(
-    stiffness: Any,
-    operator: Any,
-    laws: Sequence[Linearisation],
-    residual: NDArray[np.float64],
-    law_residual: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Inactive pressures drop to zero at once; what is left is symmetric indefinite."""
     n = len(pressure)
-    active = np.concatenate([law.active for law in laws]) if laws else np.zeros(0, dtype=bool)
-    drop = np.where(active, 0.0, -pressure)
-    rhs_u = -residual + operator.T @ drop
-    upper = sp.triu(stiffness, format="csr")
     if n == 0:
-        return direct.solve(upper, rhs_u, symmetric=True), np.zeros(0)
-    couple = operator.copy()
-    couple.data = couple.data * np.repeat(-active.astype(float), np.diff(couple.indptr))
-    # Pressures are scaled so that both blocks have entries of one size: dp = s q.
+        return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
+    # Pressures are scaled so that both blocks have entries of one size: dp = s q, law rows times t.
     unit = np.median(stiffness.diagonal())
     s = unit / _row_max(operator)
-    couple = (sp.diags(s) @ couple).tocsr()
-    diagonal = sp.csr_matrix((np.where(active, 0.0, -unit), np.arange(n), np.arange(n + 1)), shape=(n, n))
-    matrix = sp.bmat([[upper, couple.T], [None, diagonal]], format="csr")
-    matrix = _store_diagonal(matrix)
-    rhs_p = np.where(active, -law_residual * s, 0.0)
-    solution = direct.solve(matrix, np.concatenate([rhs_u, rhs_p]), symmetric=True)
-    step, q = solution[: len(residual)], solution[len(residual) :]
-    return step, np.where(active, s * q, drop)
+    # Decoupled pressures take their value at once.
+    known = rows.decoupled
+    fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
+    rhs_u = -residual + operator.T @ fixed
+    ones = sp.diags(np.where(known, -unit, 0.0))
+    free = sp.diags((~known).astype(float))
+    coupled = (sp.diags(s) @ free @ operator).tocsr()
+    if rows.symmetric:
+        upper = sp.triu(stiffness, format="csr")
+        matrix = sp.bmat([[upper, -coupled.T], [None, ones]], format="csr")
+        rhs_p = np.where(known, 0.0, -rows.residual * s)
+    else:
+        by_displacement, by_pressure = free @ rows.by_displacement, free @ rows.by_pressure @ free @ sp.diags(s)
+        t = unit / np.maximum(_row_max(by_displacement), _row_max(by_pressure, 0.0))
+        matrix = sp.bmat(
+            [[stiffness, -coupled.T], [sp.diags(t) @ by_displacement, sp.diags(t) @ by_pressure + ones]], format="csr"
+        )
+        rhs_p = np.where(known, 0.0, t * (-rows.residual - rows.by_pressure @ fixed))
+    solution = direct.solve(store_diagonal(matrix), np.concatenate([rhs_u, rhs_p]), symmetric=rows.symmetric)
+    return solution[: len(residual)], np.where(known, fixed, s * solution[len(residual) :])
 
 
-def _row_max(matrix: Any) -> NDArray[np.float64]:
+def _row_max(matrix: Any, empty: float = 1.0) -> NDArray[np.float64]:
     size = np.asarray(abs(matrix).max(axis=1).todense()).ravel()
-    return np.where(size > 0.0, size, 1.0)
+    return np.where(size > 0.0, size, empty)
 
 
-def _store_diagonal(matrix: Any) -> Any:
+def store_diagonal(matrix: Any) -> Any:
     """The same matrix with every diagonal entry stored (PARDISO wants zeros on the diagonal to be present)."""
     n = matrix.shape[0]
     rows = np.repeat(np.arange(n), np.diff(matrix.indptr))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib.metadata
 import os
+import weakref
 from typing import Any
 
 import numpy as np
@@ -67,6 +68,52 @@ def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[
     if not error < SINGULAR:
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
     return size * x
+
+
+class PartialFactorization:
+    """A symmetric matrix with all but the ``kept`` unknowns eliminated (PARDISO's Schur complement).
+
+    schur: (n_kept, n_kept) dense, what is left of the matrix.
+    """
+
+    def __init__(self, matrix: Any, kept: NDArray[np.int64]) -> None:
+        self._matrix = matrix
+        self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
+        # Own settings (1), nested dissection (2), no refinement (8: not possible here), Schur complement (36).
+        for key, value in {1: 1, 2: 2, 8: 0, 10: 13, 24: 0, 36: 1}.items():
+            self._solver.iparm[key - 1] = value
+        self._solver.perm = np.zeros(matrix.shape[0], dtype=np.int32)
+        self._solver.perm[kept] = 1
+        weakref.finalize(self, self._solver.free_memory, everything=True)
+        self.schur = self._call(12, np.zeros((len(kept), len(kept)), order="F"))
+        self.sound = self._solver.iparm[13] == 0  # number of perturbed pivots
+
+    def forward(self, b: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Eliminate: in the kept unknowns stands what the condensed system takes as right-hand side."""
+        return self._call(331, b)
+
+    def backward(self, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All unknowns from the result of ``forward`` with the kept unknowns replaced by their solution."""
+        return self._call(333, y)
+
+    def _call(self, phase: int, b: NDArray[np.float64]) -> NDArray[np.float64]:
+        self._solver.set_phase(phase)
+        result: NDArray[np.float64] = self._solver._call_pardiso(self._matrix, b)
+        return result
+
+
+def partial_factorization(matrix: Any, kept: NDArray[np.int64]) -> PartialFactorization | None:
+    """Eliminate all but the ``kept`` unknowns of a matrix given by its upper triangle (CSR, diagonal stored); what is
+    eliminated must be positive definite. None where it is singular, or PARDISO is not installed."""
+    module = _pardiso()
+    if module is None:
+        return None
+    matrix.sort_indices()
+    try:
+        result = PartialFactorization(matrix, kept)
+    except module.PyPardisoError:
+        return None
+    return result if result.sound else None
 
 
 def _residual(matrix: Any, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:

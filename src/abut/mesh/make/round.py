@@ -88,7 +88,7 @@ def _lines(
     fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
     along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
-    return radius, along, -1.0 + graded(fine / radius, cells, 1.0, growth)
+    return radius, along, -1.0 + graded(fine / (cells * radius), 1, 1.0, growth)
 
 
 def _axis(mesh: Mesh, radius: float) -> NDArray[np.int64]:

@@ -1,0 +1,160 @@
+"""Small displacements leave the stiffness alone: it is eliminated once, down to the multipliers, and every Newton
+iteration of every load step solves dense systems of the size of the interface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.discretization.pairs import Pair
+from abut.errors import SingularModelError
+from abut.solvers import direct
+from abut.solvers.active_set import Rows, System, Unknowns
+from abut.solvers.blocks import store_diagonal
+
+LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
+SINGULAR = 1e-6  # relative residual above which a dense system is taken for singular
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A system on the multipliers and the displacements that had to be kept, and the way back to all of them."""
+
+    system: System
+    kept: NDArray[np.int64]
+    factorization: direct.PartialFactorization
+    load: NDArray[np.float64]  # free displacements, then multipliers, after forward substitution
+    whole: System
+
+    def expand(self, state: Unknowns, factor: float) -> NDArray[np.float64]:
+        """All free displacements, refined once."""
+        n = len(self.whole.load)
+        inner = factor * self.load
+        inner[self.kept], inner[n:] = state.displacement, state.pressure
+        result = self.factorization.backward(inner)[:n]
+        miss = factor * self.whole.load + self.whole.operator.T @ state.pressure - self.whole.stiffness @ result
+        inner = self.factorization.forward(np.concatenate([miss, np.zeros(len(state.pressure))]))
+        inner[self.kept], inner[n:] = 0.0, 0.0
+        return np.asarray(result + self.factorization.backward(inner)[:n])
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """What the interface gives way under the multipliers.
+
+    factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
+    the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures.
+    """
+
+    factor: tuple[NDArray[np.float64], bool]
+    motions: NDArray[np.float64]
+    response: NDArray[np.float64]
+    operator: NDArray[np.float64]
+
+    def step(
+        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r): du = K^-1 (B^T dp - residual) + R a, with R^T of the
+        bracket zero, put into the rows of the laws."""
+        known, wanted = rows.decoupled, -rows.residual
+        free = np.flatnonzero(~known)
+        dp = np.zeros(len(pressure))
+        dp[known] = wanted[known] / np.diagonal(rows.by_pressure)[known]
+        push = self.operator.T @ dp - residual
+        du = scipy.linalg.cho_solve(self.factor, push)
+        law = rows.by_displacement[free]
+        n, m = len(free), self.motions.shape[1]
+        matrix = np.zeros((n + m, n + m))
+        matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
+        matrix[:n, n:] = law @ self.motions
+        matrix[n:, :n] = (self.operator[free] @ self.motions).T
+        rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -self.motions.T @ push])
+        solved = _solve_dense(matrix, rhs)
+        dp[free] = solved[:n]
+        return du + self.response[:, free] @ solved[:n] + self.motions @ solved[n:], dp
+
+
+def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
+    """The system with all displacements eliminated but those that pairs with a law at the integration points look at, and
+    as many as hold the bodies that supports leave free. None where what is left is too large for dense matrices, or no
+    solver for it is installed.
+
+    motions: (n_free, m) the rigid motions of bodies that supports leave free.
+    """
+    n, n_p = len(system.load), system.operator.shape[0]
+    kept = _kept(system, motions)
+    if not 0 < n_p + len(kept) <= LARGEST or n_p == 0:
+        return None
+    matrix = sp.bmat([[sp.triu(system.stiffness), -system.operator.T], [None, sp.csr_matrix((n_p, n_p))]], format="csr")
+    factorization = direct.partial_factorization(store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)]))
+    if factorization is None:
+        return None
+    load = factorization.forward(np.concatenate([system.load, np.zeros(n_p)]))
+    n_u = len(kept)
+    schur = factorization.schur
+    stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]
+    flexibility = _flexibility(stiffness, motions[kept], operator, float(np.median(system.stiffness.diagonal())))
+    if flexibility is None:
+        return None
+    small = replace(
+        system,
+        stiffness=stiffness,
+        load=load[kept],
+        pairs=[_restricted(pair, kept) for pair in system.pairs],
+        operator=operator,
+        step=flexibility.step,
+        compliance=compliance,
+        opening=load[n:],
+    )
+    return Condensed(small, kept, factorization, load, system)
+
+
+def _kept(system: System, motions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Numbers of the displacements that stay."""
+    m = motions.shape[1]
+    holding = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][:m] if m else np.zeros(0, dtype=int)
+    points = [p.points.operator for p in system.pairs if p.points is not None]
+    looked_at = np.flatnonzero(np.diff(sp.vstack(points).tocsc().indptr)) if points else np.zeros(0, dtype=int)
+    return np.union1d(holding, looked_at).astype(np.int64)
+
+
+def _flexibility(
+    stiffness: NDArray[np.float64], motions: NDArray[np.float64], operator: NDArray[np.float64], unit: float
+) -> Flexibility | None:
+    basis = np.linalg.svd(motions, full_matrices=False)[0] if motions.size else motions
+    try:
+        factor = scipy.linalg.cho_factor(stiffness + unit * (basis @ basis.T), lower=True)
+    except np.linalg.LinAlgError:
+        return None  # a zero-energy motion that is not rigid, as of bodies joined in a hinge
+    return Flexibility(factor, basis, scipy.linalg.cho_solve(factor, operator.T), operator)
+
+
+def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:
+    if pair.points is None:
+        return pair
+    return replace(pair, points=replace(pair.points, operator=pair.points.operator[:, kept].tocsr()))
+
+
+def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """LU with equilibrated columns and rows, refined once."""
+    if not len(rhs):
+        return rhs
+    columns = np.abs(matrix).max(axis=0)
+    columns[columns == 0.0] = 1.0
+    rows = (np.abs(matrix) / columns).max(axis=1)
+    rows[rows == 0.0] = 1.0
+    scaled, b = matrix / columns / rows[:, None], rhs / rows
+    if (np.abs(scaled).max(axis=0) == 0.0).any():
+        raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
+    with np.errstate(all="ignore"):
+        factor = scipy.linalg.lu_factor(scaled, check_finite=False)
+        x = scipy.linalg.lu_solve(factor, b, check_finite=False)
+        x = x + scipy.linalg.lu_solve(factor, b - scaled @ x, check_finite=False)
+        miss = np.abs(scaled @ x - b).max()
+    if not miss <= SINGULAR * max(np.abs(b).max(), 1e-300):
+        raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
+    return np.asarray(x / columns)
