@@ -216,6 +216,8 @@ def _nodes_2(source: _Source) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         source.at = end
         return data["tag"].astype(np.int64), data["x"].astype(float)
     table = source.array("d", 4 * count).reshape(-1, 4)
+    if not (np.abs(table[:, 0]) < 2.0**53).all():
+        source.fail("a node number cannot be right")
     return table[:, 0].astype(np.int64), table[:, 1:]
 
 

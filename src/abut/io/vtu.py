@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -87,14 +89,14 @@ def read_vtu(path: Path) -> RawMesh:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     try:
-        with path.open("rb") as file:
-            head = file.read(4096)
+        data = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot read mesh file {path}: {error.strerror}") from None
-    if b"UnstructuredGrid" not in head:  # VTK's parser is not to be trusted with what is no VTK file at all
+    if b"UnstructuredGrid" not in data[:4096]:
         raise InputError(
-            f"{path}: not a VTU file (no UnstructuredGrid in its head); save it as VTK XML unstructured grid"
+            f"{path}: not a readable VTU file (no UnstructuredGrid in its head); save it as VTK XML unstructured grid"
         )
+    _check_counts(path, data)
     grid = _load(path)
     if grid is None or grid.GetNumberOfCells() == 0:
         raise InputError(f"{path}: not a readable VTU file with cells (truncated or of another kind?); write it again")
@@ -123,6 +125,39 @@ def read_vtu(path: Path) -> RawMesh:
             groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[own] == r])
     joined = {name: {k: np.concatenate(v) for k, v in parts.items()} for name, parts in groups.items()}
     return RawMesh(points, joined)
+
+
+def _check_counts(path: Path, data: bytes) -> None:
+    """Refuse counts that the size of the file rules out: VTK reserves memory for them, without limit, before it looks."""
+    start = data.find(b"<AppendedData")
+    head = data[: start if start >= 0 else len(data)]
+    limit = 2000 * len(data)  # zlib shrinks at most about a thousandfold
+    for key, value in re.findall(rb'(NumberOf\w+|offset)\s*=\s*"([^"]*)"', head):
+        if not value.strip().isdigit() or int(value) > limit:
+            raise InputError(
+                f"{path}: not a readable VTU file: {key.decode()} = {value.decode('utf-8', 'replace').strip()!r} cannot be "
+                "right; write it again"
+            )
+    begin = data.find(b"_", start)
+    if start < 0 or begin < 0:
+        return
+    order = ">" if b"BigEndian" in head else "<"
+    word = np.dtype(order + ("u8" if b'header_type="UInt64"' in head else "u4"))
+    count = 3 if b"compressor=" in head else 1  # blocks, size of a block, size of the last; or the size alone
+    encoded = b'encoding="base64"' in data[start:begin]
+    for offset in re.findall(rb'offset\s*=\s*"\s*(\d+)', head):
+        at, size = begin + 1 + int(offset), count * word.itemsize
+        own = data[at : at + (4 * -(-size // 3) if encoded else size)]
+        try:
+            words = np.frombuffer((base64.b64decode(own) if encoded else own)[:size], word)
+        except ValueError:
+            words = np.empty(0, word)
+        if len(words) and words[0] == 0:
+            continue  # an empty array
+        if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
+            raise InputError(
+                f"{path}: not a readable VTU file: the data at offset {int(offset)} is damaged; write it again"
+            )
 
 
 def _load(path: Path) -> Any:

@@ -141,14 +141,17 @@ def _check_cells(mesh: Mesh) -> None:
 
 
 def _check_doubles(mesh: Mesh) -> None:
-    for block, first in zip(mesh.blocks, mesh.starts):
+    starts = mesh.starts
+    for kind in sorted({block.kind for block in mesh.blocks}):  # a cell read in two groups stands in two blocks
+        own = [(b.nodes, f + np.arange(len(b.nodes))) for b, f in zip(mesh.blocks, starts) if b.kind == kind]
+        nodes, cells = (np.concatenate(part) for part in zip(*own))
         _, where, inverse, count = np.unique(
-            np.sort(block.nodes, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
+            np.sort(nodes, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
         )
         if (count > 1).any():
-            copies = first + np.flatnonzero(np.isin(inverse.ravel(), np.flatnonzero(count > 1)))
+            copies = cells[count[inverse.ravel()] > 1]
             raise InputError(
-                f"mesh: cells {_some(first + where[count > 1])} of {_names(bodies_at(mesh, copies))} stand in the mesh "
+                f"mesh: cells {_some(cells[where[count > 1]])} of {_names(bodies_at(mesh, copies))} stand in the mesh "
                 "twice; put each cell in one body only"
             )
 
