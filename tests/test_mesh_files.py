@@ -66,7 +66,7 @@ def test_every_solid_cell_of_gmsh(gmsh: Any, cell: str, version: float, binary: 
     gmsh.model.addPhysicalGroup(3, [1], name="quarter")
     gmsh.model.addPhysicalGroup(2, round_side, name="round")
     gmsh.model.addPhysicalGroup(2, round_side, name="round again")
-    gmsh.model.addPhysicalGroup(0, [1], name="corner")
+    gmsh.model.addPhysicalGroup(0, [2], name="corner")
     for name, value in {
         "Mesh.MeshSizeMax": 0.5,
         "Mesh.SecondOrderIncomplete": float(cell != "hex27"),
@@ -124,6 +124,7 @@ def two_squares(**change: str) -> str:
         ({"tags": "2 2 2", "side": "1 2 7 1 2 3"}, r"'group_1_7' lies between the bodies 'group_2_1', 'group_2_2'"),
         ({"tags": "2 1 1", "side": "1 2 7 1 2 3"}, r"'group_1_7' lies inside body 'group_2_1'"),
         ({"side": "1 2 7 1 1 3"}, r"'group_1_7' has 1 facets that belong to no cell"),
+        ({"side": "15 2 9 1 7"}, r"use nodes that the file does not list"),
         ({"version": "3.0 0 8"}, r"version 3\.0 is not supported; export it as 4\.1 or 2\.2"),
         ({"z": "1"}, r"not in a plane z = constant"),
         ({"z": "nan"}, r"a coordinate that is no number"),
@@ -146,6 +147,13 @@ def test_faults_are_named_with_the_file(change: dict[str, str], message: str, tm
 def test_a_cell_in_two_bodies_is_refused() -> None:
     with pytest.raises(InputError, match="of 'group_2_1', 'group_2_2' stand in the mesh twice"):
         Mesh.read(DATA / "cell-in-two-groups.msh")
+
+
+def test_a_group_of_unused_points_is_refused(tmp_path: Path) -> None:
+    text = two_squares(side="15 2 9 1 7").replace("$Nodes\n6\n", "$Nodes\n7\n7 5 5 0\n")
+    (tmp_path / "two.msh").write_text(text)
+    with pytest.raises(InputError, match="no cell of a body uses the points of group 'group_0_9'"):
+        Mesh.read(tmp_path / "two.msh")
 
 
 @pytest.mark.parametrize("name", ["none.msh", "none.stl"])

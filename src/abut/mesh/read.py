@@ -78,6 +78,11 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
         elif name not in members:
             nodes = np.unique(np.concatenate([number[v].ravel() for v in parts.values()]))
             node_sets[name] = nodes[nodes >= 0].astype(np.int64)
+            if not len(node_sets[name]):
+                raise InputError(
+                    f"{where}: no cell of a body uses the points of group '{name}'; take the group out, or give the body "
+                    "there a physical group"
+                )
     return Mesh(bare.points, blocks, members, surfaces, node_sets)
 
 

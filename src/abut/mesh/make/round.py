@@ -123,6 +123,12 @@ def _lines(
     """Radius, and grid lines on [0, 1] across and [-1, 0] upward: fine near the lowest point."""
     radius = checks.positive(radius, "radius")
     fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
+    if fine >= np.sqrt(0.5) * radius:
+        raise InputError(f"fine: expected a length below 0.7 of the radius {radius:g}, got {fine!r}")
+    if isinstance(cells, bool) or not isinstance(cells, int) or cells < 1:
+        raise InputError(f"cells: expected a whole number >= 1, got {cells!r}")
+    if checks.finite(growth, "growth") <= 1.0:  # the cells would never reach the other side
+        raise InputError(f"growth: expected a number > 1, got {growth!r}")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
     along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
     return radius, along, -1.0 + graded(fine / radius, cells, 1.0, growth)
