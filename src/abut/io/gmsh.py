@@ -112,6 +112,8 @@ def read_gmsh(path: Path) -> RawMesh:
             names = _names(source)
         elif source.section == "$Entities":
             entities = _entities(source)
+        elif source.section == "$PartitionedEntities":
+            raise InputError(f"{path}: partitioned meshes are not supported; save it without partitions")
         elif source.section == "$Nodes":
             numbers, points = _nodes_4(source) if version >= 4 else _nodes_2(source)
         elif source.section == "$Elements":
@@ -214,6 +216,8 @@ def _nodes_2(source: _Source) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         source.at = end
         return data["tag"].astype(np.int64), data["x"].astype(float)
     table = source.array("d", 4 * count).reshape(-1, 4)
+    if not (np.abs(table[:, 0]) < 2.0**53).all():
+        source.fail("a node number cannot be right")
     return table[:, 0].astype(np.int64), table[:, 1:]
 
 
@@ -259,11 +263,13 @@ def _elements_2(source: _Source) -> list[tuple[int, list[tuple[int, int]], NDArr
         if source.binary:
             code, n, tags = (int(v) for v in source.array("i", 3))
             nodes = _type(source, code)[1]
+            if n < 1 or tags < 0:
+                source.fail(f"cannot read element {done + 1}")
             table = source.array("i", n * (1 + tags + nodes)).reshape(n, -1)
             for physical in np.unique(table[:, 1]) if tags else [0]:
                 own = table[table[:, 1] == physical] if tags else table
                 rows[code, int(physical)].extend(own[:, 1 + tags :].tolist())
-            done += max(n, 1)
+            done += n
             continue
         try:
             parts = [int(p) for p in source.line().split()]
@@ -279,7 +285,7 @@ def _elements_2(source: _Source) -> list[tuple[int, list[tuple[int, int]], NDArr
     result = []
     for (code, physical), nodes_of in rows.items():
         name = _TYPES[code][0].rstrip("0123456789")
-        groups = [(dims.get(name, 3), physical)] if physical else []
+        groups = [(dims.get(name, 3), abs(physical))] if physical else []  # negative: turned round
         result.append((code, groups, np.array(nodes_of, dtype=np.int64)))
     return result
 
@@ -293,6 +299,9 @@ def _collect(
 ) -> RawMesh:
     order = np.argsort(numbers)
     ordered = numbers[order]
+    if (np.diff(ordered) == 0).any():
+        twice = int(ordered[:-1][np.diff(ordered) == 0][0])
+        raise InputError(f"{path}: node {twice} stands in the file twice; it is damaged: write it again")
     parts: dict[str, dict[str, list[NDArray[np.int64]]]] = {}
     for code, groups, nodes in elements:
         kind, _, permutation = _TYPES[code]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,14 +25,16 @@ def write_vtu(
     blocks: Sequence[tuple[str, NDArray[Any]]],
     point_data: Mapping[str, NDArray[Any]],
     cell_data: Mapping[str, NDArray[Any]] | None = None,
+    names: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
     """Write points (n, 2 or 3), cells by type (kind, connectivity) and data; quadratic cells stay quadratic.
 
-    point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks.
+    point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks; names: lists of strings
+    for the whole file (VTK's field data).
     Raises InputError where the file cannot be written.
     """
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
@@ -54,6 +58,13 @@ def write_vtu(
             array.SetName(name)
             target.AddArray(array)
 
+    for name, texts in (names or {}).items():
+        strings = vtkStringArray()
+        strings.SetName(name)
+        for text in texts:
+            strings.InsertNextValue(text)
+        grid.GetFieldData().AddArray(strings)
+
     def write(temporary: Path) -> None:
         temporary.touch()  # raises OSError with a reason where VTK would only say no
         writer = vtkXMLUnstructuredGridWriter()
@@ -66,23 +77,28 @@ def write_vtu(
 
 
 def read_vtu(path: Path) -> RawMesh:
-    """Read cells and names. An integer cell array ``region`` with the field array ``region_names`` (one name for each
-    value, in order) names bodies and surfaces; without it every connected group of cells is a body ``body_1``, ...
+    """Read cells and names from a VTU file.
+
+    An integer cell array ``region`` numbers the groups, and the string array ``region_names`` in the field data gives
+    the name of region 0, 1, ...; a region without a name there is called ``region_<number>``. Regions of the highest
+    cells are bodies, those of facet cells surfaces. A cell in several groups stands in the file once for each. Without
+    ``region`` there are no surfaces, and every connected set of cells is a body ``body_1``, ``body_2``, ...
 
     Raises InputError for files that VTK cannot read or that hold cells abut does not know.
     """
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkCommonCore import vtkObject
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-    reader = vtkXMLUnstructuredGridReader()
-    failures: list[str] = []
-    vtkObject.GlobalWarningDisplayOff()
-    reader.AddObserver("ErrorEvent", lambda *_: failures.append("error"))
-    reader.SetFileName(str(path))
-    reader.Update()
-    grid = reader.GetOutput()
-    if failures or grid is None or grid.GetNumberOfCells() == 0:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read mesh file {path}: {error.strerror}") from None
+    if b"UnstructuredGrid" not in data[:4096]:
+        raise InputError(
+            f"{path}: not a readable VTU file (no UnstructuredGrid in its head); save it as VTK XML unstructured grid"
+        )
+    _check_counts(path, data)
+    grid = _load(path)
+    if grid is None or grid.GetNumberOfCells() == 0:
         raise InputError(f"{path}: not a readable VTU file with cells (truncated or of another kind?); write it again")
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
     kinds = np.array([grid.GetCellType(i) for i in range(grid.GetNumberOfCells())])
@@ -91,10 +107,12 @@ def read_vtu(path: Path) -> RawMesh:
     unknown = sorted(set(kinds.tolist()) - set(VTK_KIND))
     if unknown:
         raise InputError(f"{path}: VTK cell types {unknown} are not supported; supported: {', '.join(CELLS)}")
-    region = grid.GetCellData().GetArray("region")
-    names = grid.GetFieldData().GetAbstractArray("region_names")
+    want = np.array([CELLS[VTK_KIND[int(k)]].nodes for k in kinds])
+    bad = np.flatnonzero((np.diff(offsets) != want) | (offsets[:-1] < 0) | (offsets[1:] > len(nodes)))
+    if len(bad):
+        raise InputError(f"{path}: cell {bad[0]} has a wrong number of points for its type; write it again")
+    value, names = _regions(path, grid)
     groups: dict[str, dict[str, list[NDArray[np.int64]]]] = {}
-    value = vtk_to_numpy(region).astype(int) if region is not None else None
     for code in np.unique(kinds):
         own = np.flatnonzero(kinds == code)
         kind = VTK_KIND[int(code)]
@@ -102,9 +120,77 @@ def read_vtu(path: Path) -> RawMesh:
         if value is None:
             groups.setdefault("", {}).setdefault(kind, []).append(rows)
             continue
-        for r in np.unique(value[own]):
-            known = names is not None and 0 <= r < names.GetNumberOfValues()
-            name = str(names.GetValue(int(r))) if known else f"region_{r}"
+        for r in np.unique(value[own]).tolist():
+            name = names[r] if 0 <= r < len(names) else f"region_{r}"
             groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[own] == r])
     joined = {name: {k: np.concatenate(v) for k, v in parts.items()} for name, parts in groups.items()}
     return RawMesh(points, joined)
+
+
+def _check_counts(path: Path, data: bytes) -> None:
+    """Refuse counts that the size of the file rules out: VTK reserves memory for them, without limit, before it looks."""
+    start = data.find(b"<AppendedData")
+    head = data[: start if start >= 0 else len(data)]
+    limit = 2000 * len(data)  # zlib shrinks at most about a thousandfold
+    for key, value in re.findall(rb'(NumberOf\w+|offset)\s*=\s*"([^"]*)"', head):
+        if not value.strip().isdigit() or int(value) > limit:
+            raise InputError(
+                f"{path}: not a readable VTU file: {key.decode()} = {value.decode('utf-8', 'replace').strip()!r} cannot be "
+                "right; write it again"
+            )
+    begin = data.find(b"_", start)
+    if start < 0 or begin < 0:
+        return
+    order = ">" if b"BigEndian" in head else "<"
+    word = np.dtype(order + ("u8" if b'header_type="UInt64"' in head else "u4"))
+    count = 3 if b"compressor=" in head else 1  # blocks, size of a block, size of the last; or the size alone
+    encoded = b'encoding="base64"' in data[start:begin]
+    for offset in re.findall(rb'offset\s*=\s*"\s*(\d+)', head):
+        at, size = begin + 1 + int(offset), count * word.itemsize
+        own = data[at : at + (4 * -(-size // 3) if encoded else size)]
+        try:
+            words = np.frombuffer((base64.b64decode(own) if encoded else own)[:size], word)
+        except ValueError:
+            words = np.empty(0, word)
+        if len(words) and words[0] == 0:
+            continue  # an empty array
+        if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
+            raise InputError(
+                f"{path}: not a readable VTU file: the data at offset {int(offset)} is damaged; write it again"
+            )
+
+
+def _load(path: Path) -> Any:
+    """The grid in the file, or None where VTK finds fault with it; VTK's own messages are kept quiet."""
+    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    reader = vtkXMLUnstructuredGridReader()
+    failures: list[str] = []
+    reader.AddObserver("ErrorEvent", lambda *_: failures.append("error"))
+    shown = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()  # the parser inside the reader reports past the observer
+    try:
+        reader.SetFileName(str(path))
+        reader.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(shown)
+    grid = reader.GetOutput()
+    return None if failures or grid is None or grid.GetPoints() is None else grid
+
+
+def _regions(path: Path, grid: Any) -> tuple[NDArray[np.int64] | None, list[str]]:
+    """Region number of every cell, or None, and the names of regions 0, 1, ..."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    texts = grid.GetFieldData().GetAbstractArray("region_names")
+    if texts is not None and not texts.IsA("vtkStringArray"):
+        raise InputError(f"{path}: the field data 'region_names' must be strings; write it as a string array")
+    names = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())] if texts is not None else []
+    region = grid.GetCellData().GetAbstractArray("region")
+    if region is None:
+        return None, names
+    values = vtk_to_numpy(region) if region.IsA("vtkDataArray") else np.empty(0)
+    if values.shape != (grid.GetNumberOfCells(),) or not np.issubdtype(values.dtype, np.integer):
+        raise InputError(f"{path}: the cell data 'region' must be one integer for each cell; write it as integers")
+    return values.astype(np.int64), names

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.mesh.facets import bodies_at, facet_keys, number_keys
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 
@@ -14,19 +16,99 @@ DEGENERATE = 1e-10  # smallest Jacobian determinant over the largest extent to t
 
 
 def check_mesh(mesh: Mesh) -> None:
-    """Raise InputError for points that are not numbers, inverted or flat cells, doubled cells, surfaces that are empty,
-    doubled or not on the boundary."""
+    """Raise InputError for points that are not numbers, cells with points that do not exist, inverted or flat cells,
+    doubled cells, cells in no body or in two, surfaces that are empty, doubled or not on the boundary."""
     if not np.isfinite(mesh.points).all():
         bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
         raise InputError(f"mesh: points {_some(bad)} have coordinates that are not numbers; write the mesh again")
+    _check_indices(mesh)
+    _check_bodies(mesh)
+    _check_cells(mesh)
+    _check_doubles(mesh)
+    _check_surfaces(mesh)
+
+
+def _check_indices(mesh: Mesh) -> None:
+    for block, first in zip(mesh.blocks, mesh.starts):
+        want = CELLS[block.kind].nodes
+        if block.nodes.ndim != 2 or block.nodes.shape[1] != want:
+            raise InputError(f"mesh: {block.kind} cells need {want} nodes each, got an array {block.nodes.shape}")
+        if CELLS[block.kind].dim != mesh.dim:
+            raise InputError(f"mesh: {block.kind} cells do not fit points with {mesh.dim} coordinates")
+        bad = np.flatnonzero(((block.nodes < 0) | (block.nodes >= len(mesh.points))).any(axis=1))
+        if len(bad):
+            raise InputError(
+                f"mesh: cells {_some(first + bad)} use points that do not exist (there are {len(mesh.points)}, "
+                "counted from 0); write the mesh again"
+            )
+    for name, nodes in mesh.node_sets.items():
+        if len(nodes) and (nodes.min() < 0 or nodes.max() >= len(mesh.points)):
+            raise InputError(f"mesh: node set '{name}' has points that do not exist; there are {len(mesh.points)}")
+
+
+def _check_bodies(mesh: Mesh) -> None:
+    count = np.zeros(mesh.n_cells, dtype=np.int64)
     for name, cells in mesh.bodies.items():
         if len(cells) == 0:
             raise InputError(f"mesh: body '{name}' has no cells")
-    _check_cells(mesh)
-    _check_doubles(mesh)
+        if cells.min() < 0 or cells.max() >= mesh.n_cells:
+            raise InputError(f"mesh: body '{name}' has cells that do not exist; there are {mesh.n_cells}")
+        np.add.at(count, cells, 1)
+    bad = np.flatnonzero(count > 1)
+    if len(bad):
+        raise InputError(
+            f"mesh: cells {_some(bad)} stand more than once in bodies {_names(bodies_at(mesh, bad))}; give each cell "
+            "one body"
+        )
+    bad = np.flatnonzero(count == 0)
+    if len(bad):
+        raise InputError(f"mesh: cells {_some(bad)} belong to no body; add them to one or take them out")
+
+
+def _check_surfaces(mesh: Mesh) -> None:
+    starts = mesh.starts
+    facets = np.repeat([len(CELLS[b.kind].facets) for b in mesh.blocks], np.diff(starts))
     for name, rows in mesh.surfaces.items():
         if len(rows) == 0:
             raise InputError(f"mesh: surface '{name}' has no facets")
+        cells, local = rows.T
+        exists = (cells >= 0) & (cells < mesh.n_cells)
+        if not exists.all() or ((local < 0) | (local >= facets[cells])).any():
+            raise InputError(f"mesh: surface '{name}' has facets of cells that do not exist; write the mesh again")
+        _, where, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
+        if (count > 1).any():
+            raise InputError(
+                f"mesh: surface '{name}' lists facets of cells {_some(cells[where[count > 1]])} twice; list each once"
+            )
+    if not mesh.surfaces:
+        return
+    every = np.unique(np.concatenate(list(mesh.surfaces.values())), axis=0)
+    keys, owners = facet_keys(mesh, mesh.facets(every).node_ids)
+    (facet,) = number_keys(keys)
+    shared = np.bincount(facet)[facet] > 1
+    for name, rows in mesh.surfaces.items():
+        own = np.isin(_code(owners), _code(rows)) & shared
+        if own.any():
+            sides = bodies_at(mesh, owners[np.isin(facet, facet[own]), 0])
+            raise InputError(f"mesh: {inside(name, np.unique(facet[own]).size, sides)}")
+
+
+def _code(rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number for each (cell, local facet): no cell has more than 8 facets."""
+    return 8 * rows[:, 0] + rows[:, 1]
+
+
+def inside(name: str, count: int, sides: list[str]) -> str:
+    """What to say of a surface with ``count`` facets that have cells of the bodies ``sides`` on both sides."""
+    if len(sides) > 1:
+        return (
+            f"surface '{name}' lies between the bodies {_names(sides)}, which share the nodes of {count} of its facets and "
+            "are glued there; for contact mesh them separately, each with a surface of its own"
+        )
+    return (
+        f"surface '{name}' lies inside body {_names(sides)}: {count} of its facets have cells on both sides; take them out "
+        "of the surface"
+    )
 
 
 def _check_cells(mesh: Mesh) -> None:
@@ -36,32 +118,46 @@ def _check_cells(mesh: Mesh) -> None:
         xi, _ = stiffness_rule(block.kind)
         _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
         x = mesh.points[block.nodes]
-        size = np.ptp(x, axis=1).max(axis=1) ** mesh.dim
+        size = np.ptp(x, axis=1).max(axis=1)[:, None, None]
+        x = (x - x[:, :1]) / np.where(
+            size > 0.0, size, 1.0
+        )  # cells of size one: the test has no unit and cannot overflow
         smallest = np.full(len(x), np.inf)
         for own in derivatives:  # a point at a time keeps memory low
-            smallest = np.minimum(smallest, np.linalg.det(np.einsum("cnd,na->cda", x, own)))
-        bad = np.flatnonzero(~(smallest > DEGENERATE * size))
+            with np.errstate(all="ignore"):  # absurd coordinates give no number, which fails below
+                smallest = np.minimum(smallest, np.linalg.det(np.einsum("cnd,na->cda", x, own)))
+        bad = np.flatnonzero(~(smallest > DEGENERATE))
         if len(bad):
-            inverted = bool((smallest[bad] < -DEGENERATE * size[bad]).all())
-            names = [n for n, cells in mesh.bodies.items() if np.isin(first + bad, cells).any()]
+            inverted = bool((smallest[bad] < -DEGENERATE).all())
             cure = (
                 "their nodes run the wrong way round: reverse them"
                 if inverted and len(bad) == len(x)
                 else "improve the mesh there (finer, or straight-sided near curved boundaries)"
             )
             raise InputError(
-                f"mesh: {len(bad)} {block.kind} cells of {', '.join(map(repr, names))} are "
+                f"mesh: {len(bad)} {block.kind} cells of {_names(bodies_at(mesh, first + bad))} are "
                 f"{'inverted' if inverted else 'inverted or degenerate'}: cells {_some(first + bad)}; {cure}"
             )
 
 
 def _check_doubles(mesh: Mesh) -> None:
-    for block, first in zip(mesh.blocks, mesh.starts):
-        _, where, count = np.unique(np.sort(block.nodes, axis=1), axis=0, return_index=True, return_counts=True)
+    starts = mesh.starts
+    for kind in sorted({block.kind for block in mesh.blocks}):  # a cell read in two groups stands in two blocks
+        own = [(b.nodes, f + np.arange(len(b.nodes))) for b, f in zip(mesh.blocks, starts) if b.kind == kind]
+        nodes, cells = (np.concatenate(part) for part in zip(*own))
+        _, where, inverse, count = np.unique(
+            np.sort(nodes, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
+        )
         if (count > 1).any():
+            copies = cells[count[inverse.ravel()] > 1]
             raise InputError(
-                f"mesh: cells {_some(first + where[count > 1])} stand in the mesh twice; save each body in one group only"
+                f"mesh: cells {_some(cells[where[count > 1]])} of {_names(bodies_at(mesh, copies))} stand in the mesh "
+                "twice; put each cell in one body only"
             )
+
+
+def _names(names: list[str]) -> str:
+    return ", ".join(map(repr, names))
 
 
 def _some(numbers: object) -> str:

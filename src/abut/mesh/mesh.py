@@ -62,6 +62,18 @@ class Mesh:
         """First cell number of each block, and the total at the end."""
         return np.concatenate([[0], np.cumsum([len(block.nodes) for block in self.blocks])]).astype(np.int64)
 
+    def cells_of(self, body: str) -> list[tuple[str, NDArray[np.int32], NDArray[np.int64]]]:
+        """Cells of a body by block: (kind, connectivity (n, n_nodes), cell numbers (n,)). InputError: unknown name."""
+        if body not in self.bodies:
+            raise InputError(f"no body named {body!r} in the mesh{nearest(body, self.bodies)}")
+        cells, starts = self.bodies[body], self.starts
+        result = []
+        for block, first, last in zip(self.blocks, starts, starts[1:]):
+            own = cells[(cells >= first) & (cells < last)]
+            if len(own):
+                result.append((block.kind, block.nodes[own - first], own))
+        return result
+
     def surface(self, name: str) -> Surface:
         """The facets of a named surface, over this mesh's own points array. Raises InputError for an unknown name."""
         if name not in self.surfaces:
@@ -89,12 +101,7 @@ class Mesh:
         if name in self.node_sets:
             return self.node_sets[name]
         if name in self.bodies:
-            starts = self.starts
-            cells = self.bodies[name]
-            parts = [
-                block.nodes[cells[(cells >= first) & (cells < last)] - first].ravel()
-                for block, first, last in zip(self.blocks, starts, starts[1:])
-            ]
-            return np.unique(np.concatenate(parts)).astype(np.int64)
+            parts = [nodes.ravel() for _, nodes, _ in self.cells_of(name)]
+            return np.unique(np.concatenate(parts or [np.empty(0, np.int32)])).astype(np.int64)
         known = [*self.surfaces, *self.node_sets, *self.bodies]
         raise InputError(f"no surface, node set or body named {name!r} in the mesh{nearest(name, known)}")

@@ -14,7 +14,8 @@ from abut.errors import InputError
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
-from abut.mesh.check import check_mesh
+from abut.mesh.check import check_mesh, inside
+from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
 from abut.mesh.mesh import CellBlock, Mesh
 
 READERS = {".msh": read_gmsh, ".vtu": read_vtu}
@@ -38,6 +39,10 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
     top = max(dims.values(), default=0)
     if top < 2:
         raise InputError(f"{where}: no triangles, quadrilaterals or solid cells in the file")
+    for parts in raw.groups.values():
+        for kind, nodes in parts.items():
+            if nodes.size and (nodes.min() < 0 or nodes.max() >= len(raw.points)):
+                raise InputError(f"{where}: {kind} cells use points that the file does not have; write the mesh again")
     bodies = {n: {k: v for k, v in p.items() if dims.get(k) == top} for n, p in raw.groups.items()}
     bodies = {n: p for n, p in bodies.items() if p}
     if "" in bodies and len(bodies) > 1:
@@ -50,22 +55,34 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
     number[used] = np.arange(len(used))
     blocks = tuple(CellBlock(b.kind, number[b.nodes].astype(np.int32)) for b in blocks)
     points = raw.points[used]
+    if not np.isfinite(points).all():
+        bad = int(used[~np.isfinite(points).all(axis=1)][0])
+        raise InputError(
+            f"{where}: point {bad} (counted from 0) has a coordinate that is no number; write the mesh again"
+        )
     if top == 2:
         if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():
-            raise InputError(f"{where}: the cells are plane but not in a plane z = constant; shells are not supported")
+            raise InputError(
+                f"{where}: the highest cells are triangles or quadrilaterals, but not in a plane z = constant, and shells "
+                "are not supported; for a solid give its volume a physical group, so that its cells are saved"
+            )
         points = points[:, :2]
     bare = Mesh(np.ascontiguousarray(points), blocks, members)
-    keys, rows = _boundary_keys(bare)
     surfaces, node_sets = {}, {}
     for name, parts in raw.groups.items():
         if not name:
             continue
-        facets = [number[v[:, : CELLS[k].corners]] for k, v in parts.items() if dims.get(k) == top - 1]
+        facets = [corner_keys(number[v[:, : CELLS[k].corners]]) for k, v in parts.items() if dims.get(k) == top - 1]
         if facets:
-            surfaces[name] = _match(name, facets, keys, rows, where)
+            surfaces[name] = _match(name, np.unique(np.concatenate(facets), axis=0), bare, where)
         elif name not in members:
             nodes = np.unique(np.concatenate([number[v].ravel() for v in parts.values()]))
             node_sets[name] = nodes[nodes >= 0].astype(np.int64)
+            if not len(node_sets[name]):
+                raise InputError(
+                    f"{where}: no cell of a body uses the points of group '{name}'; take the group out, or give the body "
+                    "there a physical group"
+                )
     return Mesh(bare.points, blocks, members, surfaces, node_sets)
 
 
@@ -95,44 +112,18 @@ def _components(parts: dict[str, NDArray[np.int64]], n_points: int) -> dict[str,
     }
 
 
-def _key(corners: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Facets as sorted corner numbers, padded to four with -1."""
-    result = np.full((len(corners), 4), -1, dtype=np.int64)
-    result[:, : corners.shape[1]] = np.sort(corners, axis=1)
-    return result
-
-
-def _boundary_keys(mesh: Mesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Corner keys (n, 4) of all facets of all cells, and their rows (cell, local)."""
-    keys, rows = [], []
-    for block, first in zip(mesh.blocks, mesh.starts):
-        for local, (kind, nodes) in enumerate(CELLS[block.kind].facets):
-            keys.append(_key(block.nodes[:, nodes[: CELLS[kind].corners]].astype(np.int64)))
-            cells = first + np.arange(len(block.nodes))
-            rows.append(np.stack([cells, np.full(len(cells), local)], axis=1))
-    return np.concatenate(keys), np.concatenate(rows)
-
-
-def _match(
-    name: str, facets: list[NDArray[np.int64]], keys: NDArray[np.int64], rows: NDArray[np.int64], where: str
-) -> NDArray[np.int64]:
-    """Find the cells to which a surface's facets belong."""
-    wanted = np.unique(np.concatenate([_key(f) for f in facets]), axis=0)
-    every, inverse = np.unique(np.concatenate([wanted, keys]), axis=0, return_inverse=True)
-    inverse = inverse.ravel()
-    flag = np.zeros(len(every), dtype=bool)
-    flag[inverse[: len(wanted)]] = True
-    hit = np.flatnonzero(flag[inverse[len(wanted) :]])
-    owner = inverse[len(wanted) :][hit]
-    count = np.bincount(owner, minlength=len(every))[inverse[: len(wanted)]]
+def _match(name: str, wanted: NDArray[np.int64], mesh: Mesh, where: str) -> NDArray[np.int64]:
+    """Rows (cell, local facet) of the cells to which the facets with corner keys ``wanted`` belong."""
+    keys, rows = facet_keys(mesh, wanted[wanted >= 0])
+    own, every = number_keys(wanted, keys)
+    count = np.bincount(every, minlength=own.max() + 1)[own]
     if (count == 0).any():
         raise InputError(
             f"{where}: surface '{name}' has {int((count == 0).sum())} facets that belong to no cell of a body; give the "
             "volume next to it a physical group, or take the surface out"
         )
+    hit = np.isin(every, own)
     if (count > 1).any():
-        raise InputError(
-            f"{where}: surface '{name}' lies inside the material ({int((count > 1).sum())} facets have cells on both "
-            "sides); contact needs bodies that do not share nodes: mesh them separately"
-        )
-    return rows[hit].astype(np.int64)
+        cells = rows[np.isin(every, own[count > 1]), 0]
+        raise InputError(f"{where}: {inside(name, int((count > 1).sum()), bodies_at(mesh, cells))}")
+    return rows[hit]

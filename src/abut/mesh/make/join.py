@@ -6,18 +6,26 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from abut.errors import InputError
 from abut.mesh.mesh import CellBlock, Mesh
 
 
 def join(meshes: Mapping[str, Mesh]) -> Mesh:
-    """One mesh of all: each becomes the body ``name`` with surfaces and node sets ``name.surface``; no nodes are merged."""
+    """One mesh of all: each becomes the body ``name`` with surfaces and node sets ``name.surface``; no nodes are merged.
+
+    The bodies of a mesh with several become ``name.body``. Raises InputError for no mesh, or plane ones with solid ones.
+    """
+    dims = {name: mesh.dim for name, mesh in meshes.items()}
+    if len(set(dims.values())) != 1:
+        raise InputError(f"join: expected meshes that are all plane or all solid, got dimensions {dims}")
     points, blocks = [], []
     bodies, surfaces, node_sets = {}, {}, {}
     n_points = n_cells = 0
     for name, mesh in meshes.items():
         points.append(mesh.points)
         blocks += [CellBlock(block.kind, (block.nodes + n_points).astype(np.int32)) for block in mesh.blocks]
-        bodies[name] = np.arange(n_cells, n_cells + mesh.n_cells, dtype=np.int64)
+        for own, cells in mesh.bodies.items():
+            bodies[name if len(mesh.bodies) == 1 else f"{name}.{own}"] = cells + n_cells
         for own, rows in mesh.surfaces.items():
             surfaces[f"{name}.{own}"] = rows + np.array([n_cells, 0])
         for own, nodes in mesh.node_sets.items():

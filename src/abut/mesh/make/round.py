@@ -12,7 +12,7 @@ from abut import checks
 from abut.errors import InputError
 from abut.mesh.make.block import axis, grid
 from abut.mesh.make.grading import graded
-from abut.mesh.mesh import Mesh
+from abut.mesh.mesh import CellBlock, Mesh
 
 
 def disc(
@@ -36,9 +36,16 @@ def cylinder(
     z: Sequence[float] = (0.0, 1.0),
     cells: Sequence[int] = (8, 8),
     cell: str = "hex20",
+    inner: float | None = None,
 ) -> Mesh:
-    """A solid cylinder along z: ``cells`` = (across the diameter, along the axis). Surfaces round, bottom, top."""
+    """A cylinder along z. Surfaces round (the outside), bottom, top.
+
+    Solid: ``cells`` = (across the diameter, along the axis). With ``inner``, the radius of a bore, which is the surface
+    inner: ``cells`` = (through the wall, around, along the axis).
+    """
     radius = checks.positive(radius, "radius")
+    if inner is not None:
+        return _tube(radius, checks.positive(inner, "inner"), z, cells, cell)
     if isinstance(cells, (int, str)) or len(cells) != 2:
         raise InputError(f"cells: expected 2 whole numbers, got {cells!r}")
     across = axis((-1.0, 1.0), cells[0], "cylinder: cells across")
@@ -56,6 +63,32 @@ def cylinder(
     return replace(mesh, points=points)
 
 
+def _tube(radius: float, inner: float, z: Sequence[float], cells: Sequence[int], cell: str) -> Mesh:
+    if inner >= radius:
+        raise InputError(f"inner: expected less than the radius {radius:g}, got {inner!r}")
+    if isinstance(cells, (int, str)) or len(cells) != 3 or not isinstance(cells[1], int) or cells[1] < 4:
+        raise InputError(f"cells: expected 3 whole numbers (wall, around, along), 4 or more around, got {cells!r}")
+    lines = (
+        axis((inner, radius), cells[0], "cylinder: cells through the wall"),
+        axis((0.0, 1.0), cells[1], "cylinder: cells around"),
+        axis(z, cells[2], "cylinder: z"),
+    )
+    mesh = grid(lines, cell)
+    # The nodes at the end of the turn become those at its start. Mid nodes are bent too, so that all layers are round.
+    start, end = mesh.nodes_of("front"), mesh.nodes_of("back")
+    start, end = (n[np.lexsort(np.round(mesh.points[n][:, [0, 2]], 12).T)] for n in (start, end))
+    number = np.arange(len(mesh.points))
+    number[end] = start
+    kept = np.setdiff1d(number, end)
+    number = np.searchsorted(kept, number)
+    r, turn, height = mesh.points[kept].T
+    points = np.column_stack([r * np.cos(2 * np.pi * turn), r * np.sin(2 * np.pi * turn), height])
+    blocks = tuple(CellBlock(b.kind, number[b.nodes].astype(np.int32)) for b in mesh.blocks)
+    names = {"inner": "left", "round": "right", "bottom": "bottom", "top": "top"}
+    surfaces = {new: mesh.surfaces[old] for new, old in names.items()}
+    return Mesh(points, blocks, mesh.bodies, surfaces)
+
+
 def half_disc(
     radius: float = 1.0,
     centre: Sequence[float] = (0.0, 0.0),
@@ -63,13 +96,15 @@ def half_disc(
     cells: int = 12,
     growth: float = 1.25,
     cell: str = "quad8",
+    flat: str = "top",
 ) -> Mesh:
-    """The lower half of a disc, round side down, graded toward its lowest point.
+    """Half a disc, round side down, graded toward its lowest point; ``flat="bottom"`` turns it by 180 degrees.
 
     fine: half width of the evenly meshed zone at the lowest point (a tenth of the radius), with ``cells`` cells across
     it; cells grow by ``growth`` outward. Surfaces round, flat; node set axis (the line x = 0, for a
     symmetry support).
     """
+    checks.choice(flat, "flat", ("top", "bottom"))
     radius, along, up = _lines(radius, fine, cells, growth)
     both = np.concatenate([-along[:0:-1], along])
     mesh = grid([both, up], cell, lambda x: radius * _disc_map(x))
@@ -77,6 +112,8 @@ def half_disc(
         "round": np.concatenate([mesh.surfaces[n] for n in ("left", "bottom", "right")]),
         "flat": mesh.surfaces["top"],
     }
+    if flat == "bottom":
+        mesh = replace(mesh, points=-mesh.points)
     return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": _axis(mesh, radius)}), radius, centre)
 
 
@@ -86,6 +123,12 @@ def _lines(
     """Radius, and grid lines on [0, 1] across and [-1, 0] upward: fine near the lowest point."""
     radius = checks.positive(radius, "radius")
     fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
+    if fine >= np.sqrt(0.5) * radius:
+        raise InputError(f"fine: expected a length below 0.7 of the radius {radius:g}, got {fine!r}")
+    if isinstance(cells, bool) or not isinstance(cells, int) or cells < 1:
+        raise InputError(f"cells: expected a whole number >= 1, got {cells!r}")
+    if checks.finite(growth, "growth") <= 1.0:  # the cells would never reach the other side
+        raise InputError(f"growth: expected a number > 1, got {growth!r}")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
     along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
     return radius, along, -1.0 + graded(fine / (cells * radius), 1, 1.0, growth)
