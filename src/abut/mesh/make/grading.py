@@ -13,6 +13,10 @@ from abut.errors import InputError
 
 def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[np.float64]:
     """Grid lines from 0 to ``total``: n equal ones up to ``fine``, then growing by ``growth``."""
+    if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or n < 1:
+        raise InputError(f"cells: expected a whole number >= 1, got {n!r}")
+    if checks.finite(growth, "growth") <= 1.0:  # the cells would never reach the other side
+        raise InputError(f"growth: expected a number > 1, got {growth!r}")
     if not 0.0 < fine < total:
         raise InputError(f"fine: expected a length between 0 and {total:g}, got {fine!r}")
     step = fine / n

@@ -101,7 +101,7 @@ def half_disc(
     """Half a disc, round side down, graded toward its lowest point; ``flat="bottom"`` turns it by 180 degrees.
 
     fine: half width of the evenly meshed zone at the lowest point (a tenth of the radius), with ``cells`` cells across
-    it; cells grow by ``growth`` outward. Surfaces round, flat; node set axis (the line x = 0, for a
+    it; cells grow by ``growth`` outward and upward. Surfaces round, flat; node set axis (the line x = 0, for a
     symmetry support).
     """
     checks.choice(flat, "flat", ("top", "bottom"))
@@ -127,8 +127,6 @@ def _lines(
         raise InputError(f"fine: expected a length below 0.7 of the radius {radius:g}, got {fine!r}")
     if isinstance(cells, bool) or not isinstance(cells, int) or cells < 1:
         raise InputError(f"cells: expected a whole number >= 1, got {cells!r}")
-    if checks.finite(growth, "growth") <= 1.0:  # the cells would never reach the other side
-        raise InputError(f"growth: expected a number > 1, got {growth!r}")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
     along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
     return radius, along, -1.0 + graded(fine / (cells * radius), 1, 1.0, growth)
