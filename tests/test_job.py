@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from abut.cli import main
 
@@ -87,16 +89,49 @@ def test_contradicting_supports(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "contradict each other" in error
 
 
-def test_no_convergence_writes_the_last_state(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The blocks are pressed and the upper one tilted: more than one iteration is needed."""
-    text = TEXT.replace("z = -0.02", "z = -0.02").replace(
-        'target = "lower.top"', 'target = "lower.top"\noffset = 0.015\n[solve]\nmax_iterations = 1'
-    )
-    status, error = run(tmp_path, text, capsys)
+@pytest.mark.parametrize("law", ["complementarity", "constraint-function"])
+def test_no_convergence_writes_the_last_state_and_names_facets(
+    law: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A ball pressed on a plane starts from one point of contact: one iteration cannot be enough."""
+    ball = (EXAMPLE.parents[1] / "hertz-sphere" / "job.toml").read_text()
+    text = ball.replace("cells = 16", "cells = 3").replace("hex20", "hex8").replace("constraint-function", law)
+    status, error = run(tmp_path, text + "\n[solve]\nmax_iterations = 1", capsys)
     assert status == 3
     assert "did not converge" in error
+    assert "contact 'hertz': facets [" in error
     summary = json.loads((tmp_path / "results" / "summary.json").read_text())
     assert summary["status"] == "not converged"
+    assert summary["steps"][-1]["cycling"]["hertz"]
+    assert (tmp_path / "results" / "fields_0001.vtu").exists()
+
+
+def test_committed_schema_is_current() -> None:
+    """docs/job.schema.json is what editors point to: renew it with `abut schema --output docs/job.schema.json`."""
+    from abut.job import json_schema
+
+    committed = json.loads((EXAMPLE.parents[2] / "docs" / "job.schema.json").read_text())
+    assert committed == json_schema()
+
+
+LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not line.startswith("#")]
+VALUES = ["nan", "-1", "0", "1e400", '""', '"lower.top"', "[]", "[1, 2]", "{}", "true", "inf", "1e-320", "10000000000"]
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(line=st.sampled_from(LINES), value=st.sampled_from(VALUES), drop=st.booleans())
+def test_any_broken_line_ends_in_a_message(
+    line: int, value: str, drop: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every line dropped, every value replaced by nonsense: done, refused or unsolvable, never a bug."""
+    lines = TEXT.splitlines()
+    if drop or "=" not in lines[line]:
+        del lines[line]
+    else:
+        lines[line] = f"{lines[line].split('=')[0]}= {value}"
+    status, error = run(tmp_path, "\n".join(lines), capsys)
+    assert status in (0, 2, 3, 4), error
+    assert (status == 0) == (error == "")
 
 
 def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

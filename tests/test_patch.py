@@ -88,12 +88,23 @@ def test_other_spaces_hold_a_constant_pressure(space: str) -> None:
     assert max(errors(built)) < EXACT
 
 
-@pytest.mark.parametrize("points", [3, 5])
-def test_newton_cotes(points: int) -> None:
-    """Three closed points (Simpson) integrate linear times linear exactly on straight facets."""
-    mesh = two_blocks("tet4", "tet4", ((2, 3, 2), (3, 2, 2)))
-    rule = abut.Integration("newton-cotes", points)
-    assert max(errors(model(mesh, integration=rule))) < EXACT
+@pytest.mark.parametrize("facet", CELL_OF)
+def test_newton_cotes_is_exact_on_affine_facets(facet: str) -> None:
+    """Closed rules of n points are exact to degree n - 1 (n, when n is odd): Simpson holds linear times linear, five
+    points quadratic times quadratic, on triangles of any shape and on parallelograms."""
+    points = 3 if facet in ("tri3", "quad4") else 5
+    distort = 0.2 if facet.startswith("tri") else 0.0
+    mesh = two_blocks(CELL_OF[facet], CELL_OF[facet], ((2, 3, 2), (3, 2, 2)), distort=distort)
+    assert max(errors(model(mesh, integration=abut.Integration("newton-cotes", points)))) < EXACT
+
+
+@pytest.mark.parametrize("facet", ["quad4", "quad8", "quad9"])
+def test_newton_cotes_converges_on_distorted_facets(facet: str) -> None:
+    """The integrand is no polynomial there; it is smooth, so that two more points win at least a decade."""
+    mesh = two_blocks(CELL_OF[facet], CELL_OF[facet], ((2, 3, 2), (3, 2, 2)))
+    few, many = (max(errors(model(mesh, integration=abut.Integration("newton-cotes", n)))) for n in (7, 9))
+    assert many < 0.1 * few
+    assert many < 1e-6
 
 
 def test_too_few_points_fail() -> None:

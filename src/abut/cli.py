@@ -90,7 +90,7 @@ def _run(arguments: argparse.Namespace) -> int:
         _print_result(solution, directory)
     if not solution.converged:
         where = "; ".join(
-            f"contact '{name}': facets {facets[:8].tolist()} go in and out"
+            f"contact '{name}': facets {facets[:8].tolist()} do not settle"
             for name, facets in solution.steps[-1].cycling.items()
         )
         raise ConvergenceError(

@@ -18,6 +18,7 @@ from abut.state import Iteration
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
+UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
 TOLERANCE = 1e-8  # of the relative residuals, for laws that are not piecewise linear
 
 
@@ -111,7 +112,7 @@ class Outcome:
     unknowns: Unknowns
     iterations: tuple[Iteration, ...]
     converged: bool
-    cycling: NDArray[np.bool_]  # multipliers that go in and out for ever
+    cycling: NDArray[np.bool_]  # multipliers that go in and out for ever, or whose law stays violated
 
 
 def start(system: System) -> Unknowns:
@@ -257,12 +258,14 @@ def _finish_smooth(
     if not any(pair.smooth for pair in system.pairs):
         return Outcome(state, tuple(done), True, none)
     reference = max(np.abs(state.pressure).max(initial=0.0), 1e-300)
+    violation = np.zeros(len(state.active))
     for _ in range(limit):
         clock = time.perf_counter()
         laws = _smooth_laws(system, state, factor, reference)
         residual = system.join([law.residual for law in laws])
         scale = system.join([_weight(pair) for pair in system.pairs]) * reference
-        law_error = float(np.abs(residual / scale).max(initial=0.0))
+        violation = np.abs(residual / scale)
+        law_error = float(violation.max(initial=0.0))
         following = _advance(system, state, factor, laws)
         following = _line_search(system, state, following, factor, reference)
         active = system.join([law.active for law in laws]).astype(bool)
@@ -274,7 +277,7 @@ def _finish_smooth(
         observe(row)
         if law_error < TOLERANCE and row.residual < 1e-8:
             return Outcome(state, tuple(done), True, none)
-    return Outcome(state, tuple(done), False, none)
+    return Outcome(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0))
 
 
 def _smooth_laws(system: System, state: Unknowns, factor: float, reference: float) -> list[Linearisation]:
