@@ -62,33 +62,6 @@ double moment_error_line(const Facet<double> &f, const Rule &rule, const double 
   return error / length;
 }
 
-// Is the map from the reference domain affine: every node where the first corners put it?
-bool affine(const Facet<double> &f) {
-  double origin[3], edge[2][3], size = 0; // x = origin + sum of edges times reference coordinates
-  const double scale = f.dim == 2 || !f.triangle() ? 0.5 : 1.0;
-  for (int a = 0; a < f.dim; ++a) {
-    edge[0][a] = scale * (f.x[1][a] - f.x[0][a]);
-    edge[1][a] = f.dim == 2 ? 0.0 : scale * (f.triangle() ? f.x[2][a] - f.x[0][a] : f.x[3][a] - f.x[0][a]);
-    origin[a] = f.triangle() ? f.x[0][a] : f.x[0][a] + edge[0][a] + edge[1][a];
-    size = std::max({size, std::abs(edge[0][a]), std::abs(edge[1][a])});
-  }
-  static constexpr double line[3] = {-1, 1, 0};
-  static constexpr double triangle[6][2] = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
-  for (int i = 0; i < f.nodes; ++i)
-    for (int a = 0; a < f.dim; ++a) {
-      double x = origin[a];
-      if (f.dim == 2)
-        x += line[i] * edge[0][a];
-      else if (f.triangle())
-        x += triangle[i][0] * edge[0][a] + triangle[i][1] * edge[1][a];
-      else if (i < 8)
-        x += detail::QUAD_SIGN[i][0] * edge[0][a] + detail::QUAD_SIGN[i][1] * edge[1][a];
-      if (std::abs(x - f.x[i][a]) > 1e-13 * size)
-        return false;
-    }
-  return true;
-}
-
 int subdivisions_needed(const Facet<double> &f) {
   if (!quadratic(f.kind) || f.dim == 2)
     return 1;
@@ -112,7 +85,7 @@ void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, 
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   for (std::size_t f = 0; f < surface.facets; ++f) {
     Facet<double> facet = surface.facet(f);
-    const bool plain = affine(facet);
+    const bool plain = facet.affine;
     if (plain && affine_points[facet.kind]) {
       points.push_back(affine_points[facet.kind]);
       subdivisions.push_back(1);

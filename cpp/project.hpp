@@ -36,11 +36,12 @@ template <class T> struct Facet {
   int kind, dim, nodes;
   T x[MAX_FACET_NODES][3];
   T normals[MAX_FACET_NODES][3];
+  bool affine = false; // the map from the reference domain is affine: one Newton step inverts it
 
   void values(const T *xi, T *n, T (*d)[3]) const { shape(kind, xi, n, d); }
 
-  void at(const T *xi, T *point, T (*tangent)[3], T *normal = nullptr) const {
-    T n[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+  void at(const T *xi, T *point, T (*tangent)[3], T *normal = nullptr, T *shapes = nullptr) const {
+    T own[MAX_FACET_NODES], d[MAX_FACET_NODES][3], *n = shapes ? shapes : own;
     shape(kind, xi, n, d);
     for (int a = 0; a < dim; ++a) {
       point[a] = tangent[0][a] = tangent[1][a] = T(0);
@@ -106,6 +107,8 @@ template <class T> bool project(const Facet<T> &facet, const T *from, const T *t
     if (facet.dim == 3)
       xi[1] -= step[1];
     facet.clamp(xi, slack);
+    if (facet.affine)
+      return before[0] - step[0] == xi[0] && (facet.dim == 2 || before[1] - step[1] == xi[1]);
     const T moved = std::abs(xi[0] - before[0]) + (facet.dim == 3 ? std::abs(xi[1] - before[1]) : T(0));
     if (moved < T(1e-9)) {
       // Quadratic convergence: one more step of this size would be at rounding level.
@@ -113,6 +116,33 @@ template <class T> bool project(const Facet<T> &facet, const T *from, const T *t
     }
   }
   return false;
+}
+
+// Is the map from the reference domain affine: every node where the first corners put it?
+inline bool is_affine(const Facet<double> &f) {
+  double origin[3], edge[2][3], size = 0; // x = origin + sum of edges times reference coordinates
+  const double scale = f.dim == 2 || !f.triangle() ? 0.5 : 1.0;
+  for (int a = 0; a < f.dim; ++a) {
+    edge[0][a] = scale * (f.x[1][a] - f.x[0][a]);
+    edge[1][a] = f.dim == 2 ? 0.0 : scale * (f.triangle() ? f.x[2][a] - f.x[0][a] : f.x[3][a] - f.x[0][a]);
+    origin[a] = f.triangle() ? f.x[0][a] : f.x[0][a] + edge[0][a] + edge[1][a];
+    size = std::max({size, std::abs(edge[0][a]), std::abs(edge[1][a])});
+  }
+  static constexpr double line[3] = {-1, 1, 0};
+  static constexpr double triangle[6][2] = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
+  for (int i = 0; i < f.nodes; ++i)
+    for (int a = 0; a < f.dim; ++a) {
+      double x = origin[a];
+      if (f.dim == 2)
+        x += line[i] * edge[0][a];
+      else if (f.triangle())
+        x += triangle[i][0] * edge[0][a] + triangle[i][1] * edge[1][a];
+      else if (i < 8)
+        x += detail::QUAD_SIGN[i][0] * edge[0][a] + detail::QUAD_SIGN[i][1] * edge[1][a];
+      if (std::abs(x - f.x[i][a]) > 1e-13 * size)
+        return false;
+    }
+  return true;
 }
 
 } // namespace abut

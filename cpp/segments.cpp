@@ -14,6 +14,7 @@ Facet<double> SurfaceView::facet(std::size_t f) const {
       if (normals)
         out.normals[i][a] = normals[(9 * f + i) * dim + a];
     }
+  out.affine = is_affine(out);
   return out;
 }
 
@@ -51,7 +52,7 @@ public:
     f_ = f, functions_ = pressure_functions(c.kind, options_.degree), nodes_ = c.nodes;
     clear(&own_[0][0][0]);
   }
-  void begin_target(std::size_t t, int nodes) { t_ = t, target_nodes_ = nodes, hit_ = false, clear(&other_[0][0][0]); }
+  void begin_target(std::size_t t, int nodes) { t_ = t, target_nodes_ = nodes, hit_ = false; }
 
   // A point with weight dS, gap g, normal N from target to contactor, and the shape functions of both sides.
   void add(int kind, const double *xi, const double *nc, const double *nt, double weight, double gap,
@@ -60,7 +61,8 @@ public:
     pressure_values(kind, options_.degree, xi, nc, h);
     if (std::abs(gap) < options_.rounding)
       gap = 0;
-    hit_ = true;
+    if (!hit_)
+      hit_ = true, clear(&other_[0][0][0]);
     out_.covered[f_] += weight;
     const int width = options_.vectorial ? dim_ : 1;
     for (int k = 0; k < functions_; ++k) {
@@ -223,16 +225,16 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
   double xi[2], eta[2];
   c.facet.centre(xi), t.centre(eta);
   // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen.
-  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
+  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
   auto look = [&](Point2 p) {
     if (!c.locate(p, xi))
       return HUGE_VAL;
-    c.facet.at(xi, x, tangent, n);
+    c.facet.at(xi, x, tangent, n, nc);
     double t1[3], t2[3];
     frame(n, t1, t2);
     if (!project(t, x, t1, t2, eta))
       return HUGE_VAL;
-    t.at(eta, y, target_tangent);
+    t.at(eta, y, target_tangent, nullptr, nt);
     return (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1] + (y[2] - x[2]) * n[2];
   };
   if (!(std::abs(look(middle)) <= reach))
@@ -248,8 +250,7 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
     const double gap = look(p);
     if (gap == HUGE_VAL)
       return;
-    double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3], area[3];
-    c.facet.values(xi, nc, d), t.values(eta, nt, d);
+    double area[3];
     cross(tangent[0], tangent[1], area);
     const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, c.plane.n, 3), normal[3] = {-n[0], -n[1], -n[2]};
     sums.add(c.facet.kind, xi, nc, nt, weight * stretch, gap, normal);

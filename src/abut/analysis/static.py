@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -70,7 +71,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     )
     note(f"{n_free} free displacements, {sum(map(len, pairs))} multipliers, direct solver {solver_name()}")
     clock.mark("set-up")
-    condensed = condense(system, held.free.T @ held_by.free)
+    whole, condensed = system, condense(system, held.free.T @ held_by.free)
     if condensed is not None:
         note(f"displacements eliminated but {len(condensed.kept)}: what is left to solve is dense")
         system = condensed.system
@@ -82,13 +83,12 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         factor = number / count
         outcome = solve_step(system, state, factor, number, model.solve.max_iterations, observe)
         state = outcome.unknowns
-        displacement = state.displacement
         if condensed is not None:
-            displacement = condensed.expand(state, factor)
-        displacement = held.free @ displacement + factor * held.prescribed
+            outcome = replace(outcome, unknowns=condensed.expand(state, factor, outcome.laws))
+        displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, displacement, system, outcome, number, factor))
+        steps.append(step_result(model, full_stiffness, load, displacement, whole, outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -107,12 +108,18 @@ class System:
         )
 
 
+Laws = Callable[[System, Unknowns], Sequence[Linearisation]]
+
+
 @dataclass(frozen=True)
 class Outcome:
+    """``laws``: those of all pairs as the last iteration saw them, near any state."""
+
     unknowns: Unknowns
     iterations: tuple[Iteration, ...]
     converged: bool
     cycling: NDArray[np.bool_]  # multipliers that go in and out for ever, or whose law stays violated
+    laws: Laws
 
 
 def start(system: System) -> Unknowns:
@@ -165,11 +172,16 @@ def solve_step(
             wanted = np.where(strong, wanted, active)
         state = replace(solved, active=wanted)
     recent = np.stack(history[-6:])
-    return Outcome(state, tuple(done), False, (recent.any(axis=0) & ~recent.all(axis=0)) | changed)
+    cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | changed
+    return Outcome(replace(solved, active=active), tuple(done), False, cycling, partial(_active_laws, factor=factor))
 
 
 def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
-    laws = [
+    return _advance(system, state, factor, _active_laws(system, state, factor))
+
+
+def _active_laws(system: System, state: Unknowns, factor: float) -> list[Linearisation]:
+    return [
         linearise_active(g, p, a, pair.scale)
         for pair, g, p, a in zip(
             system.pairs,
@@ -178,7 +190,6 @@ def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
             system.split(state.active),
         )
     ]
-    return _advance(system, state, factor, laws)
 
 
 def _advance(system: System, state: Unknowns, factor: float, laws: Sequence[Linearisation]) -> Unknowns:
@@ -256,8 +267,9 @@ def _finish_smooth(
     """Pairs with the constraint function: Newton on it, from the solution of the complementarity law."""
     none = np.zeros(len(state.active), dtype=bool)
     if not any(pair.smooth for pair in system.pairs):
-        return Outcome(state, tuple(done), True, none)
+        return Outcome(state, tuple(done), True, none, partial(_active_laws, factor=factor))
     reference = max(np.abs(state.pressure).max(initial=0.0), 1e-300)
+    smooth = partial(_smooth_laws, factor=factor, reference=reference)
     violation = np.zeros(len(state.active))
     for _ in range(limit):
         clock = time.perf_counter()
@@ -276,8 +288,8 @@ def _finish_smooth(
         done.append(row)
         observe(row)
         if law_error < TOLERANCE and row.residual < 1e-8:
-            return Outcome(state, tuple(done), True, none)
-    return Outcome(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0))
+            return Outcome(state, tuple(done), True, none, smooth)
+    return Outcome(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0), smooth)
 
 
 def _smooth_laws(system: System, state: Unknowns, factor: float, reference: float) -> list[Linearisation]:

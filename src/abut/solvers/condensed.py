@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from abut.discretization.pairs import Pair
 from abut.errors import SingularModelError
 from abut.solvers import direct
-from abut.solvers.active_set import Rows, System, Unknowns
+from abut.solvers.active_set import Laws, Rows, System, Unknowns
 from abut.solvers.blocks import store_diagonal
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
+REFINEMENTS = 2
 SINGULAR = 1e-6  # relative residual above which a dense system is taken for singular
 
 
@@ -30,16 +31,30 @@ class Condensed:
     load: NDArray[np.float64]  # free displacements, then multipliers, after forward substitution
     whole: System
 
-    def expand(self, state: Unknowns, factor: float) -> NDArray[np.float64]:
-        """All free displacements, refined once."""
+    def expand(self, state: Unknowns, factor: float, laws: Laws) -> Unknowns:
+        """All free displacements. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the
+        whole system are met anew by refinement."""
         n = len(self.whole.load)
         inner = factor * self.load
         inner[self.kept], inner[n:] = state.displacement, state.pressure
-        result = self.factorization.backward(inner)[:n]
-        miss = factor * self.whole.load + self.whole.operator.T @ state.pressure - self.whole.stiffness @ result
-        inner = self.factorization.forward(np.concatenate([miss, np.zeros(len(state.pressure))]))
-        inner[self.kept], inner[n:] = 0.0, 0.0
-        return np.asarray(result + self.factorization.backward(inner)[:n])
+        state = replace(state, displacement=self.factorization.backward(inner)[:n])
+        for _ in range(REFINEMENTS):
+            p = state.pressure
+            miss = factor * self.whole.load + self.whole.operator.T @ p - self.whole.stiffness @ state.displacement
+            inner = self.factorization.forward(np.concatenate([miss, np.zeros(len(p))]))
+            linear = laws(self.whole, state)
+            opened = [law.residual for law in linear]
+            for i, shift in enumerate(self.whole.split(inner[n:])):
+                if not linear[i].at_points:  # what those see has been kept
+                    opened[i] = opened[i] + linear[i].by_gap @ shift
+            rows = replace(self.system.rows(linear), residual=np.concatenate(opened))
+            inner[self.kept], inner[n:] = self.system.step(rows, -inner[self.kept], p)
+            state = replace(
+                state,
+                displacement=state.displacement + self.factorization.backward(inner)[:n],
+                pressure=p + inner[n:],
+            )
+        return state
 
 
 @dataclass(frozen=True)
