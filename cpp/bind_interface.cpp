@@ -20,13 +20,13 @@ static RuleTable table(Tensor3<double> rules) {
 }
 
 static nb::tuple plan_facets(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes,
-                             Tensor3<double> rules, double tolerance) {
+                             Tensor3<double> rules, double tolerance, bool axisymmetric) {
   const SurfaceView surface = view(points, kinds, nodes);
   const RuleTable rule_table = table(rules);
   std::vector<std::int32_t> count, subdivisions;
   {
     nb::gil_scoped_release release;
-    plan(surface, rule_table, tolerance, count, subdivisions);
+    plan(surface, rule_table, tolerance, axisymmetric, count, subdivisions);
   }
   return nb::make_tuple(to_numpy(std::move(count)), to_numpy(std::move(subdivisions)));
 }
@@ -36,7 +36,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                double reach, double rounding) {
+                                bool axisymmetric, double reach, double rounding) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   const SurfaceView target = view(points_t, kinds_t, nodes_t);
   contactor.normals = normals.data();
@@ -46,7 +46,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
-               {degree, vectorial, keep_points, reach, rounding});
+               {degree, vectorial, keep_points, axisymmetric, reach, rounding});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -78,14 +78,14 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
 
 void bind_interface(nb::module_ &m) {
   m.def("plan_facets", &plan_facets, nb::arg("points").noconvert(), nb::arg("kinds").noconvert(),
-        nb::arg("nodes").noconvert(), nb::arg("rules").noconvert(), nb::arg("tolerance"),
+        nb::arg("nodes").noconvert(), nb::arg("rules").noconvert(), nb::arg("tolerance"), nb::arg("axisymmetric"),
         "Integration points per direction and subdivisions of every facet, so that it meets its own moments.");
   m.def("couple_surfaces", &couple_surfaces, nb::arg("points_c").noconvert(), nb::arg("kinds_c").noconvert(),
         nb::arg("nodes_c").noconvert(), nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(),
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("reach"), nb::arg("rounding"),
+        nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"),
         "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
 }
 

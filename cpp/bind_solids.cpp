@@ -2,6 +2,7 @@
 #include "bind.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace abut {
 
@@ -55,12 +56,13 @@ static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t>
 }
 
 // Adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to the values of a block pattern.
-// derivatives (q, n, dim), weights (q): the rule on the reference cell; lame (cells, 2): lambda, mu of each cell.
-template <int dim>
+// shapes (q, n), derivatives (q, n, dim), weights (q): the rule on the reference cell; lame (cells, 2): lambda, mu of
+// each cell. Axisymmetric: coordinates are (r, z), the hoop strain is u_r / r and the integral runs round the axis.
+template <int dim, bool axisymmetric>
 static void add_stiffness(const double *points, const std::int32_t *nodes, std::size_t cells, std::size_t n,
-                          const double *derivatives, const double *weights, std::size_t rule, const double *lame,
-                          const std::int64_t *indptr, const std::int32_t *indices, double *values) {
-  std::vector<double> gradient(n * dim), block(n * n * dim * dim);
+                          const double *shapes, const double *derivatives, const double *weights, std::size_t rule,
+                          const double *lame, const std::int64_t *indptr, const std::int32_t *indices, double *values) {
+  std::vector<double> gradient(n * dim), hoop(n), block(n * n * dim * dim);
   for (std::size_t c = 0; c < cells; ++c) {
     const std::int32_t *own = nodes + c * n;
     const double lambda = lame[2 * c], mu = lame[2 * c + 1];
@@ -87,7 +89,15 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
           for (int b = 0; b < 3; ++b)
             inverse[a][b] /= det;
       }
-      const double w = det * weights[q];
+      double w = det * weights[q];
+      if constexpr (axisymmetric) {
+        double r = 0;
+        for (std::size_t i = 0; i < n; ++i)
+          r += shapes[q * n + i] * points[std::size_t(own[i]) * dim];
+        for (std::size_t i = 0; i < n; ++i)
+          hoop[i] = shapes[q * n + i] / r;
+        w *= 2 * std::numbers::pi * r;
+      }
       for (std::size_t i = 0; i < n; ++i)
         for (int a = 0; a < dim; ++a) {
           double sum = 0;
@@ -107,6 +117,11 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
               out[a * dim + b] += w * (lambda * g[a] * h[b] + mu * g[b] * h[a]);
             out[a * dim + a] += w * mu * scalar;
           }
+          if constexpr (axisymmetric) {
+            out[0] += w * (lambda + 2 * mu) * hoop[i] * hoop[k];
+            for (int a = 0; a < dim; ++a)
+              out[a * dim] += w * lambda * g[a] * hoop[k], out[a] += w * lambda * hoop[i] * h[a];
+          }
         }
     }
     for (std::size_t i = 0; i < n; ++i) {
@@ -124,17 +139,20 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
   }
 }
 
-static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes, Tensor3<double> derivatives,
-                               Vector<double> weights, Matrix<double> lame, Vector<std::int64_t> indptr,
-                               Vector<std::int32_t> indices,
+static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes, Matrix<double> shapes,
+                               Tensor3<double> derivatives, Vector<double> weights, Matrix<double> lame,
+                               bool axisymmetric, Vector<std::int64_t> indptr, Vector<std::int32_t> indices,
                                nb::ndarray<double, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu> values) {
   const std::size_t dim = points.shape(1), n = nodes.shape(1);
-  if (derivatives.shape(1) != n || derivatives.shape(2) != dim || lame.shape(0) != nodes.shape(0) || lame.shape(1) != 2)
+  if (shapes.shape(1) != n || derivatives.shape(1) != n || derivatives.shape(2) != dim ||
+      lame.shape(0) != nodes.shape(0) || lame.shape(1) != 2 || (axisymmetric && dim != 2))
     throw nb::value_error("rule, cells and materials disagree");
   nb::gil_scoped_release release;
-  (dim == 2 ? add_stiffness<2> : add_stiffness<3>)(points.data(), nodes.data(), nodes.shape(0), n, derivatives.data(),
-                                                   weights.data(), weights.shape(0), lame.data(), indptr.data(),
-                                                   indices.data(), values.data());
+  (axisymmetric ? add_stiffness<2, true>
+   : dim == 2   ? add_stiffness<2, false>
+                : add_stiffness<3, false>)(points.data(), nodes.data(), nodes.shape(0), n, shapes.data(),
+                                         derivatives.data(), weights.data(), weights.shape(0), lame.data(),
+                                         indptr.data(), indices.data(), values.data());
 }
 
 void bind_solids(nb::module_ &m) {
@@ -143,8 +161,9 @@ void bind_solids(nb::module_ &m) {
   m.def("block_pattern", &block_pattern, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(), nb::arg("dim"),
         "The same pattern with dim x dim blocks.");
   m.def("assemble_stiffness", &assemble_stiffness, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(),
-        nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(), nb::arg("lame").noconvert(),
-        nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(), nb::arg("values").noconvert(),
+        nb::arg("shapes").noconvert(), nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(),
+        nb::arg("lame").noconvert(), nb::arg("axisymmetric"), nb::arg("indptr").noconvert(),
+        nb::arg("indices").noconvert(), nb::arg("values").noconvert(),
         "Adds the stiffness of all cells of one type to the values of a block pattern, in place.");
 }
 

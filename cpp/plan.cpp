@@ -37,7 +37,8 @@ double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &r
 }
 
 // The same in 2D, integrating over the chord so that the inverse map is exercised.
-double moment_error_line(const Facet<double> &f, const Rule &rule, const double (*exact)[9], double length) {
+double moment_error_line(const Facet<double> &f, const Rule &rule, const double (*exact)[9], double length,
+                         bool axisymmetric) {
   double sum[9][9] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
   normalize(chord, 2);
   double xi[2] = {0, 0};
@@ -49,7 +50,9 @@ double moment_error_line(const Facet<double> &f, const Rule &rule, const double 
       return HUGE_VAL;
     f.at(xi, x, tangent);
     f.values(xi, n, d);
-    const double speed = std::sqrt(dot(tangent[0], tangent[0], 2)) / dot(tangent[0], chord, 2);
+    double speed = std::sqrt(dot(tangent[0], tangent[0], 2)) / dot(tangent[0], chord, 2);
+    if (axisymmetric)
+      speed *= x[0];
     const double span = (f.x[1][0] - f.x[0][0]) * chord[0] + (f.x[1][1] - f.x[0][1]) * chord[1];
     for (int i = 0; i < f.nodes; ++i)
       for (int j = 0; j < f.nodes; ++j)
@@ -78,14 +81,14 @@ int subdivisions_needed(const Facet<double> &f) {
 
 } // namespace
 
-void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, std::vector<std::int32_t> &points,
-          std::vector<std::int32_t> &subdivisions) {
+void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, bool axisymmetric,
+          std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
   const int last = int(rules.count);
   const Rule fine = rules.rule(last);
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   for (std::size_t f = 0; f < surface.facets; ++f) {
     Facet<double> facet = surface.facet(f);
-    const bool plain = facet.affine;
+    const bool plain = facet.affine && !axisymmetric;
     if (plain && affine_points[facet.kind]) {
       points.push_back(affine_points[facet.kind]);
       subdivisions.push_back(1);
@@ -105,7 +108,7 @@ void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, 
         facet.at(xi, x, tangent);
         facet.values(xi, n, d);
         if (line) {
-          weight *= std::sqrt(dot(tangent[0], tangent[0], 2));
+          weight *= std::sqrt(dot(tangent[0], tangent[0], 2)) * (axisymmetric ? x[0] : 1.0);
         } else {
           cross(tangent[0], tangent[1], normal);
           weight *= std::sqrt(dot(normal, normal, 3));
@@ -119,7 +122,7 @@ void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, 
     int n = 1;
     if (line) {
       for (; n < last; ++n)
-        if (moment_error_line(facet, rules.rule(n), exact, area) < tolerance)
+        if (moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance)
           break;
     } else {
       for (int i = 0; i < facet.nodes; ++i)

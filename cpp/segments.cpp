@@ -2,6 +2,7 @@
 #include "segments.hpp"
 #include "contactor.hpp"
 #include "tree.hpp"
+#include <numbers>
 
 namespace abut {
 
@@ -164,7 +165,8 @@ double sees(const Facet<double> &c, const double *v) {
   return xi;
 }
 
-void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rule, double reach, Accumulator &sums) {
+void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rule, double reach, bool axisymmetric,
+                 Accumulator &sums) {
   const double begin = sees(c, t.x[1]), end = sees(c, t.x[0]); // the target runs the other way
   if (end - begin < 1e-14)
     return;
@@ -188,7 +190,10 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
     }
     double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
     c.values(&xi, nc, d), t.values(eta, nt, d);
-    const double length = std::sqrt(dot(tangent[0], tangent[0], 2)), normal[2] = {-n[0], -n[1]};
+    double length = std::sqrt(dot(tangent[0], tangent[0], 2));
+    if (axisymmetric)
+      length *= 2 * std::numbers::pi * x[0];
+    const double normal[2] = {-n[0], -n[1]};
     if (!counted)
       sums.count_segment(), counted = true;
     sums.add(c.kind, &xi, nc, nt, rule.wt[q] * (end - begin) * length, gap, normal);
@@ -330,7 +335,8 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     if (dim == 2) {
       for (int t : found) {
         sums.begin_target(t, targets[t].nodes);
-        couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach, sums);
+        couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach, options.axisymmetric,
+                    sums);
         sums.end_target(target.nodes + 9 * t);
       }
     } else {

@@ -35,11 +35,12 @@ struct Piece {
 
 // What is asked of the integration.
 struct Options {
-  int degree;       // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
-  bool vectorial;   // couple along the normal (dim values an entry) or componentwise (1 value an entry)
-  bool keep_points; // also return every integration point
-  double reach;     // largest distance between the surfaces, either sign
-  double rounding;  // gaps below this are rounding errors of the coordinates: none
+  int degree;        // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
+  bool vectorial;    // couple along the normal (dim values an entry) or componentwise (1 value an entry)
+  bool keep_points;  // also return every integration point
+  bool axisymmetric; // coordinates are (r, z): integrals run round the axis
+  double reach;      // largest distance between the surfaces, either sign
+  double rounding;   // gaps below this are rounding errors of the coordinates: none
 };
 
 // Entries are (row, column, values): row 9 f + k for pressure function k of contactor facet f, column a point number.
@@ -62,8 +63,8 @@ struct Coupling {
 
 // Points per direction so that int N_i N_j over every facet alone is met to `tolerance`, from `least` up; and the
 // number of subdivisions per direction that the curvature of the facet's edges asks for.
-void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, std::vector<std::int32_t> &points,
-          std::vector<std::int32_t> &subdivisions);
+void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, bool axisymmetric,
+          std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions);
 
 Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
                 const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+import numpy as np
 
 from abut import checks
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
 from abut.solids.materials import LinearElastic
 
-PLANES = ("strain", "stress")
+PLANES = ("strain", "stress", "axisymmetric")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
 LAWS = ("complementarity", "constraint-function")
 RULES = ("gauss", "newton-cotes")
@@ -175,7 +177,8 @@ class SolveOptions:
 class Model:
     """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
 
-    ``plane`` is "strain" or "stress" in 2D and left out in 3D.
+    ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
+    forces are those of the whole turn; points on the axis stay on it without a support of their own.
     """
 
     mesh: Mesh
@@ -200,10 +203,24 @@ class Model:
     def _check_plane(self) -> None:
         if self.dim == 2:
             if self.plane is None:
-                raise InputError('model.plane: a 2D mesh needs plane = "strain" or "stress"')
+                raise InputError('model.plane: a 2D mesh needs plane = "strain", "stress" or "axisymmetric"')
             checks.choice(self.plane, "model.plane", PLANES)
+            self._check_axis()
         elif self.plane is not None:
             raise InputError(f"model.plane: the mesh is 3D; leave plane out (got {self.plane!r})")
+
+    def _check_axis(self) -> None:
+        axisymmetric = self.plane == "axisymmetric"
+        object.__setattr__(self, "mesh", replace(self.mesh, axisymmetric=axisymmetric))
+        if not axisymmetric:
+            return
+        radius = self.mesh.points[:, 0]
+        bad = np.flatnonzero(radius < -1e-9 * np.ptp(self.mesh.points, axis=0).max())
+        if len(bad):
+            raise InputError(
+                f"model.plane: axisymmetric needs radii x >= 0, but {len(bad)} points lie at x < 0 (point {bad[0]} at "
+                f"{self.mesh.points[bad[0]].tolist()}); mesh one half of the section only"
+            )
 
     def _check_solids(self) -> None:
         seen: set[str] = set()

@@ -78,7 +78,16 @@ class Step:
     reactions: Mapping[str, NDArray[np.float64]]
     load: NDArray[np.float64]
     contacts: tuple[ContactResult, ...]
+    axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+
+    @property
+    def balance_error(self) -> float:
+        """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
+        model balance only together with the hoop stress and are left out."""
+        forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
+        size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / size)
 
 
 @dataclass(frozen=True)

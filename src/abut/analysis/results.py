@@ -64,6 +64,7 @@ def step_result(
                 system.split(unknowns.active),
             )
         ),
+        axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
     )
 

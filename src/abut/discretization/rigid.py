@@ -18,7 +18,7 @@ FREE = 1e-7  # resistance, relative to the strongest, below which a motion count
 
 @dataclass(frozen=True)
 class RigidModes:
-    """modes: (dim n_points, 3 or 6 per group) translations and rotations of each group of glued bodies, all of the
+    """modes: (dim n_points, 1, 3 or 6 per group) translations and rotations of each group of glued bodies, all of the
     size of a unit translation; groups: names of the bodies in each group."""
 
     modes: NDArray[np.float64]
@@ -35,7 +35,7 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
         member[i, mesh.nodes_of(name)] = True
     shared = sp.csr_matrix(member.astype(np.int32) @ member.T.astype(np.int32))
     count, label = connected_components(shared, directed=False)
-    per_group = 3 if dim == 2 else 6
+    per_group = 1 if mesh.axisymmetric else 3 if dim == 2 else 6
     modes = np.zeros((n, dim, per_group * count))
     groups = []
     for g in range(count):
@@ -45,6 +45,9 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
         x = mesh.points[nodes] - mesh.points[nodes].mean(axis=0)
         x = x / max(np.abs(x).max(), 1e-300)
         first = per_group * g
+        if mesh.axisymmetric:  # nothing but a shift along the axis leaves a ring unstrained
+            modes[nodes, 1, first] = 1.0
+            continue
         for a in range(dim):
             modes[nodes, a, first + a] = 1.0
         if dim == 2:
@@ -88,6 +91,8 @@ def describe(rigid: RigidModes, motions: NDArray[np.float64]) -> str:
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
     own = parts[group]
+    if rigid.per_group == 1:
+        return "body " + " + ".join(f"'{name}'" for name in rigid.groups[group]) + " can shift along the axis y"
     dim = 2 if rigid.per_group == 3 else 3
     shift, turn = own[:dim], own[dim:]
     bodies = " + ".join(f"'{name}'" for name in rigid.groups[group])

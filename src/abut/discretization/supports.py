@@ -14,6 +14,8 @@ from abut.interface.geometry import nodal_normals
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 
+AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
+ON_AXIS = 1e-9  # radius over the model's size that counts as none
 SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
 
 
@@ -56,7 +58,7 @@ def supports(model: Model) -> Supports:
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > 1e-9 * max(1e-30, np.abs(target).max()):
-            names = ", ".join(sorted({model.supports[i].on for i in origin[first:last]}))
+            names = ", ".join(sorted({"the axis" if i == AXIS else model.supports[i].on for i in origin[first:last]}))
             raise SingularModelError(
                 f"supports on {names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
                 "they prescribe different displacements in one direction; take one of them out"
@@ -100,7 +102,20 @@ def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
             directions.append(np.broadcast_to(vector, (len(where), dim)))
             values.append(np.full(len(where), value))
             origins.append(np.full(len(where), i))
+    on_axis = points_on_axis(model.mesh)
+    if len(on_axis):
+        nodes.append(on_axis)
+        directions.append(np.broadcast_to(np.eye(dim)[0], (len(on_axis), dim)))
+        values.append(np.zeros(len(on_axis)))
+        origins.append(np.full(len(on_axis), AXIS))
     return tuple(np.concatenate(parts) for parts in (nodes, directions, values, origins))
+
+
+def points_on_axis(mesh: Mesh) -> NDArray[np.int64]:
+    """Points of an axisymmetric mesh that cannot leave the axis."""
+    if not mesh.axisymmetric:
+        return np.empty(0, np.int64)
+    return np.flatnonzero(mesh.points[:, 0] <= ON_AXIS * np.ptp(mesh.points, axis=0).max())
 
 
 def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], NDArray[Any], float]]:

@@ -95,6 +95,8 @@ def couple(
     """
     if contactor.dim != target.dim:
         raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
+    if contactor.axisymmetric != target.axisymmetric:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}': only one of them is axisymmetric")
     for surface in (contactor, target):
         if len(surface) == 0:
             raise InputError(f"surface '{surface.name}' has no facets")
@@ -104,7 +106,8 @@ def couple(
     raw = couple_surfaces(
         contactor.points, contactor.kinds, contactor.nodes, nodal_normals(contactor),
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
-        degree, not componentwise, keep_points, default_reach(contactor, target) if reach is None else reach,
+        degree, not componentwise, keep_points, contactor.axisymmetric,
+        default_reach(contactor, target) if reach is None else reach,
         ROUNDING * max(np.abs(s.points).max() for s in (contactor, target)),
     )  # fmt: skip
     offset, n_points = _columns(contactor, target)
@@ -127,7 +130,9 @@ def couple(
 def _plan(
     surface: Surface, tables: NDArray[np.float64], points: int | str
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    order, split = plan_facets(surface.points, surface.kinds, surface.nodes, tables, MOMENT_TOLERANCE)
+    order, split = plan_facets(
+        surface.points, surface.kinds, surface.nodes, tables, MOMENT_TOLERANCE, surface.axisymmetric
+    )
     if points != "auto":
         order = np.full_like(order, int(points))
     return order, split

@@ -42,11 +42,14 @@ def _area_vectors(
     """Outward normal times area element at reference points xi, (facets, points, dim)."""
     cell = CELLS[kind]
     _, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
-    x = surface.points[surface.nodes[facets, : cell.nodes]]
-    tangents = np.einsum("pna,fnd->fpad", derivatives, x)
+    tangents = np.einsum("pna,fnd->fpad", derivatives, _nodes(surface, kind, facets))
     if surface.dim == 2:
         return np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
     return np.cross(tangents[..., 0, :], tangents[..., 1, :])
+
+
+def _nodes(surface: Surface, kind: str, facets: NDArray[np.int64]) -> NDArray[np.float64]:
+    return surface.points[surface.nodes[facets, : CELLS[kind].nodes]]
 
 
 def facet_sizes(surface: Surface) -> NDArray[np.float64]:
@@ -114,6 +117,9 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
                 r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
                 xi, weight = np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weight * r
         area = np.linalg.norm(_area_vectors(surface, kind, facets, xi), axis=2) * weight
+        if surface.axisymmetric:
+            shapes, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+            area = area * surface.around(np.einsum("pn,fnd->fpd", shapes, _nodes(surface, kind, facets)))
         if degree == 0:
             moments[facets, 0] = area.sum(axis=1)
         else:

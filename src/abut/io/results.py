@@ -72,8 +72,6 @@ def summary(solution: Solution) -> dict[str, Any]:
 
 def _step_summary(step: Step) -> dict[str, Any]:
     last = step.iterations[-1]
-    forces = [step.load, step.reaction, *(c.force for c in step.contacts), *step.reactions.values()]
-    size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
     return {
         "step": step.number,
         "factor": step.factor,
@@ -84,7 +82,7 @@ def _step_summary(step: Step) -> dict[str, Any]:
         "reaction": step.reaction.tolist(),
         "reactions": {name: force.tolist() for name, force in step.reactions.items()},
         "load": step.load.tolist(),
-        "balance_error": float(np.abs(step.load + step.reaction).max() / size),
+        "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
         "contacts": [
             {

@@ -31,7 +31,7 @@ class MeshTable(Table):
 
 
 class ModelTable(Table):
-    plane: Literal["strain", "stress"] | None = None
+    plane: Literal["strain", "stress", "axisymmetric"] | None = None
 
 
 class MaterialTable(Table):

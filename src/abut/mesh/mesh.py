@@ -31,6 +31,7 @@ class Mesh:
     bodies:    name -> (n,) int64 cell numbers, sorted.
     surfaces:  name -> (n, 2) int64 rows (cell number, local facet number).
     node_sets: name -> (n,) int64 point numbers, sorted.
+    axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
     """
 
     points: NDArray[np.float64]
@@ -38,6 +39,7 @@ class Mesh:
     bodies: Mapping[str, NDArray[np.int64]]
     surfaces: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     node_sets: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
+    axisymmetric: bool = False
 
     @staticmethod
     def read(path: str | Path) -> Mesh:
@@ -92,7 +94,7 @@ class Mesh:
                 pick = np.flatnonzero(inside & (local == number))
                 kinds[pick] = CELLS[kind].code
                 nodes[pick, : len(own)] = block.nodes[cells[pick] - first][:, own]
-        return Surface(self.points, kinds, nodes, cells.copy(), local.copy(), name)
+        return Surface(self.points, kinds, nodes, cells.copy(), local.copy(), name, self.axisymmetric)
 
     def nodes_of(self, name: str) -> NDArray[np.int64]:
         """Sorted point numbers of a surface, node set or body. Raises InputError for an unknown name."""

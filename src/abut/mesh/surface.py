@@ -16,6 +16,7 @@ class Surface:
     kinds:  (n_facets,) uint8 codes of the facet types (``abut.cells``): line2 line3 / tri3 tri6 quad4 quad8 quad9.
     nodes:  (n_facets, 9) int32 indices into ``points``, padded with -1; order as in ``abut.cells``, so that the
             normal points out of the body.
+    axisymmetric: the coordinates are (r, z), and integrals run round the axis.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 
@@ -25,10 +26,15 @@ class Surface:
     cells: NDArray[np.int64]
     local: NDArray[np.int64]
     name: str = "surface"
+    axisymmetric: bool = False
 
     @property
     def dim(self) -> int:
         return int(self.points.shape[1])
+
+    def around(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What an integral over facets is multiplied by at points (..., dim): 2 pi r round an axis, else 1."""
+        return around(points, self.axisymmetric)
 
     def __len__(self) -> int:
         return int(self.kinds.shape[0])
@@ -37,3 +43,8 @@ class Surface:
     def node_ids(self) -> NDArray[np.int64]:
         """Sorted indices of the points that the facets use."""
         return np.unique(self.nodes[self.nodes >= 0]).astype(np.int64)
+
+
+def around(points: NDArray[np.float64], axisymmetric: bool) -> NDArray[np.float64]:
+    """2 pi r at points (..., dim) in coordinates (r, z), else 1."""
+    return 2.0 * np.pi * points[..., 0] if axisymmetric else np.ones(points.shape[:-1])

@@ -13,6 +13,7 @@ from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_fu
 from abut.cells import CELLS
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule, stress_rule
+from abut.mesh.surface import around
 from abut.solids.materials import LinearElastic
 
 CHUNK = 4096  # cells treated at once where NumPy does the work
@@ -37,7 +38,7 @@ def _by_cell(mesh: Mesh, values: Mapping[str, tuple[float, ...]]) -> NDArray[np.
 
 def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | None = None) -> Any:
     """Stiffness matrix of all bodies, (dim n_points, dim n_points) CSR with sorted rows; force per length (2D: per
-    unit thickness)."""
+    unit thickness; axisymmetric: all round)."""
     points = np.ascontiguousarray(mesh.points)
     dim = points.shape[1]
     counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])
@@ -49,11 +50,11 @@ def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | N
     first = 0
     for block in mesh.blocks:
         xi, weights = stiffness_rule(block.kind)
-        _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
+        shapes, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
         last = first + len(block.nodes)
         assemble_stiffness(
-            points, np.ascontiguousarray(block.nodes, dtype=np.int32), derivatives, weights,
-            np.ascontiguousarray(constants[first:last]), node_start, node_columns, values,
+            points, np.ascontiguousarray(block.nodes, dtype=np.int32), shapes, derivatives, weights,
+            np.ascontiguousarray(constants[first:last]), mesh.axisymmetric, node_start, node_columns, values,
         )  # fmt: skip
         first = last
     indptr, indices = block_pattern(node_start, node_columns, dim)
@@ -94,8 +95,12 @@ def thermal_load(
         return load.ravel()
     for kind, nodes, cells in _chunks(mesh):
         xi, weights = stiffness_rule(kind)
-        _, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         gradients, det = _gradients(mesh.points, nodes, derivatives)
+        at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
+        if mesh.axisymmetric:
+            gradients[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
+        det = det * around(at, mesh.axisymmetric)
         np.add.at(load, nodes, np.einsum("c,cq,q,cqna->cna", pressure[cells, 0], det, weights, gradients))
     return load.ravel()
 
@@ -117,6 +122,7 @@ def gravity_load(mesh: Mesh, densities: Mapping[str, float], acceleration: NDArr
         xi, weights = stiffness_rule(kind)
         values, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         _, det = _gradients(mesh.points, nodes, derivatives)
+        det = det * around(np.einsum("qn,cnd->cqd", values, mesh.points[nodes]), mesh.axisymmetric)
         np.add.at(load, nodes, np.einsum("c,cq,q,qn,a->cna", density[cells], det, weights, values, acceleration))
     return load.ravel()
 
@@ -129,7 +135,8 @@ def nodal_stress(
     plane: str | None = None,
 ) -> NDArray[np.float64]:
     """Stress xx yy zz xy yz zx at the points, (n_points, 6): taken at the reduced integration points, carried linearly
-    to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average)."""
+    to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average).
+    Axisymmetric: xx radial, yy axial, zz hoop."""
     dim = mesh.points.shape[1]
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     constants = _by_cell(
@@ -138,12 +145,15 @@ def nodal_stress(
     )
     for kind, nodes, cells in _chunks(mesh):
         xi, _ = stress_rule(kind)
-        _, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         gradients, _ = _gradients(mesh.points, nodes, derivatives)
         slope = np.einsum("cqnb,cna->cqab", gradients, displacement[nodes])
         strain = np.zeros((*slope.shape[:2], 3, 3))
         strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
         lambda_, mu, poisson, thermal = (v[:, None] for v in constants[cells].T)
+        if plane == "axisymmetric":
+            radius = mesh.points[nodes][..., 0] @ shapes.T
+            strain[..., 2, 2] = displacement[nodes][..., 0] @ shapes.T / radius
         if plane == "stress":
             inplane = strain[..., 0, 0] + strain[..., 1, 1] - 2.0 * thermal
             strain[..., 2, 2] = thermal - poisson / (1.0 - poisson) * inplane

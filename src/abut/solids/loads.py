@@ -27,6 +27,7 @@ def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: fl
             force = -pressure * normal
         else:
             force = np.linalg.norm(normal, axis=2)[..., None] * traction
+        force = force * surface.around(np.einsum("qn,fnd->fqd", values, surface.points[nodes]))[..., None]
         np.add.at(load, nodes, np.einsum("q,qn,fqd->fnd", weights, values, force))
     return load
 
@@ -42,7 +43,7 @@ def traction_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.f
 
 
 def surface_area(surface: Surface) -> float:
-    """Area (2D: length) of a surface."""
+    """Area (2D: length; axisymmetric: all round) of a surface."""
     first = np.zeros(surface.dim)
     first[0] = 1.0
     return float(_spread(surface, first, 0.0)[:, 0].sum())

@@ -87,6 +87,9 @@ class System:
 
     def rows(self, laws: Sequence[Linearisation]) -> Rows:
         """The laws of all pairs in terms of the unknowns."""
+        if not self.pairs:
+            none = np.zeros(0)
+            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), True)
         by_displacement, by_compliance, first = [], [], 0
         for pair, law in zip(self.pairs, laws):
             here = slice(first, first + len(pair))

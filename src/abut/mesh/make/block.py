@@ -94,7 +94,7 @@ def rectangle(
     x, y: [low, high], or more than two values: the grid lines themselves. Surfaces left right bottom top.
     fine: zones like {x = [-1, 1]} that get the cells of that axis; outside they grow by ``growth``.
     """
-    return grid(_axes((x, y), cells, fine, growth, "rectangle"), cell)
+    return grid(axes((x, y), cells, fine, growth, "rectangle"), cell)
 
 
 def box(
@@ -111,16 +111,17 @@ def box(
     x, y, z: [low, high], or more than two values: the grid lines themselves. Surfaces left right (x), front back (y),
     bottom top (z). fine, growth: as for ``rectangle``.
     """
-    return grid(_axes((x, y, z), cells, fine, growth, "box"), cell)
+    return grid(axes((x, y, z), cells, fine, growth, "box"), cell)
 
 
-def _axes(
+def axes(
     limits: Sequence[Sequence[float]],
     cells: Sequence[int],
     fine: Mapping[str, Sequence[float]] | None,
     growth: float,
     what: str,
 ) -> list[NDArray[np.float64]]:
+    """Grid lines of every axis from limits (or the lines themselves), cell counts and fine zones; ``what`` for errors."""
     if isinstance(cells, (int, str)) or len(cells) != len(limits):
         raise InputError(f"{what}: cells: expected {len(limits)} whole numbers, got {cells!r}")
     if checks.finite(growth, f"{what}: growth") <= 1.0:

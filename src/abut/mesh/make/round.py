@@ -117,6 +117,26 @@ def half_disc(
     return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": _axis(mesh, radius)}), radius, centre)
 
 
+def quarter_disc(
+    radius: float = 1.0,
+    centre: Sequence[float] = (0.0, 0.0),
+    fine: float | None = None,
+    cells: int = 12,
+    growth: float = 1.25,
+    cell: str = "quad8",
+) -> Mesh:
+    """The right half of a ``half_disc``: the section of a ball for axisymmetric models. Surfaces round, flat (top), left
+    (on the line x = 0)."""
+    radius, along, up = _lines(radius, fine, cells, growth)
+    mesh = grid([along, up], cell, lambda x: radius * _disc_map(x))
+    surfaces = {
+        "round": np.concatenate([mesh.surfaces[n] for n in ("bottom", "right")]),
+        "flat": mesh.surfaces["top"],
+        "left": mesh.surfaces["left"],
+    }
+    return _finish(replace(mesh, surfaces=surfaces), radius, centre)
+
+
 def _lines(
     radius: float, fine: float | None, cells: int, growth: float
 ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
