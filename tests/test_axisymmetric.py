@@ -50,12 +50,12 @@ def ring(cells: int, **options: object) -> abut.Solution:
 
 def test_thick_ring_under_inner_pressure() -> None:
     """Lame: radial -p (b^2/r^2 - 1)/(b^2 - 1), hoop p (b^2/r^2 + 1)/(b^2 - 1) for radii 1 and b = 2. Quadratic cells
-    converge with h^3 or better at the nodes: 1e-3 at 16 cells through the wall."""
+    are off by h^2/12 times the second derivative (8 at most) where stress is extrapolated to nodes: 2.6e-3 at h = 1/16."""
     solution = ring(16, loads=[abut.Pressure("ring.left", 1.0)], supports=[])
     r = solution.model.mesh.points[:, 0]
     stress = solution.steps[-1].stress
-    assert stress[:, 0] == pytest.approx(-(4 / r**2 - 1) / 3, abs=2e-3)
-    assert stress[:, 2] == pytest.approx((4 / r**2 + 1) / 3, abs=2e-3)
+    assert stress[:, 0] == pytest.approx(-(4 / r**2 - 1) / 3, abs=3e-3)
+    assert stress[:, 2] == pytest.approx((4 / r**2 + 1) / 3, abs=3e-3)
     radial = (1 / 3) * ((1 - 0.3) * r + (1 + 0.3) * 4 / r)  # plane stress
     assert solution.displacement[:, 0] == pytest.approx(radial, rel=1e-5)
 

@@ -16,6 +16,7 @@ from abut.solids.materials import LinearElastic
 PLANES = ("strain", "stress", "axisymmetric")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
 LAWS = ("complementarity", "constraint-function")
+METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
 LINEAR = ("auto", "direct")
 
@@ -132,7 +133,7 @@ class Integration:
 class Contact:
     """A contact pair. The contactor carries the pressure; ``offset`` is added to the geometric gap (negative:
     interference), in the mesh's length unit; ``epsilon`` smooths the constraint function (dimensionless, relative to
-    the square of a reference pressure)."""
+    the square of a reference pressure); ``method``: the node-to-segment ones are there for comparison only."""
 
     contactor: str
     target: str
@@ -141,6 +142,7 @@ class Contact:
     pressure: str = "auto"
     law: str = "complementarity"
     epsilon: float = 1e-12
+    method: str = "segment-to-segment"
     integration: Integration = field(default_factory=Integration)
     offset: float = 0.0
 
@@ -151,6 +153,12 @@ class Contact:
         checks.choice(self.kind, f"{where}: kind", ("contact", "tied"))
         checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
         checks.choice(self.law, f"{where}: law", LAWS)
+        checks.choice(self.method, f"{where}: method", METHODS)
+        if self.method != METHODS[0] and (self.kind, self.law, self.pressure) != ("contact", LAWS[0], "auto"):
+            raise InputError(
+                f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
+                "complementarity and pressure auto; leave them out, or use segment-to-segment"
+            )
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")
         if self.contactor == self.target:

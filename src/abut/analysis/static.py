@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import external_load
 from abut.analysis.results import step_result
-from abut.discretization.pairs import Pair, pair
+from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
 from abut.errors import SingularModelError
 from abut.model import Model
@@ -52,24 +52,24 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     full_stiffness = stiffness(model.mesh, materials, model.plane)
     load = external_load(model)
     clock.mark("assembly")
-    pairs = [pair(model, contact, held) for contact in model.contacts]
-    _describe(pairs, note)
+    every = pairs(model, held)
+    _describe(every, note)
     clock.mark("interface")
-    held_by: Holding = holding(model.mesh, held, pairs)
+    held_by: Holding = holding(model.mesh, held, every)
     held_by.check()
     reduced = (held.free.T @ full_stiffness @ held.free).tocsr()
     n_free = reduced.shape[0]
-    operator = sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
+    operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
     system = System(
         stiffness=reduced,
         load=held.free.T @ (load - full_stiffness @ held.prescribed),
-        pairs=pairs,
+        pairs=every,
         operator=operator,
         complete=held_by.complete,
         freed=held_by.freed,
         step=partial(newton_step, reduced, operator),
     )
-    note(f"{n_free} free displacements, {sum(map(len, pairs))} multipliers, direct solver {solver_name()}")
+    note(f"{n_free} free displacements, {sum(map(len, every))} multipliers, direct solver {solver_name()}")
     clock.mark("set-up")
     whole, condensed = system, condense(system, held.free.T @ held_by.free)
     if condensed is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from abut.discretization.supports import Supports
 from abut.errors import InputError
 from abut.interface.coupling import Coupling, couple
 from abut.interface.geometry import facet_sizes, nodal_normals
+from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
@@ -66,6 +67,11 @@ class Pair:
         return self.contact.kind == "tied"
 
     @property
+    def redundant(self) -> bool:
+        """Whether constraints may repeat each other, so that the pressure is one of many."""
+        return self.contact.method == "node-to-segment-two-pass"
+
+    @property
     def smooth(self) -> bool:
         return not self.tied and self.contact.law == "constraint-function"
 
@@ -73,27 +79,26 @@ class Pair:
         return int(self.operator.shape[0])
 
 
+def pairs(model: Model, held: Supports) -> list[Pair]:
+    """All contact pairs of a model. Two-pass node-to-segment makes two of one contact, each side as contactor once.
+
+    Raises InputError where two surfaces do not face each other."""
+    result = []
+    for contact in model.contacts:
+        result.append(pair(model, contact, held))
+        if contact.method == "node-to-segment-two-pass":
+            back = replace(
+                contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
+            )
+            result.append(pair(model, back, held))
+    return result
+
+
 def pair(model: Model, contact: Contact, held: Supports) -> Pair:
     """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
     contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
-    name, degree = resolve(contact.pressure, contactor)
     tied = contact.kind == "tied"
-    coupling = couple(
-        contactor,
-        target,
-        degree,
-        rule=contact.integration.rule,
-        points=contact.integration.points,
-        componentwise=tied,
-        keep_points=contact.law == "constraint-function" and not tied,
-        reach=_reach(model, contactor, target),
-    )
-    if not coupling.segments.any():
-        raise InputError(
-            f"contact '{contact.name}': no facet of '{contact.contactor}' faces '{contact.target}' within reach; check the "
-            "names, that both surfaces' normals point out of their bodies, and the distance between them"
-        )
-    space = pressure_space(name, contactor, coupling)
+    coupling, space = _couple(contact, contactor, target, _reach(model, contactor, target))
     sizes = facet_sizes(contactor)
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
@@ -114,6 +119,33 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         points=_points(contact, coupling, space, held, modulus / sizes),
     )  # fmt: skip
+
+
+def _couple(contact: Contact, contactor: Surface, target: Surface, reach: float) -> tuple[Coupling, PressureSpace]:
+    """The coupling by the contact's method, and its pressure space."""
+    space: PressureSpace | None
+    if contact.method != "segment-to-segment":
+        coupling, space = node_to_segment(contactor, target, reach)
+    else:
+        name, degree = resolve(contact.pressure, contactor)
+        tied = contact.kind == "tied"
+        coupling = couple(
+            contactor,
+            target,
+            degree,
+            rule=contact.integration.rule,
+            points=contact.integration.points,
+            componentwise=tied,
+            keep_points=contact.law == "constraint-function" and not tied,
+            reach=reach,
+        )
+        space = pressure_space(name, contactor, coupling) if coupling.segments.any() else None
+    if space is None or not coupling.segments.any():
+        raise InputError(
+            f"contact '{contact.name}': no facet of '{contact.contactor}' faces '{contact.target}' within reach; check the "
+            "names, that both surfaces' normals point out of their bodies, and the distance between them"
+        )
+    return coupling, space
 
 
 def _points(

@@ -33,6 +33,7 @@ class PressureSpace:
     weight:   (n,) int of each basis function over the covered part, > 0.
     node:     (n,) point at which the function sits, -1 for functions that belong to a facet alone.
     removed:  how many multipliers were removed or made to follow a neighbour.
+    merges:   multipliers that go make a neighbour follow; else they vanish.
     """
 
     name: str
@@ -41,6 +42,7 @@ class PressureSpace:
     weight: NDArray[np.float64]
     node: NDArray[np.int64]
     removed: int = 0
+    merges: bool = True
 
     def __len__(self) -> int:
         return int(self.transfer.shape[1])
@@ -61,7 +63,7 @@ def resolve(name: str, contactor: Surface) -> tuple[str, int]:
 
 def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> PressureSpace:
     """Build the space ``name`` (as from ``resolve``) on the covered part of the contactor."""
-    row, node = _functions(contactor, coupling.degree)
+    row, node = facet_functions(contactor, coupling.degree)
     rows = 9 * len(contactor)
     if name in ("P1", "P2", "dual"):
         ids, column = np.unique(node, return_inverse=True)
@@ -72,7 +74,7 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> Pressur
     if name == "dual":
         transfer = _dual(contactor, coupling) @ gather
     elif coupling.degree == 2:
-        transfer = _non_negative(contactor) @ gather
+        transfer = non_negative(contactor) @ gather
     else:
         transfer = gather
     transfer = transfer.tocsr()
@@ -89,7 +91,7 @@ def reduce(
     n = len(space)
     if keep.all():
         return space
-    exists = np.ones(n, dtype=bool) if exists is None else exists
+    exists = np.full(n, space.merges) if exists is None else exists
     kept = np.flatnonzero(keep)
     position = np.full(n, -1)
     position[kept] = np.arange(len(kept))
@@ -118,7 +120,7 @@ def reduce(
     )
 
 
-def _functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def facet_functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Row and node of every facet-wise pressure function."""
     count = np.zeros(len(contactor), dtype=np.int64)
     for kind, facets in by_kind(contactor):
@@ -170,7 +172,8 @@ def non_negative_block(kind: str, c: float) -> NDArray[np.float64]:
     return block
 
 
-def _non_negative(contactor: Surface) -> Any:
+def non_negative(contactor: Surface) -> Any:
+    """Sparse (9 n, 9 n): facet-wise nodal values of the non-negative basis of every facet's quadratic functions."""
     kinds = [kind for kind, _ in by_kind(contactor)]
     c = 0.125 if "quad8" in kinds else 0.25  # one value on the whole surface keeps edges between types continuous
     return _block_diagonal(contactor, {kind: non_negative_block(kind, c) for kind in kinds})

@@ -93,7 +93,7 @@ def _model(file: JobFile, folder: Path) -> Model:
         loads=[_load(load) for load in file.loads],
         contacts=[
             Contact(
-                **{k: v for k, v in c.model_dump().items() if k not in ("method", "integration")},
+                **{k: v for k, v in c.model_dump().items() if k != "integration"},
                 integration=Integration(**c.integration.model_dump()),
             )
             for c in file.contacts

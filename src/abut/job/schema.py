@@ -96,7 +96,7 @@ class ContactTable(Table):
     pressure: Literal["auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual"] = "auto"
     law: Literal["complementarity", "constraint-function"] = "complementarity"
     epsilon: Number = 1e-12
-    method: Literal["segment-to-segment"] = "segment-to-segment"
+    method: Literal["segment-to-segment", "node-to-segment", "node-to-segment-two-pass"] = "segment-to-segment"
     integration: IntegrationTable = IntegrationTable()
     offset: Number = 0.0
 

@@ -18,6 +18,7 @@ from abut.solvers.blocks import store_diagonal
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
+REPEATED = 1e-11  # singular value over the largest below which rows count as repeating each other
 SINGULAR = 1e-6  # relative residual above which a dense system is taken for singular
 
 
@@ -62,13 +63,15 @@ class Flexibility:
     """What the interface gives way under the multipliers.
 
     factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
-    the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures.
+    the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures;
+    redundant: constraints may repeat each other, then the smallest pressure that serves is taken.
     """
 
     factor: tuple[NDArray[np.float64], bool]
     motions: NDArray[np.float64]
     response: NDArray[np.float64]
     operator: NDArray[np.float64]
+    redundant: bool
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64]
@@ -88,7 +91,7 @@ class Flexibility:
         matrix[:n, n:] = law @ self.motions
         matrix[n:, :n] = (self.operator[free] @ self.motions).T
         rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -self.motions.T @ push])
-        solved = _solve_dense(matrix, rhs)
+        solved = _solve_dense(matrix, rhs, self.redundant)
         dp[free] = solved[:n]
         return du + self.response[:, free] @ solved[:n] + self.motions @ solved[n:], dp
 
@@ -112,7 +115,9 @@ def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
     n_u = len(kept)
     schur = factorization.schur
     stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]
-    flexibility = _flexibility(stiffness, motions[kept], operator, float(np.median(system.stiffness.diagonal())))
+    redundant = any(pair.redundant for pair in system.pairs)
+    unit = float(np.median(system.stiffness.diagonal()))
+    flexibility = _flexibility(stiffness, motions[kept], operator, unit, redundant)
     if flexibility is None:
         return None
     small = replace(
@@ -138,14 +143,18 @@ def _kept(system: System, motions: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _flexibility(
-    stiffness: NDArray[np.float64], motions: NDArray[np.float64], operator: NDArray[np.float64], unit: float
+    stiffness: NDArray[np.float64],
+    motions: NDArray[np.float64],
+    operator: NDArray[np.float64],
+    unit: float,
+    redundant: bool,
 ) -> Flexibility | None:
     basis = np.linalg.svd(motions, full_matrices=False)[0] if motions.size else motions
     try:
         factor = scipy.linalg.cho_factor(stiffness + unit * (basis @ basis.T), lower=True)
     except np.linalg.LinAlgError:
         return None  # a zero-energy motion that is not rigid, as of bodies joined in a hinge
-    return Flexibility(factor, basis, scipy.linalg.cho_solve(factor, operator.T), operator)
+    return Flexibility(factor, basis, scipy.linalg.cho_solve(factor, operator.T), operator, redundant)
 
 
 def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:
@@ -154,8 +163,8 @@ def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:
     return replace(pair, points=replace(pair.points, operator=pair.points.operator[:, kept].tocsr()))
 
 
-def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """LU with equilibrated columns and rows, refined once."""
+def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant: bool) -> NDArray[np.float64]:
+    """LU with equilibrated columns and rows, refined once; least squares where rows may repeat each other."""
     if not len(rhs):
         return rhs
     columns = np.abs(matrix).max(axis=0)
@@ -165,6 +174,8 @@ def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64]) -> NDArr
     scaled, b = matrix / columns / rows[:, None], rhs / rows
     if (np.abs(scaled).max(axis=0) == 0.0).any():
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
+    if redundant:
+        return np.asarray(np.linalg.lstsq(scaled, b, rcond=REPEATED)[0] / columns)
     with np.errstate(all="ignore"):
         factor = scipy.linalg.lu_factor(scaled, check_finite=False)
         x = scipy.linalg.lu_solve(factor, b, check_finite=False)
