@@ -87,6 +87,16 @@ def stiffness_rule(kind: str) -> Rule:
     }[kind]()
 
 
+def product_rule(kind: str) -> Rule:
+    """Exact for products of two shape functions on cells with an affine map."""
+    return {
+        "tri3": lambda: _triangle(3),
+        "tet4": lambda: _tetrahedron(4),
+        "tet10": lambda: _tetrahedron(5),
+        "wedge6": lambda: _wedge(3, 2),
+    }.get(kind, lambda: stiffness_rule(kind))()
+
+
 def stress_rule(kind: str) -> Rule:
     """The reduced points at which stresses converge fastest."""
     return {

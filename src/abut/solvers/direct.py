@@ -6,6 +6,7 @@ import functools
 import importlib.metadata
 import os
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 
-SYMMETRIC_INDEFINITE, UNSYMMETRIC = -2, 11
+POSITIVE_DEFINITE, SYMMETRIC_INDEFINITE, UNSYMMETRIC = 2, -2, 11
 ACCURATE = 1e-10  # relative residual that a sound factorisation stays below
 SINGULAR = 1e-6  # relative residual above which the matrix is taken for singular
 
@@ -70,6 +71,31 @@ def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[
     return size * x
 
 
+def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Factorise a symmetric matrix (CSR, whole) once; returns the solution for one right-hand side or several.
+
+    Raises SingularModelError where the matrix is singular."""
+    module = _pardiso()
+    failures = (RuntimeError,) if module is None else (RuntimeError, module.pardiso_wrapper.PyPardisoError)
+    try:
+        if module is None:
+            return spla.splu(matrix.tocsc()).solve
+        solver = module.PyPardisoSolver(mtype=POSITIVE_DEFINITE if definite else SYMMETRIC_INDEFINITE)
+        for key, value in {1: 1, 2: 2, 8: 2, 10: 8, 11: int(not definite), 13: int(not definite), 21: 1}.items():
+            solver.iparm[key - 1] = value
+        upper = sp.triu(matrix, format="csr")
+        upper.sort_indices()
+        solver.factorize(upper)
+    except failures as error:
+        raise SingularModelError(f"the direct solver gave up ({error}); check supports and contacts") from None
+
+    def solve(b: NDArray[np.float64]) -> NDArray[np.float64]:
+        solver.set_phase(33)
+        return np.asarray(solver._call_pardiso(upper, np.asfortranarray(b)))
+
+    return solve
+
+
 class PartialFactorization:
     """A symmetric matrix with all but the ``kept`` unknowns eliminated (PARDISO's Schur complement).
 
@@ -111,7 +137,7 @@ def partial_factorization(matrix: Any, kept: NDArray[np.int64]) -> PartialFactor
     matrix.sort_indices()
     try:
         result = PartialFactorization(matrix, kept)
-    except module.PyPardisoError:
+    except module.pardiso_wrapper.PyPardisoError:
         return None
     return result if result.sound else None
 
@@ -141,7 +167,7 @@ def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> ND
         solver.iparm[key - 1] = value
     try:
         x: NDArray[np.float64] = solver.solve(matrix, rhs)
-    except module.PyPardisoError as error:
+    except module.pardiso_wrapper.PyPardisoError as error:
         raise SingularModelError(f"the direct solver gave up ({error}); check supports, contacts and units") from None
     finally:
         solver.free_memory(everything=True)

@@ -1,0 +1,94 @@
+"""Norms of displacement and pressure for the inf-sup test: H1 of the bodies, H^-1/2 of the contactor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+from scipy.special import ellipj, ellipk
+
+from abut._core import shape_functions
+from abut.cells import CELLS
+from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import product_rule
+from abut.mesh.surface import Surface, around
+from abut.verify.trace import TraceSpace
+
+ACCURACY = 1e-5  # of the rational approximation of the fractional power
+CHUNK = 4096
+
+
+def h1_matrix(mesh: Mesh) -> Any:
+    """int u v + grad u . grad v of scalar functions over all cells, (n_points, n_points) CSR."""
+    n = len(mesh.points)
+    total = sp.csr_matrix((n, n))
+    for block in mesh.blocks:
+        xi, weights = product_rule(block.kind)
+        shapes, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
+        for first in range(0, len(block.nodes), CHUNK):
+            nodes = block.nodes[first : first + CHUNK]
+            x = mesh.points[nodes]
+            jacobian = np.einsum("cna,qnb->cqab", x, derivatives)
+            gradients = np.einsum("qnb,cqba->cqna", derivatives, np.linalg.inv(jacobian))
+            measure = np.linalg.det(jacobian) * weights
+            measure = measure * around(np.einsum("qn,cnd->cqd", shapes, x), mesh.axisymmetric)
+            values = np.einsum("cq,qn,qm->cnm", measure, shapes, shapes)
+            weighted = gradients * measure[..., None, None]
+            values += np.einsum("cqna,cqma->cnm", weighted, gradients, optimize=True)
+            rows = np.repeat(nodes, nodes.shape[1], axis=1).ravel()
+            columns = np.tile(nodes, (1, nodes.shape[1])).ravel()
+            total = total + sp.csr_matrix((values.ravel(), (rows, columns)), shape=(n, n))
+    return total
+
+
+@dataclass(frozen=True)
+class TraceNorm:
+    """q^T T q = c^T V Lambda^-1/2 V^T c with c = C q and (M + L) V = M V Lambda on a fine continuous space of the surface:
+    the norm of H^-1/2, dual to the trace space between L2 and H1. The power is a sum of resolvents (Hale, Higham and
+    Trefethen 2008, method 3), so that nothing dense is needed."""
+
+    moments: Any  # C (n_trace, n), sparse
+    solves: tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], ...]
+    weights: NDArray[np.float64]
+
+    def __call__(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """T q for one column or several."""
+        c = np.asarray(self.moments @ q)
+        return np.asarray(self.moments.T @ sum(w * solve(c) for w, solve in zip(self.weights, self.solves)))
+
+
+def trace_norm(space: TraceSpace, transfer: Any) -> TraceNorm:
+    """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor."""
+    largest = _largest(space.full, space.mass)
+    shifts, weights = _resolvents(1.0, largest)
+    solves = tuple(spla.splu((space.full + s * space.mass).tocsc()).solve for s in shifts)
+    return TraceNorm((space.moments @ transfer).tocsr(), solves, weights)
+
+
+def _largest(full: Any, mass: Any) -> float:
+    """An upper bound of the eigenvalues of (full, mass): row sums over the lumped mass, with the consistent mass no
+    smaller than a tenth of it on quadratic facets."""
+    lumped = np.asarray(abs(mass).sum(axis=1)).ravel()
+    return float(10.0 * (np.asarray(abs(full).sum(axis=1)).ravel() / lumped).max())
+
+
+def _resolvents(low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shifts s_j and weights w_j with x^-1/2 = sum_j w_j / (x + s_j) to ``ACCURACY`` for low <= x <= high."""
+    count = int(np.ceil((np.log(high / low) + 3.0) * -np.log(ACCURACY) / (2.0 * np.pi**2)))
+    complement = 1.0 - low / high
+    period = ellipk(complement)
+    sn, cn, dn, _ = ellipj((np.arange(count) + 0.5) * period / count, complement)
+    return np.asarray(low * (sn / cn) ** 2), np.asarray(2.0 * period * np.sqrt(low) / (np.pi * count) * dn / cn**2)
+
+
+def facet_scale(surface: Surface, areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mesh size h of each facet: its length in 2D, the root of its area in 3D."""
+    if surface.dim == 3:
+        return np.sqrt(areas)
+    x = surface.points[surface.nodes[:, :2]]
+    return np.asarray(np.linalg.norm(x[:, 1] - x[:, 0], axis=1))

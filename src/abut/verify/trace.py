@@ -1,0 +1,129 @@
+"""A fine continuous space on a surface: quadratic functions on divided facets, rich enough to see every pressure."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from abut._core import shape_functions
+from abut.cells import CELLS
+from abut.interface.geometry import by_kind, facet_sizes, function_count, node_coordinates, pressure_kind
+from abut.mesh.quadrature import facet_rule
+from abut.mesh.surface import Surface
+
+SAME = 1e-7  # distance over the smallest facet size below which two nodes are one
+
+
+@dataclass(frozen=True)
+class TraceSpace:
+    """mass, full: (n, n) int v w and int v w + grad v . grad w along the surface; moments: (n, 9 n_facets) int v H_k;
+    pressure_mass: (n_facets, 9, 9) int H_k H_l over whole facets."""
+
+    mass: Any
+    full: Any
+    moments: Any
+    pressure_mass: NDArray[np.float64]
+
+
+def trace_space(surface: Surface, degree: int, share: NDArray[np.float64], divisions: int) -> TraceSpace:
+    """The space on all facets with a ``share`` (n_facets,) of their area in contact, divided ``divisions`` times along
+    each edge; moments and pressure mass with the
+    pressure functions of ``degree`` count by that share."""
+    points: list[NDArray[np.float64]] = []
+    nodes: list[NDArray[np.int64]] = []
+    entries: list[tuple[NDArray[Any], ...]] = []
+    pressure_mass = np.zeros((len(surface), 9, 9))
+    first = 0
+    for kind, facets in by_kind(surface):
+        facets = facets[share[facets] > 0.0]
+        for part in _parts(surface, kind, facets, degree, divisions):
+            pressure_mass[facets[:, None, None], np.arange(part.pm.shape[1])[:, None], np.arange(part.pm.shape[2])] += (
+                part.pm * share[facets, None, None]
+            )
+            count = part.at_nodes.shape[1]
+            points.append(part.at_nodes.reshape(-1, surface.dim))
+            nodes.append(first + np.arange(len(facets) * count).reshape(-1, count))
+            entries.append((facets, part.mass, part.full, part.moments * share[facets, None, None]))
+            first += len(facets) * count
+    merged, n = _merge(np.concatenate(points), SAME * facet_sizes(surface).min())
+    mass: Any = sp.csr_matrix((n, n))
+    full: Any = sp.csr_matrix((n, n))
+    moments: Any = sp.csr_matrix((n, 9 * len(surface)))
+    for local, (facets, m, f, c) in zip(nodes, entries):
+        own = merged[local]
+        rows, columns = np.repeat(own, own.shape[1], axis=1).ravel(), np.tile(own, (1, own.shape[1])).ravel()
+        mass = mass + sp.csr_matrix((m.ravel(), (rows, columns)), shape=(n, n))
+        full = full + sp.csr_matrix((f.ravel(), (rows, columns)), shape=(n, n))
+        functions = 9 * facets[:, None] + np.arange(c.shape[2])
+        rows = np.repeat(own, c.shape[2], axis=1).ravel()
+        columns = np.tile(functions, (1, own.shape[1])).ravel()
+        moments = moments + sp.csr_matrix((c.ravel(), (rows, columns)), shape=moments.shape)
+    return TraceSpace(mass, full, moments, pressure_mass)
+
+
+@dataclass(frozen=True)
+class _Part:
+    at_nodes: NDArray[np.float64]  # (facets, nodes, dim)
+    mass: NDArray[np.float64]
+    full: NDArray[np.float64]
+    moments: NDArray[np.float64]  # (facets, nodes, pressure functions)
+    pm: NDArray[np.float64]
+
+
+def _parts(surface: Surface, kind: str, facets: NDArray[np.int64], degree: int, divisions: int) -> list[_Part]:
+    cell = CELLS[kind]
+    fine = "line3" if cell.dim == 1 else "tri6" if cell.corners == 3 else "quad9"
+    code, functions = CELLS[fine].code, function_count(kind, degree)
+    x = surface.points[surface.nodes[facets, : cell.nodes]]
+    eta, weights = facet_rule(fine)
+    values, slopes = shape_functions(code, np.ascontiguousarray(eta))
+    parts = []
+    for origin, scale in _division(fine, divisions):
+        xi = np.ascontiguousarray(origin + scale * eta)
+        own, derivatives = shape_functions(cell.code, xi)
+        tangents = np.einsum("qna,fnd->fqda", derivatives, x)
+        metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
+        measure = np.sqrt(np.linalg.det(metric)) * weights * abs(scale) ** cell.dim
+        measure = measure * surface.around(np.einsum("qn,fnd->fqd", own, x))
+        gradients = slopes / scale
+        mass = np.einsum("fq,qn,qm->fnm", measure, values, values)
+        stiff = np.einsum("fq,qna,fqab,qmb->fnm", measure, gradients, np.linalg.inv(metric), gradients, optimize=True)
+        pressure = np.ones((len(xi), 1))
+        if degree:
+            pressure, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, xi)
+        at = np.ascontiguousarray(origin + scale * node_coordinates(fine))
+        parts.append(
+            _Part(
+                np.einsum("qn,fnd->fqd", shape_functions(cell.code, at)[0], x),
+                mass,
+                mass + stiff,
+                np.einsum("fq,qn,qk->fnk", measure, values, pressure[:, :functions]),
+                np.einsum("fq,qk,ql->fkl", measure, pressure, pressure),
+            )
+        )
+    return parts
+
+
+def _merge(points: NDArray[np.float64], distance: float) -> tuple[NDArray[np.int64], int]:
+    """Numbers that points closer than ``distance`` share, and how many there are."""
+    pairs = cKDTree(points).query_pairs(distance, output_type="ndarray")
+    graph = sp.csr_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
+    count, label = connected_components(graph, directed=False)
+    return label.astype(np.int64), int(count)
+
+
+def _division(kind: str, n: int) -> list[tuple[NDArray[np.float64], float]]:
+    """Origin and scale of the parts of a reference facet divided n times along each edge."""
+    if kind == "tri6":
+        upward = [((i / n, j / n), 1.0 / n) for i in range(n) for j in range(n - i)]
+        downward = [(((i + 1) / n, (j + 1) / n), -1.0 / n) for i in range(n - 1) for j in range(n - 1 - i)]
+        return [(np.array(origin), scale) for origin, scale in upward + downward]
+    middles = -1.0 + (2.0 * np.arange(n) + 1.0) / n
+    return [(np.array(o), 1.0 / n) for o in itertools.product(middles, repeat=1 if kind == "line3" else 2)]
