@@ -127,6 +127,10 @@ def _print_result(solution: Solution, directory: Path) -> None:
             f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
             f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
+    print("certificate   value      limit")
+    for check in solution.certificate:
+        name = f"{check.contact}: {check.name}" if check.contact else check.name
+        print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
     print(
         f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView"
     )

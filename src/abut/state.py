@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from abut.mesh.surface import Surface
 from abut.model import Model
 
+BALANCE = 1e-9  # limit of the model's balance of forces
+
 
 @dataclass(frozen=True)
 class Iteration:
@@ -32,6 +34,21 @@ class Iteration:
 
 
 @dataclass(frozen=True)
+class Check:
+    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words."""
+
+    contact: str
+    name: str
+    value: float
+    limit: float
+    meaning: str
+
+    @property
+    def passed(self) -> bool:
+        return self.value <= self.limit
+
+
+@dataclass(frozen=True)
 class ContactResult:
     """One contact pair at the end of a step.
 
@@ -39,6 +56,7 @@ class ContactResult:
     pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length.
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
     target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
+    covered_share: covered area over the contactor's area; checks: the certificate of this step.
     For tied pairs ``pressure`` is the normal part of the tie traction (compression positive).
     """
 
@@ -56,7 +74,9 @@ class ContactResult:
     pressure: NDArray[np.float64]
     gap: NDArray[np.float64]
     covered: NDArray[np.bool_]
+    covered_share: float
     target_pressure: NDArray[np.float64]
+    checks: tuple[Check, ...]
 
 
 @dataclass(frozen=True)
@@ -109,6 +129,20 @@ class Solution:
     def contacts(self) -> tuple[ContactResult, ...]:
         """The contact results of the last step."""
         return self.steps[-1].contacts
+
+    @property
+    def certificate(self) -> tuple[Check, ...]:
+        """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
+        worst: dict[tuple[str, str], Check] = {}
+        for step in self.steps:
+            balance = Check(
+                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the largest force"
+            )
+            for check in (balance, *(c for contact in step.contacts for c in contact.checks)):
+                key = check.contact, check.name
+                if key not in worst or not check.value <= worst[key].value:
+                    worst[key] = check
+        return tuple(worst.values())
 
     @property
     def displacement(self) -> NDArray[np.float64]:

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.certificate import certificate
 from abut.analysis.loads import applied_load
 from abut.discretization.pairs import Pair
+from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
 from abut.solids.elements import nodal_stress
@@ -56,7 +58,7 @@ def step_result(
         },
         load=factor * applied_load(model).reshape(-1, dim).sum(axis=0),
         contacts=tuple(
-            _contact(pair, pressure, gap, active)
+            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual)
             for pair, pressure, gap, active in zip(
                 system.pairs,
                 pressures,
@@ -70,7 +72,11 @@ def step_result(
 
 
 def _contact(
-    pair: Pair, pressure: NDArray[np.float64], gap: NDArray[np.float64], active: NDArray[np.bool_]
+    pair: Pair,
+    pressure: NDArray[np.float64],
+    gap: NDArray[np.float64],
+    active: NDArray[np.bool_],
+    residual: float,
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -101,7 +107,9 @@ def _contact(
         pressure=nodal,
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, gaps), np.nan),
         covered=covered,
+        covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, values),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual),
     )
 
 
@@ -119,8 +127,6 @@ def _contactor_force(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.fl
 
 def _normal_traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
     """Normal part of the tie traction, facet-wise coefficients, compression positive."""
-    from abut.interface.geometry import nodal_normals
-
     normals = nodal_normals(pair.contactor).reshape(-1, pair.contactor.dim)
     total = np.zeros(len(normals))
     for a in range(pair.contactor.dim):

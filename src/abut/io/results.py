@@ -59,6 +59,20 @@ def summary(solution: Solution) -> dict[str, Any]:
         "dofs": solution.dofs,
         "solver": solution.solver,
         "steps": [_step_summary(step) for step in solution.steps],
+        "certificate": {
+            "passed": all(check.passed for check in solution.certificate),
+            "checks": [
+                {
+                    "contact": check.contact,
+                    "name": check.name,
+                    "value": _number(check.value),
+                    "limit": check.limit,
+                    "passed": check.passed,
+                    "meaning": check.meaning,
+                }
+                for check in solution.certificate
+            ],
+        },
         "notes": list(solution.notes),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
         "versions": {
@@ -95,6 +109,7 @@ def _step_summary(step: Step) -> dict[str, Any]:
                 "multipliers": c.multipliers,
                 "removed": c.removed,
                 "segments": c.segments,
+                "covered_share": c.covered_share,
             }
             for c in step.contacts
         ],
