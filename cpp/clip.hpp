@@ -15,7 +15,7 @@ inline Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
 inline double cross2(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 inline double dot2(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 
-// The curve a + t (b - a) + t (1 - t) bulge, t in [0, 1]; straight when the bulge is zero.
+// The curve a + t (b - a) + t (1 - t) bulge, t in [0, 1]; straight when the bulge is zero: theory (S6).
 struct Curve {
   Point2 a, b, bulge;
   bool straight;
@@ -88,7 +88,7 @@ inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count
   return current;
 }
 
-// Moves a vertex where two curves cross to their true intersection, starting from that of the chords.
+// Moves a vertex where two curves cross to their true intersection, theory (S8), starting from that of the chords.
 inline void polish(const Curve &c, const Curve &d, Point2 &p) {
   double s = c.parameter(p), t = d.parameter(p);
   for (int i = 0; i < 6; ++i) {
@@ -113,7 +113,7 @@ struct Rule {
 };
 
 // Calls visit(point, weight) for a rule on every cone from an apex to an edge. Straight polygons are fanned from their
-// first vertex, curved ones from the mean of the vertices.
+// first vertex, curved ones from the mean of the vertices. The cones are theory (S9), the rule theory (Q1).
 template <class Visit>
 void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curves)[2], const Rule &rule, Visit visit) {
   bool straight = true;

@@ -30,6 +30,7 @@ struct Contactor3 {
         pieces);
   }
 
+  // Reference coordinates of the facet's point over p: theory (S10).
   bool locate(Point2 p, double *xi) const {
     double x[3];
     plane.lift(p, x);
@@ -37,7 +38,7 @@ struct Contactor3 {
   }
 
   // Foot in the plane of the contactor point whose normal line meets v; outside the facet the normal of the nearest
-  // point of the facet is used.
+  // point of the facet is used. See theory (S5).
   Point2 carry(const double *v) const {
     const Point2 start = plane.flat(v);
     if (flat)

@@ -4,7 +4,7 @@
 
 namespace abut {
 
-// The mean plane of a facet; coordinates in it along e1, e2.
+// The mean plane of a facet; coordinates in it along e1, e2: theory (S4).
 struct Plane {
   double origin[3], e1[3], e2[3], n[3];
   Point2 flat(const double *x) const {
@@ -48,6 +48,7 @@ inline Plane mean_plane(const Facet<double> &f) {
   return plane;
 }
 
+// An edge through the images of its ends and its middle: theory (S6).
 inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
   Curve curve{a, b, {0, 0}, true};
   if (!middle)

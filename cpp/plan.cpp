@@ -5,7 +5,7 @@ namespace abut {
 
 namespace {
 
-// Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area.
+// Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area: theory (Q4).
 double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &rule, const double (*exact)[9],
                     double area) {
   double sum[9][9] = {{0}};
@@ -65,6 +65,7 @@ double moment_error_line(const Facet<double> &f, const Rule &rule, const double 
   return error / length;
 }
 
+// theory (S7)
 int subdivisions_needed(const Facet<double> &f) {
   if (!quadratic(f.kind) || f.dim == 2)
     return 1;

@@ -40,6 +40,7 @@ template <class T> struct Facet {
 
   void values(const T *xi, T *n, T (*d)[3]) const { shape(kind, xi, n, d); }
 
+  // Position and tangents, the continuous normal of theory (S1), shape functions.
   void at(const T *xi, T *point, T (*tangent)[3], T *normal = nullptr, T *shapes = nullptr) const {
     T own[MAX_FACET_NODES], d[MAX_FACET_NODES][3], *n = shapes ? shapes : own;
     shape(kind, xi, n, d);

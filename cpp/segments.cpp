@@ -1,4 +1,4 @@
-// The 2D and 3D loops over contactor facets; see docs/theory.md for the construction.
+// The 2D and 3D loops over contactor facets; see docs/theory/segments.md for the construction.
 #include "segments.hpp"
 #include "contactor.hpp"
 #include "tree.hpp"
@@ -55,7 +55,8 @@ public:
   }
   void begin_target(std::size_t t, int nodes) { t_ = t, target_nodes_ = nodes, hit_ = false; }
 
-  // A point with weight dS, gap g, normal N from target to contactor, and the shape functions of both sides.
+  // A point with weight dS, gap g, normal N from target to contactor, and the shape functions of both sides: summed
+  // up to theory (F5), with the same weight on both sides, theory (F7).
   void add(int kind, const double *xi, const double *nc, const double *nt, double weight, double gap,
            const double *normal) {
     double h[MAX_FACET_NODES] = {0};
@@ -134,7 +135,7 @@ private:
 // ---- 2D ------------------------------------------------------------------------------------------------------------
 
 // Where the contactor sees the point v along its continuous normal, clamped to the facet: the root of
-// (v - x(xi)) x n(xi), which neighbouring facets share at their common node.
+// (v - x(xi)) x n(xi), which neighbouring facets share at their common node; theory (S3).
 double sees(const Facet<double> &c, const double *v) {
   auto ahead = [&](double xi) { // > 0 where v lies ahead of xi
     double x[3], tangent[2][3], n[3];
@@ -174,7 +175,7 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
   double eta[2] = {0, 0};
   for (int q = -1; q < rule.n; ++q) {
     const double xi = q < 0 ? 0.5 * (begin + end) : begin + rule.t[q] * (end - begin);
-    double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3];
+    double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3]; // the point seen from x: theory (S2)
     c.at(&xi, x, tangent, n);
     const double along[2] = {-n[1], n[0]};
     if (!project(t, x, along, along, eta))
@@ -229,7 +230,7 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
 
   double xi[2], eta[2];
   c.facet.centre(xi), t.centre(eta);
-  // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen.
+  // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
   double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
   auto look = [&](Point2 p) {
     if (!c.locate(p, xi))
@@ -255,7 +256,7 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
     const double gap = look(p);
     if (gap == HUGE_VAL)
       return;
-    double area[3];
+    double area[3]; // the area on the facet over that in the plane: theory (S11)
     cross(tangent[0], tangent[1], area);
     const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, c.plane.n, 3), normal[3] = {-n[0], -n[1], -n[2]};
     sums.add(c.facet.kind, xi, nc, nt, weight * stretch, gap, normal);

@@ -44,7 +44,7 @@ class Holding:
             )
 
     def complete(self, active: NDArray[np.bool_], gap: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """The active set, with the closest multipliers added where it would let a body go."""
+        """The active set, with the closest multipliers added where it would let a body go, theory (V8)."""
         if self.by_supports or self._holds(active):
             return active
         result = active.copy()

@@ -19,7 +19,7 @@ from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
-SHARPNESS = (
+SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
@@ -42,7 +42,7 @@ class PairPoints:
 class Pair:
     """One contact pair on the free displacements.
 
-    operator: (n, n_free) sparse; prescribed: (n,) operator times the prescribed displacement at full load;
+    operator: (n, n_free) sparse; prescribed: (n,) operator times the prescribed displacement at full load, theory (F9);
     gap: (n,) weighted geometric gap with the offset; scale: (n,) weighted gap per pressure, weight h / E.
     size: typical facet length; stiffness: E / size, pressure per length. For tied pairs the n rows hold all components
     (dim in turn) and the gap is zero.
@@ -168,8 +168,8 @@ def _tied(
     contact: Contact, contactor: Surface, target: Surface, coupling: Coupling, space: PressureSpace,
     held: Supports, size: float, stiffness: float,
 ) -> Pair:  # fmt: skip
-    """All components of the displacement are tied. A multiplier component that supports hold at its node on the
-    contactor follows its neighbour, direction by direction."""
+    """All components of the displacement are tied, theory (L9). A multiplier component that supports hold at its node
+    on the contactor follows its neighbour, direction by direction."""
     dim = contactor.dim
     rows, weights, spaces = [], [], []
     for a in range(dim):
@@ -204,7 +204,8 @@ def _tied(
 
 
 def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
-    """Take out multipliers at contactor nodes that supports hold along the normal (DESIGN: beta would drop to 0.03)."""
+    """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
+    theory (P7) falls from 0.8 to 0.03."""
     sits = np.flatnonzero(space.node >= 0)
     if not len(sits):
         return space

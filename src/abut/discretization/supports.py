@@ -1,4 +1,4 @@
-"""Supports as an exact change of variables: u = Z u_free + u_prescribed."""
+"""Supports as an exact change of variables: u = Z u_free + u_prescribed; theory (F8)."""
 
 from __future__ import annotations
 

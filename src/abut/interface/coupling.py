@@ -28,7 +28,7 @@ class IntegrationPoints:
     """The integration points of all segments of a pair (n of them).
 
     facet: (n,) contactor facet; weight: (n,) area; gap: (n,) geometric gap, length;
-    normal: (n, dim) unit, from target to contactor;
+    normal: (n, dim) unit, from target to contactor: theory (F1);
     pressure: (n, 9 n_facets) values of the facet-wise pressure functions;
     gap_operator: (n, dim n_points), change of the gap by a displacement.
     """
@@ -48,8 +48,8 @@ class Coupling:
     Columns are the points of the surfaces: one shared array (``contactor.points is target.points``), or, where each
     surface brings its own, the contactor's points followed by the target's.
 
-    operator: (9 n_facets, dim n_points) sparse, (B u)_k = int H_k (u_C - u_T) . N; for ``componentwise`` coupling
-              (9 n_facets, n_points), the same without N (one displacement component).
+    operator: (9 n_facets, dim n_points) sparse, (B u)_k = int H_k (u_C - u_T) . N, theory (F5); for ``componentwise``
+              coupling (9 n_facets, n_points), the same without N (one displacement component).
     contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
     gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
     covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
@@ -88,8 +88,8 @@ def couple(
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
 
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
-    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12
-            (newton-cotes: as far as its nine points go).
+    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
+            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """

@@ -60,7 +60,7 @@ def facet_sizes(surface: Surface) -> NDArray[np.float64]:
 
 
 def nodal_normals(surface: Surface) -> NDArray[np.float64]:
-    """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded.
+    """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded; theory (S1).
 
     At each node the area-weighted normals of the surface's own facets are averaged, leaving out facets that meet
     this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges.

@@ -1,7 +1,7 @@
 """Contact laws: residual and derivatives from gap and pressure; Newton does the rest.
 
 Each law states its residual r(u, p) with p the pressure coefficients of one pair; the solver finds
-K u - B^T p = f together with r = 0. Signs: gap >= 0 open, pressure >= 0 compressive.
+K u - B^T p = f, theory (F6), together with r = 0. Signs: gap >= 0 open, pressure >= 0 compressive, theory (F2).
 """
 
 from __future__ import annotations
@@ -38,10 +38,11 @@ class Linearisation:
 def linearise_active(
     gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], scale: NDArray[np.float64]
 ) -> Linearisation:
-    """Complementarity with a given active set: weighted gap = 0 where active, pressure = 0 elsewhere.
+    """Complementarity with a given active set: weighted gap = 0 where active, pressure = 0 elsewhere; theory (L3).
 
-    gap: (n,) weighted gap int H_k g; scale: (n,) gap per pressure, which gives both rows the same unit.
-    The semi-smooth Newton derivative of min(gap, scale * pressure) is just this (Hintermueller, Ito and Kunisch 2002).
+    gap: (n,) weighted gap int H_k g; scale: (n,) gap per pressure, theory (L2), which gives both rows the same unit.
+    The semi-smooth Newton derivative of min(gap, scale * pressure), theory (L1), is just this (Hintermueller, Ito and
+    Kunisch 2002).
     """
     on = active.astype(float)
     return Linearisation(
@@ -60,6 +61,7 @@ def constraint_function(
     """w(g, l) = (g + l)/2 - sqrt(((g - l)/2)^2 + eps) and its derivatives by g and by l (paper, section 3).
 
     w = 0 means g l = eps with g, l > 0; eps -> 0 gives min(g, l). Both arguments in the same unit.
+    Function and derivatives: theory (L4), (L5).
     """
     half = 0.5 * (gap - pressure)
     root = np.sqrt(half * half + epsilon)
@@ -78,14 +80,14 @@ def linearise_constraint_function(
     epsilon: float,
     reference: float,
 ) -> Linearisation:
-    """int H_k (w(c g, l) + TENSION t(l)) = 0, evaluated at the integration points (paper, eq. 21).
+    """int H_k (w(c g, l) + TENSION t(l)) = 0, evaluated at the integration points: theory (L6) (paper, eq. 21).
 
     test: (n_points, n) values of the pressure functions at the integration points; weight, gap: (n_points,);
     coefficients: (n,) of the pressure l;
     stiffness c: (n_points,) pressure per length, puts the gap on the scale of the pressure;
     reference: the largest pressure, to which epsilon is relative.
-    The second term, t(l) = min(l, 0) but for a smooth start, is not in the paper: behind the edge of contact w = l, and
-    zero means against every H_k leave room for a pressure that swings about zero.
+    The second term, t(l) = min(l, 0) but for a smooth start, theory (L7), is not in the paper: behind the edge of
+    contact w = l, and zero means against every H_k leave room for a pressure that swings about zero.
     """
     pressure = test @ coefficients
     value, by_gap, by_pressure = constraint_function(stiffness * gap, pressure, epsilon * reference**2)

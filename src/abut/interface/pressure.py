@@ -2,7 +2,8 @@
 
 Every space is a sparse matrix ``transfer`` from its coefficients to the facet-wise nodal values of
 ``abut.interface.coupling``; continuity, the non-negative basis, the dual basis, removed and merged multipliers are all
-such combinations, so that whatever is linear in the pressure (operator, weighted gap, weight) follows by its transpose.
+such combinations, so that whatever is linear in the pressure (operator, weighted gap, weight) follows by its transpose:
+theory (P1).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from abut.interface.coupling import Coupling, surface_degree
 from abut.interface.geometry import by_kind, full_moments, function_count
 from abut.mesh.surface import Surface
 
-NO_SUPPORT = 1e-9  # covered share of a multiplier's own support below which there is nothing to integrate
+NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.02  # below this share a multiplier follows its neighbour: alone it would be ill-determined
 
 
@@ -87,7 +88,7 @@ def reduce(
     space: PressureSpace, coupling: Coupling, keep: NDArray[np.bool_], exists: NDArray[np.bool_] | None = None
 ) -> PressureSpace:
     """Take multipliers out. One that shares a facet with a kept one follows the best supported of these (so that a
-    constant pressure stays in the space); the others vanish."""
+    constant pressure stays in the space), theory (P6); the others vanish."""
     n = len(space)
     if keep.all():
         return space
@@ -150,9 +151,9 @@ def _block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) 
 def non_negative_block(kind: str, c: float) -> NDArray[np.float64]:
     """Nodal values (nodes, nodes) of a non-negative basis of a quadratic facet's space, one column a function.
 
-    On an edge the functions are (1 -+ s)/2 - c (1 - s^2) at the ends and 2 c (1 - s^2) in the middle: a partition of
-    unity for every c, the Bernstein polynomials for c = 1/4. With c = 1/8 the serendipity functions of quad8 are
-    non-negative as well (with 1/4 those at the corners are not).
+    On an edge the functions are (1 -+ s)/2 - c (1 - s^2) at the ends and 2 c (1 - s^2) in the middle: a
+    partition of unity for every c, theory (P2), (P3), the Bernstein polynomials for c = 1/4. With c = 1/8 the
+    serendipity functions of quad8 are non-negative as well (with 1/4 those at the corners are not).
     """
     cell = CELLS[kind]
     block = np.eye(cell.nodes)
@@ -180,7 +181,8 @@ def non_negative(contactor: Surface) -> Any:
 
 
 def _dual(contactor: Surface, coupling: Coupling) -> Any:
-    """Biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl int N_l on each covered facet."""
+    """Biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl int N_l on each covered facet,
+    theory (P4)."""
     blocks = {}
     for kind, facets in by_kind(contactor):
         n = function_count(kind, 1)

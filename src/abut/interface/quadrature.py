@@ -1,7 +1,8 @@
 """Rules on segments: Gauss-Legendre and closed Newton-Cotes, as tables for the compiled core.
 
 A segment is a set of cones from an apex to its edges. Along an edge the rule lives on [0, 1]; from the apex outward it
-carries the weight r of the cone, so that n x n points are exact for polynomials of degree 2 n - 2 (Gauss).
+carries the weight r of the cone, theory (Q1), so that n x n points are exact for polynomials of degree 2 n - 2 (Gauss);
+theory (Q3).
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAX_POINTS = 12
-MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area
+MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area: theory (Q4)
 
 
 def _gauss(n: int) -> tuple[NDArray[Any], ...]:
@@ -25,7 +26,7 @@ def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
     if n == 1:
         return _gauss(1)
     t = np.linspace(0.0, 1.0, n)
-    powers = np.vander(t, n, increasing=True).T
+    powers = np.vander(t, n, increasing=True).T  # theory (Q2)
     order = np.arange(n)
     return t, np.linalg.solve(powers, 1.0 / (order + 1)), t, np.linalg.solve(powers, 1.0 / (order + 2))
 

@@ -37,8 +37,8 @@ def _by_cell(mesh: Mesh, values: Mapping[str, tuple[float, ...]]) -> NDArray[np.
 
 
 def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | None = None) -> Any:
-    """Stiffness matrix of all bodies, (dim n_points, dim n_points) CSR with sorted rows; force per length (2D: per
-    unit thickness; axisymmetric: all round)."""
+    """Stiffness matrix of all bodies, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; force per
+    length (2D: per unit thickness; axisymmetric: all round)."""
     points = np.ascontiguousarray(mesh.points)
     dim = points.shape[1]
     counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])

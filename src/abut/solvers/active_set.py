@@ -76,7 +76,7 @@ class System:
         return np.concatenate(values) if len(values) else np.zeros(0)
 
     def gap(self, state: Unknowns, factor: float) -> NDArray[np.float64]:
-        """Weighted gaps of all multipliers at a share ``factor`` of the load."""
+        """Weighted gaps of all multipliers at a share ``factor`` of the load; theory (F9), condensed theory (V4)."""
         fixed = self.join([pair.gap + factor * pair.prescribed for pair in self.pairs])
         if not len(fixed):
             return fixed
@@ -126,7 +126,7 @@ class Outcome:
 
 
 def start(system: System) -> Unknowns:
-    """Zero displacement; multipliers that touch at the outset are active."""
+    """Zero displacement; multipliers that touch at the outset are active, theory (V6)."""
     n = sum(map(len, system.pairs))
     rest = Unknowns(np.zeros(system.stiffness.shape[0]), np.zeros(n), np.zeros(n, dtype=bool))
     gap = system.gap(rest, 0.0)
@@ -148,7 +148,7 @@ def solve_step(
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
     done: list[Iteration] = []
-    keep_largest = 0.0  # after a cycle only the multipliers with violations above this share of the largest change
+    keep_largest = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
     for count in range(1, limit + 1):
         clock = time.perf_counter()
@@ -202,6 +202,7 @@ def _advance(system: System, state: Unknowns, factor: float, laws: Sequence[Line
 
 
 def _equilibrium(system: System, state: Unknowns, factor: float) -> NDArray[np.float64]:
+    """K u - B^T p - f, theory (F6)."""
     residual = system.stiffness @ state.displacement - factor * system.load
     if len(state.pressure):
         residual = residual - system.operator.T @ state.pressure
@@ -215,7 +216,7 @@ def _weight(pair: Pair) -> NDArray[np.float64]:
 def _next_active(
     system: System, state: Unknowns, factor: float, tied: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """The active set that the law asks for, and by how much (pressure) each multiplier breaks it now."""
+    """The active set that the law asks for, theory (V7), and by how much (pressure) each multiplier breaks it now."""
     if not len(state.pressure):
         return state.active, np.zeros(0)
     gap = system.gap(state, factor)
@@ -267,7 +268,8 @@ def _finish_smooth(
     done: list[Iteration],
     observe: Callable[[Iteration], None],
 ) -> Outcome:
-    """Pairs with the constraint function: Newton on it, from the solution of the complementarity law."""
+    """Pairs with the constraint function: Newton on it, from the solution of the complementarity law,
+    until theory (V10)."""
     none = np.zeros(len(state.active), dtype=bool)
     if not any(pair.smooth for pair in system.pairs):
         return Outcome(state, tuple(done), True, none, partial(_active_laws, factor=factor))

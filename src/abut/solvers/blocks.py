@@ -19,14 +19,14 @@ def newton_step(
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r) and return (du, dp).
+    """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
     stiffness: (n_u, n_u) sparse symmetric; operator B: (n, n_u), all pairs stacked; residual: K u - B^T p - f.
     """
     n = len(pressure)
     if n == 0:
         return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
-    # Pressures are scaled so that both blocks have entries of one size: dp = s q, law rows times t.
+    # Pressures are scaled so that both blocks have entries of one size: dp = s q, law rows times t; theory (V2).
     unit = np.median(stiffness.diagonal())
     s = unit / _row_max(operator)
     # Decoupled pressures take their value at once.

@@ -77,7 +77,7 @@ class Flexibility:
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r): du = K^-1 (B^T dp - residual) + R a, with R^T of the
-        bracket zero, put into the rows of the laws."""
+        bracket zero, theory (V5), put into the rows of the laws."""
         known, wanted = rows.decoupled, -rows.residual
         free = np.flatnonzero(~known)
         dp = np.zeros(len(pressure))
@@ -114,7 +114,7 @@ def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
     load = factorization.forward(np.concatenate([system.load, np.zeros(n_p)]))
     n_u = len(kept)
     schur = factorization.schur
-    stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]
+    stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]  # theory (V3)
     redundant = any(pair.redundant for pair in system.pairs)
     unit = float(np.median(system.stiffness.diagonal()))
     flexibility = _flexibility(stiffness, motions[kept], operator, unit, redundant)
