@@ -82,10 +82,10 @@ int subdivisions_needed(const Facet<double> &f) {
 
 } // namespace
 
-void plan(const SurfaceView &surface, const RuleTable &rules, double tolerance, bool axisymmetric,
-          std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
+void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
+          bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
   const int last = int(rules.count);
-  const Rule fine = rules.rule(last);
+  const Rule fine = exact_rules.rule(int(exact_rules.count));
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   for (std::size_t f = 0; f < surface.facets; ++f) {
     Facet<double> facet = surface.facet(f);

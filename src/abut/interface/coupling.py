@@ -131,7 +131,13 @@ def _plan(
     surface: Surface, tables: NDArray[np.float64], points: int | str
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     order, split = plan_facets(
-        surface.points, surface.kinds, surface.nodes, tables, MOMENT_TOLERANCE, surface.axisymmetric
+        surface.points,
+        surface.kinds,
+        surface.nodes,
+        tables,
+        rule_tables("gauss"),
+        MOMENT_TOLERANCE,
+        surface.axisymmetric,
     )
     if points != "auto":
         order = np.full_like(order, int(points))

@@ -16,6 +16,7 @@ _CORNER_XI = {
     3: np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
     4: np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]),
 }
+REFERENCE_AREA = {3: 0.5, 4: 4.0}  # of facets by corners; that of lines is the same for all
 LINEAR_FACET = {"line3": "line2", "tri6": "tri3", "quad8": "quad4", "quad9": "quad4"}
 
 
@@ -67,7 +68,8 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     """
     own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
     for kind, facets in by_kind(surface):
-        own[facets, : CELLS[kind].nodes] = _area_vectors(surface, kind, facets, node_coordinates(kind))
+        vectors = _area_vectors(surface, kind, facets, node_coordinates(kind))
+        own[facets, : CELLS[kind].nodes] = REFERENCE_AREA.get(CELLS[kind].corners, 1.0) * vectors
     valid = surface.nodes >= 0
     facet, local = np.nonzero(valid)
     node = surface.nodes[facet, local]

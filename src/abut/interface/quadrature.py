@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-MAX_POINTS = 12
+MAX_POINTS = 16
 MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area: theory (Q4)
 
 

@@ -269,13 +269,15 @@ def _finish_smooth(
     observe: Callable[[Iteration], None],
 ) -> Outcome:
     """Pairs with the constraint function: Newton on it, from the solution of the complementarity law,
-    until theory (V10)."""
+    until theory (V10). The active sets of other pairs go on changing with it."""
     none = np.zeros(len(state.active), dtype=bool)
     if not any(pair.smooth for pair in system.pairs):
         return Outcome(state, tuple(done), True, none, partial(_active_laws, factor=factor))
     reference = max(np.abs(state.pressure).max(initial=0.0), 1e-300)
     smooth = partial(_smooth_laws, factor=factor, reference=reference)
     violation = np.zeros(len(state.active))
+    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    exact = system.join([np.full(len(pair), not pair.smooth) for pair in system.pairs]).astype(bool)
     for _ in range(limit):
         clock = time.perf_counter()
         laws = _smooth_laws(system, state, factor, reference)
@@ -285,14 +287,16 @@ def _finish_smooth(
         law_error = float(violation.max(initial=0.0))
         following = _advance(system, state, factor, laws)
         following = _line_search(system, state, following, factor, reference)
-        active = system.join([law.active for law in laws]).astype(bool)
+        wanted, _ = _next_active(system, following, factor, tied)
+        active = np.where(exact, wanted, system.join([law.active for law in laws]).astype(bool))
         changed = int((active != state.active).sum())
+        unsettled = bool((active != state.active)[exact].any())
         state = replace(following, active=active)
         row = _report(system, state, factor, number, len(done) + 1, changed, np.zeros(1), time.perf_counter() - clock)
         row = replace(row, contact_residual=law_error)
         done.append(row)
         observe(row)
-        if law_error < TOLERANCE and row.residual < 1e-8:
+        if law_error < TOLERANCE and row.residual < 1e-8 and not unsettled:
             return Outcome(state, tuple(done), True, none, smooth)
     return Outcome(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0), smooth)
 

@@ -1,0 +1,10 @@
+"""Problems with known answers: one record each, used by ``abut verify``, the tests and the documentation alike."""
+
+from __future__ import annotations
+
+from abut.benchmarks import patch
+from abut.benchmarks.record import Benchmark, Outcome, Reference, run
+
+__all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
+
+BENCHMARKS: dict[str, Benchmark] = {b.name: b for b in (*patch.BENCHMARKS,)}

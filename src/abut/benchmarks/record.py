@@ -1,0 +1,111 @@
+"""What a benchmark is: a family of models by level of refinement, quantities, references with their sources."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from abut.errors import InputError
+from abut.model import Model
+from abut.state import Solution
+
+Measure = Callable[[Solution], Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a quantity should be. ``tolerance`` is relative to ``value``, absolute where that is zero; ``reason`` says why
+    it is as large as it is. ``rate``: the order of convergence expected of errors (their value is then zero), met within
+    ``rate_tolerance``; asked for only where levels are refined."""
+
+    value: float
+    tolerance: float
+    source: str
+    reason: str
+    rate: float | None = None
+    rate_tolerance: float = 0.1
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A problem with a known answer.
+
+    model: level -> Model; level 0 is what ``abut verify`` runs by default, each next one is finer.
+    size: level -> mesh size, up to a factor; halved from level to level if not given.
+    measure: solution -> value of each quantity named in ``references``.
+    levels: how many levels are run by default (more than one where a rate is asked for).
+    """
+
+    name: str
+    title: str
+    model: Callable[[int], Model]
+    measure: Measure
+    references: Mapping[str, Reference]
+    levels: int = 1
+    size: Callable[[int], float] = lambda level: 0.5**level
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One quantity of one benchmark: its values by level against the reference; ``rate`` fitted over all levels (None for
+    one level or no reference rate)."""
+
+    benchmark: str
+    quantity: str
+    values: tuple[float, ...]
+    reference: Reference
+    rate: float | None
+    seconds: float
+
+    @property
+    def error(self) -> float:
+        """Of the finest level, relative to the reference (absolute where that is zero)."""
+        exact = self.reference.value
+        return abs(self.values[-1] - exact) / (abs(exact) or 1.0)
+
+    @property
+    def passed(self) -> bool:
+        sound = bool(np.isfinite(self.values[-1])) and self.error <= self.reference.tolerance
+        if self.rate is None or self.reference.rate is None:
+            return sound
+        return sound and self.rate > self.reference.rate - self.reference.rate_tolerance
+
+
+def run(
+    benchmark: Benchmark, levels: int | None = None, solve: Callable[[Model], Solution] | None = None
+) -> list[Outcome]:
+    """Run a benchmark at levels 0 .. levels - 1 and compare. ``solve``: in place of ``abut.solve``.
+
+    Raises InputError for fewer levels than one."""
+    from abut.analysis import solve as default
+
+    count = benchmark.levels if levels is None else levels
+    if count < 1:
+        raise InputError(f"levels: expected a whole number >= 1, got {count}")
+    start = time.perf_counter()
+    measured = [dict(benchmark.measure((solve or default)(benchmark.model(level)))) for level in range(count)]
+    seconds = time.perf_counter() - start
+    sizes = [benchmark.size(level) for level in range(count)]
+    return [
+        Outcome(
+            benchmark.name,
+            quantity,
+            tuple(row[quantity] for row in measured),
+            reference,
+            None
+            if reference.rate is None
+            else _rate(sizes, [abs(row[quantity] - reference.value) for row in measured]),
+            seconds,
+        )
+        for quantity, reference in benchmark.references.items()
+    ]
+
+
+def _rate(sizes: list[float], errors: list[float]) -> float | None:
+    """Order p of errors ~ h^p by a fit over all levels."""
+    if len(errors) < 2 or min(errors) <= 0.0:
+        return None
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
