@@ -40,7 +40,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         checks.append(Check(name, what, float(value), limit, meaning))
 
     if not pair.tied:
-        force, moment = _balance(pair, values)
+        force, moment = balance(pair, values)
         add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
         add("moment balance", moment, BALANCE, "the same of moments, over force times extent")
         add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
@@ -59,8 +59,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     return tuple(checks)
 
 
-def _balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
-    """Relative errors of force and moment between the two sides, from their nodal forces."""
+def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
+    """Relative errors of force and moment between the two sides, from their nodal forces under the facet-wise pressure
+    coefficients ``values`` (9 n_facets,)."""
     dim, axisymmetric = pair.contactor.dim, pair.contactor.axisymmetric
     sides = []
     for surface, part in ((pair.contactor, pair.coupling.contactor_part), (pair.target, pair.coupling.target_part)):

@@ -51,8 +51,10 @@ class Job:
     text: str
 
 
-def load_job(path: str | Path) -> Job:
-    """Read a job file. Raises InputError that lists every problem with its place."""
+def load_job(path: str | Path, refine: int = 0) -> Job:
+    """Read a job file. Raises InputError that lists every problem with its place.
+
+    refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file)."""
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
@@ -72,13 +74,13 @@ def load_job(path: str | Path) -> Job:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
     try:
-        model = _model(file, path.parent)
+        model = _model(file, path.parent, refine)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Job(model, path.parent / file.output.directory, path, text)
 
 
-def _model(file: JobFile, folder: Path) -> Model:
+def _model(file: JobFile, folder: Path, refine: int) -> Model:
     materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
@@ -86,7 +88,7 @@ def _model(file: JobFile, folder: Path) -> Model:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
         solids.append(Solid(s.body, materials[s.material], s.temperature))
     return Model(
-        mesh=_mesh(file.mesh, folder),
+        mesh=_mesh(file.mesh, folder, refine),
         plane=file.model.plane,
         solids=solids,
         supports=[Support(**s.model_dump()) for s in file.supports],
@@ -118,10 +120,12 @@ def _load(table: BaseModel) -> Load:
     return record(**values)
 
 
-def _mesh(table: MeshTable, folder: Path) -> Mesh:
+def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:
     if (table.file is None) == (not table.bodies):
         raise InputError('mesh: give either file = "..." or bodies ([mesh.bodies.NAME]), not both or neither')
     if table.file is not None:
+        if refine:
+            raise InputError("mesh.file: only meshes that abut makes (mesh.bodies) can be refined; leave --levels out")
         return Mesh.read(folder / table.file)
     meshes = {}
     for name, body in table.bodies.items():
@@ -135,12 +139,20 @@ def _mesh(table: MeshTable, folder: Path) -> Mesh:
             if key not in known:
                 raise InputError(f"{where}.{key}: unknown key{nearest(key, known)}")
         try:
-            meshes[name] = generator(**arguments)
+            meshes[name] = generator(**_refined(arguments, generator, 2**refine))
         except (TypeError, ValueError) as error:
             raise InputError(f"{where}: {error}") from None
     mesh = make.join(meshes)
     check_mesh(mesh)
     return mesh
+
+
+def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: int) -> dict[str, Any]:
+    """Arguments of a generator with ``times`` as many cells along every axis."""
+    if times == 1:
+        return arguments
+    cells = arguments.get("cells", inspect.signature(generator).parameters["cells"].default)
+    return {**arguments, "cells": cells * times if isinstance(cells, int) else [n * times for n in cells]}
 
 
 def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:

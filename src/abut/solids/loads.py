@@ -11,7 +11,10 @@ from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 
 
-def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: float) -> NDArray[np.float64]:
+def _spread(
+    surface: Surface, traction: NDArray[np.float64] | None, stress: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """int N t for a uniform traction t, or for t = stress n with the outward normal n."""
     load = np.zeros(surface.points.shape)
     for code in np.unique(surface.kinds):
         cell = CELLS[BY_CODE[code].name]
@@ -24,7 +27,7 @@ def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: fl
         else:
             normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
         if traction is None:
-            force = -pressure * normal
+            force = normal @ stress
         else:
             force = np.linalg.norm(normal, axis=2)[..., None] * traction
         force = force * surface.around(np.einsum("qn,fnd->fqd", values, surface.points[nodes]))[..., None]
@@ -34,19 +37,24 @@ def _spread(surface: Surface, traction: NDArray[np.float64] | None, pressure: fl
 
 def pressure_load(surface: Surface, value: float) -> NDArray[np.float64]:
     """Pressure (force per area, positive into the body), (dim n_points,)."""
-    return _spread(surface, None, value).ravel()
+    return _spread(surface, None, -value * np.eye(surface.dim)).ravel()
+
+
+def stress_load(surface: Surface, stress: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Traction of a uniform stress (dim, dim) on the surface's outward side, (dim n_points,)."""
+    return _spread(surface, None, stress).ravel()
 
 
 def traction_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
     """Uniform traction vector (force per area), (dim n_points,)."""
-    return _spread(surface, np.asarray(vector, dtype=float), 0.0).ravel()
+    return _spread(surface, np.asarray(vector, dtype=float)).ravel()
 
 
 def surface_area(surface: Surface) -> float:
     """Area (2D: length; axisymmetric: all round) of a surface."""
     first = np.zeros(surface.dim)
     first[0] = 1.0
-    return float(_spread(surface, first, 0.0)[:, 0].sum())
+    return float(_spread(surface, first)[:, 0].sum())
 
 
 def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:

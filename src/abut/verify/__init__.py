@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from abut.verify.infsup import InfSup, InfSupLevel, inf_sup
+from abut.verify.interface_patch import InterfacePatch, interface_patch
 
-__all__ = ["InfSup", "InfSupLevel", "inf_sup"]
+__all__ = ["InfSup", "InfSupLevel", "InterfacePatch", "inf_sup", "interface_patch"]

@@ -19,7 +19,6 @@ from abut.mesh.quadrature import product_rule
 from abut.mesh.surface import Surface, around
 from abut.verify.trace import TraceSpace
 
-ACCURACY = 1e-5  # of the rational approximation of the fractional power
 CHUNK = 4096
 
 
@@ -62,10 +61,10 @@ class TraceNorm:
         return np.asarray(self.moments.T @ sum(w * solve(c) for w, solve in zip(self.weights, self.solves)))
 
 
-def trace_norm(space: TraceSpace, transfer: Any) -> TraceNorm:
-    """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor."""
+def trace_norm(space: TraceSpace, transfer: Any, accuracy: float = 1e-5) -> TraceNorm:
+    """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor, squared to ``accuracy``."""
     largest = _largest(space.full, space.mass)
-    shifts, weights = _resolvents(1.0, largest)
+    shifts, weights = _resolvents(1.0, largest, accuracy)
     solves = tuple(spla.splu((space.full + s * space.mass).tocsc()).solve for s in shifts)
     return TraceNorm((space.moments @ transfer).tocsr(), solves, weights)
 
@@ -77,9 +76,9 @@ def _largest(full: Any, mass: Any) -> float:
     return float(10.0 * (np.asarray(abs(full).sum(axis=1)).ravel() / lumped).max())
 
 
-def _resolvents(low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Shifts s_j and weights w_j with x^-1/2 = sum_j w_j / (x + s_j) to ``ACCURACY`` for low <= x <= high."""
-    count = int(np.ceil((np.log(high / low) + 3.0) * -np.log(ACCURACY) / (2.0 * np.pi**2)))
+def _resolvents(low: float, high: float, accuracy: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shifts s_j and weights w_j with x^-1/2 = sum_j w_j / (x + s_j) to ``accuracy`` for low <= x <= high."""
+    count = int(np.ceil((np.log(high / low) + 3.0) * -np.log(accuracy) / (2.0 * np.pi**2)))
     complement = 1.0 - low / high
     period = ellipk(complement)
     sn, cn, dn, _ = ellipj((np.arange(count) + 0.5) * period / count, complement)

@@ -1,53 +1,22 @@
-"""The command line: abut run, abut schema."""
+"""abut run: solve a job, with a live table and the certificate at the end."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import sys
-import traceback
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from abut.errors import AbutError, ConvergenceError
+from abut.errors import ConvergenceError
 
 if TYPE_CHECKING:
     from abut.state import Iteration, Solution
 
-DONE, BUG, INTERRUPTED = 0, 1, 130
+DONE = 0
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution."""
-    parser = _parser()
-    arguments = parser.parse_args(argv)
-    try:
-        return int(arguments.command(arguments))
-    except AbutError as error:
-        print(f"abut: error: {error}", file=sys.stderr)
-        return error.exit_status
-    except KeyboardInterrupt:
-        print("abut: stopped", file=sys.stderr)
-        return INTERRUPTED
-    except Exception as error:
-        if getattr(arguments, "debug", False):
-            traceback.print_exc()
-        print(f"abut: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
-        print(
-            "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
-        )
-        return BUG
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="abut",
-        description="Finite element contact mechanics that one can trust.",
-        epilog="example: abut run punch.toml   then open results/fields.pvd in ParaView",
-    )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+def add_run(commands: Any) -> None:
+    """Add the command to the parser's ``commands``."""
     run = commands.add_parser(
         "run",
         help="solve a job",
@@ -60,18 +29,6 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
     run.set_defaults(command=_run)
-    schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")
-    schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
-    schema.set_defaults(command=_schema)
-    return parser
-
-
-class _Version(argparse.Action):
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from importlib.metadata import version
-
-        print(f"abut {version('abut')}")
-        parser.exit(DONE)
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -134,19 +91,3 @@ def _print_result(solution: Solution, directory: Path) -> None:
     print(
         f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView"
     )
-
-
-def _schema(arguments: argparse.Namespace) -> int:
-    from abut.io.atomic import write_text
-    from abut.job import json_schema
-
-    text = json.dumps(json_schema(), indent=2) + "\n"
-    if arguments.output is None:
-        print(text, end="")
-    else:
-        write_text(arguments.output, text)
-    return DONE
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,0 +1,75 @@
+"""The command line: abut run, verify, infsup, schema."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+
+from abut.cli.run import add_run
+from abut.cli.verify import add_infsup, add_verify
+from abut.errors import AbutError
+
+DONE, BUG, INTERRUPTED = 0, 1, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution."""
+    parser = _parser()
+    arguments = parser.parse_args(argv)
+    try:
+        return int(arguments.command(arguments))
+    except AbutError as error:
+        print(f"abut: error: {error}", file=sys.stderr)
+        return error.exit_status
+    except KeyboardInterrupt:
+        print("abut: stopped", file=sys.stderr)
+        return INTERRUPTED
+    except Exception as error:
+        if getattr(arguments, "debug", False):
+            traceback.print_exc()
+        print(f"abut: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
+        print(
+            "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
+        )
+        return BUG
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="abut",
+        description="Finite element contact mechanics that one can trust.",
+        epilog="example: abut run punch.toml   then open results/fields.pvd in ParaView",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    add_run(commands)
+    add_verify(commands)
+    add_infsup(commands)
+    schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")
+    schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
+    schema.set_defaults(command=_schema)
+    return parser
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"abut {version('abut')}")
+        parser.exit(DONE)
+
+
+def _schema(arguments: argparse.Namespace) -> int:
+    from abut.io.atomic import write_text
+    from abut.job import json_schema
+
+    text = json.dumps(json_schema(), indent=2) + "\n"
+    if arguments.output is None:
+        print(text, end="")
+    else:
+        write_text(arguments.output, text)
+    return DONE

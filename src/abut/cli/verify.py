@@ -1,0 +1,220 @@
+"""abut verify and abut infsup: the method's claims, checked on problems with known answers and on a user's own model."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from abut.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from abut.benchmarks import Outcome
+
+DONE, FAILED = 0, 1
+
+
+def add_verify(commands: Any) -> None:
+    """Add ``abut verify`` to the parser's ``commands``."""
+    verify = commands.add_parser(
+        "verify",
+        help="run problems with known answers, or the patch test of a job",
+        description="Run the benchmark library: value, reference, error, tolerance and source of every quantity. With "
+        "--job, run the contact patch test on the meshes of a job instead.",
+        epilog="exit status: 0 all pass; 1 something fails; 2 bad input",
+    )
+    verify.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run (all of them if left out)")
+    verify.add_argument("--list", action="store_true", help="list the benchmarks")
+    verify.add_argument("--levels", type=int, metavar="N", help="refine N times, fit the rate of convergence, plot it")
+    verify.add_argument("--plot", type=Path, metavar="FILE", help="with --levels: save the plot (png, svg; matplotlib)")
+    verify.add_argument("--job", type=Path, help="patch test of every contact of this job, on its own meshes")
+    verify.add_argument("--json", action="store_true", help="print the results as JSON")
+    verify.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    verify.set_defaults(command=_verify)
+
+
+def add_infsup(commands: Any) -> None:
+    """Add ``abut infsup`` to the parser's ``commands``."""
+    infsup = commands.add_parser(
+        "infsup",
+        help="inf-sup constant of a job's contact",
+        description="The numerical inf-sup test of a contact: is its pressure stable? Supports are those of the job.",
+        epilog="exit status: 0 stable; 1 not stable; 2 bad input",
+    )
+    infsup.add_argument("job", type=Path, help="the job file")
+    infsup.add_argument("--contact", metavar="NAME", help="which contact (all of them if left out)")
+    infsup.add_argument(
+        "--levels",
+        type=int,
+        default=1,
+        metavar="N",
+        help="also on generated meshes with cells halved, up to N - 1 times",
+    )
+    infsup.add_argument("--json", action="store_true", help="print the results as JSON")
+    infsup.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    infsup.set_defaults(command=_infsup)
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    if arguments.job is not None:
+        if arguments.names or arguments.levels is not None:
+            raise InputError("verify: --job goes without benchmark names and --levels")
+        return _verify_job(arguments)
+    from abut.benchmarks import BENCHMARKS, run
+
+    for name in arguments.names:
+        if name not in BENCHMARKS:
+            raise InputError(f"verify: no benchmark named {name!r}{nearest(name, BENCHMARKS)}")
+    chosen = [BENCHMARKS[name] for name in arguments.names or BENCHMARKS]
+    if arguments.list:
+        for benchmark in chosen:
+            print(f"{benchmark.name:24s} {benchmark.title}")
+        return DONE
+    if arguments.levels is not None and arguments.levels < 1:
+        raise InputError(f"verify: --levels: expected a whole number >= 1, got {arguments.levels}")
+    if arguments.plot is not None:
+        _matplotlib()
+    outcomes: list[Outcome] = []
+    width = max(len(benchmark.name) for benchmark in chosen)
+    if not arguments.json:
+        titles = f"{'value':>12s} {'reference':>12s} {'error':>9s} {'limit':>9s}  rate"
+        print(f"      {'benchmark':{width}s} {'quantity':16s} {titles}")
+    for benchmark in chosen:
+        results = run(benchmark, arguments.levels)
+        outcomes += results
+        if arguments.json:
+            continue
+        for outcome in results:
+            _print_outcome(outcome, width)
+        for source in dict.fromkeys(outcome.reference.source for outcome in results):
+            print(f"      {'':{width}s} source: {source}", flush=True)
+    if arguments.json:
+        print(json.dumps([_plain(outcome) for outcome in outcomes], indent=2))
+    elif arguments.levels is not None and arguments.levels > 1:
+        for outcome in outcomes:
+            _text_plot(outcome)
+    if arguments.plot is not None:
+        _plot(outcomes, arguments.plot)
+    failed = [outcome for outcome in outcomes if not outcome.passed]
+    if not arguments.json:
+        seconds = sum({outcome.benchmark: outcome.seconds for outcome in outcomes}.values())
+        print(f"{len(outcomes) - len(failed)} of {len(outcomes)} quantities pass, {seconds:.0f} s")
+    return FAILED if failed else DONE
+
+
+def _print_outcome(outcome: Outcome, width: int) -> None:
+    rate = "" if outcome.rate is None else f"{outcome.rate:.2f}"
+    if outcome.rate is not None and outcome.reference.rate is not None:
+        rate += f" (theory {outcome.reference.rate:g})"
+    print(
+        f"{'pass' if outcome.passed else 'FAIL'}  {outcome.benchmark:{width}s} {outcome.quantity:16s} "
+        f"{outcome.values[-1]:12.6g} {outcome.reference.value:12.6g} {outcome.error:9.2e} "
+        f"{outcome.reference.tolerance:9.1e}  {rate}",
+        flush=True,
+    )
+
+
+def _plain(outcome: Outcome) -> dict[str, Any]:
+    return {
+        "benchmark": outcome.benchmark,
+        "quantity": outcome.quantity,
+        "values": list(outcome.values),
+        "reference": outcome.reference.value,
+        "error": outcome.error,
+        "tolerance": outcome.reference.tolerance,
+        "reason": outcome.reference.reason,
+        "source": outcome.reference.source,
+        "rate": outcome.rate,
+        "expected_rate": outcome.reference.rate,
+        "passed": outcome.passed,
+    }
+
+
+def _errors(outcome: Outcome) -> list[float]:
+    exact = outcome.reference.value
+    return [abs(value - exact) / (abs(exact) or 1.0) for value in outcome.values]
+
+
+def _text_plot(outcome: Outcome, columns: int = 60) -> None:
+    """Errors by level as bars on a logarithmic scale."""
+    import math
+
+    errors = _errors(outcome)
+    exponents = [math.log10(max(error, 1e-17)) for error in errors]
+    low, high = math.floor(min(exponents)), math.ceil(max(exponents))
+    print(f"{outcome.benchmark} {outcome.quantity}: error by level, 1e{low} .. 1e{high}")
+    for level, (error, exponent) in enumerate(zip(errors, exponents)):
+        bar = round(columns * (exponent - low) / max(high - low, 1))
+        print(f"  {level}  {error:9.2e} {'#' * bar}")
+
+
+def _matplotlib() -> Any:
+    try:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise InputError("--plot needs matplotlib, which is not installed: pip install 'abut[picture]'") from None
+    return plt
+
+
+def _plot(outcomes: Sequence[Outcome], path: Path) -> None:
+    from abut.benchmarks import BENCHMARKS
+
+    plt = _matplotlib()
+    figure, axes = plt.subplots(figsize=(6, 4.5), constrained_layout=True)
+    for outcome in outcomes:
+        sizes = [BENCHMARKS[outcome.benchmark].size(level) for level in range(len(outcome.values))]
+        rate = "" if outcome.rate is None else f", rate {outcome.rate:.2f}"
+        axes.loglog(sizes, _errors(outcome), "o-", label=f"{outcome.benchmark} {outcome.quantity}{rate}")
+    axes.set_xlabel("mesh size")
+    axes.set_ylabel("error")
+    axes.grid(True, which="both", alpha=0.3)
+    axes.legend(fontsize="small")
+    try:
+        figure.savefig(path, dpi=150)
+    except (OSError, ValueError) as error:
+        raise InputError(f"--plot: cannot write {path} ({error})") from None
+
+
+def _verify_job(arguments: argparse.Namespace) -> int:
+    from abut.job import load_job
+    from abut.verify import interface_patch
+    from abut.verify.interface_patch import describe
+
+    results = interface_patch(load_job(arguments.job).model)
+    if arguments.json:
+        print(json.dumps([{**vars(result), "passed": result.passed} for result in results], indent=2))
+    else:
+        for result in results:
+            print(*describe(result), sep="\n")
+    return DONE if all(result.passed for result in results) else FAILED
+
+
+def _infsup(arguments: argparse.Namespace) -> int:
+    from abut.job import load_job
+    from abut.verify import inf_sup
+
+    if arguments.levels < 1:
+        raise InputError(f"infsup: --levels: expected a whole number >= 1, got {arguments.levels}")
+    models = [load_job(arguments.job, refine=level).model for level in range(arguments.levels)]
+    names = [arguments.contact] if arguments.contact else [c.name for c in models[0].contacts if c.kind != "tied"]
+    results = [inf_sup(models, name) for name in names or [None]]
+    if arguments.json:
+        plain = [{**vars(r), "levels": [vars(level) for level in r.levels]} for r in results]
+        print(json.dumps(plain, indent=2))
+        return DONE if all(r.stable for r in results) else FAILED
+    for result in results:
+        first = result.levels[0]
+        print(f"contact '{first.contact}', pressure {first.space}")
+        print("  multipliers   facet size   beta (H^-1/2)   beta (h M)   spurious modes")
+        for level in result.levels:
+            print(
+                f"  {level.multipliers:11d}   {level.size:10.4g}   {level.trace:13.4f}   {level.mesh:10.4f}   "
+                f"{level.spurious:14d}"
+            )
+        print(f"  {result.verdict}")
+    return DONE if all(r.stable for r in results) else FAILED

@@ -1,0 +1,198 @@
+"""The contact patch test on a model's own meshes: uniform pressure through each of its interfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.analysis.certificate import BALANCE, balance
+from abut.discretization.pairs import Pair, pair
+from abut.discretization.rigid import rigid_modes
+from abut.discretization.supports import supports
+from abut.errors import InputError
+from abut.interface.coupling import couple, surface_degree
+from abut.interface.geometry import nodal_normals
+from abut.interface.recover import facet_node_values
+from abut.mesh.facets import facet_keys, number_keys
+from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
+from abut.model import Contact, Model, Solid, Support
+from abut.solids.elements import stiffness
+from abut.solids.loads import stress_load
+from abut.solids.materials import LinearElastic
+from abut.solvers.active_set import Rows
+from abut.solvers.blocks import newton_step
+
+EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
+FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane
+POISSON = 0.3
+PINS = 12  # points of a body among which those that hold it are chosen
+
+
+@dataclass(frozen=True)
+class InterfacePatch:
+    """What the patch test of one contact found. On a plane interface: the largest relative errors of pressure and
+    displacement; on a curved one these are None, and only resultant and moment of a uniform pressure are compared
+    between the two sides (relative to the force, and to force times extent)."""
+
+    contact: str
+    flat: bool
+    pressure: float | None
+    displacement: float | None
+    force_balance: float
+    moment_balance: float
+
+    @property
+    def passed(self) -> bool:
+        errors = [] if self.pressure is None or self.displacement is None else [self.pressure, self.displacement]
+        return max(errors, default=0.0) <= EXACT and max(self.force_balance, self.moment_balance) <= BALANCE
+
+
+def interface_patch(model: Model) -> tuple[InterfacePatch, ...]:
+    """Run the patch test on every contact of a model, on its meshes as they are.
+
+    Materials are made equal, loads and supports replaced by a uniform stress normal to the interface, gaps set to zero;
+    where the surfaces do not cover each other, the bare part carries the same stress as a load. Raises InputError for a
+    model without contact, or one whose surfaces do not face each other.
+    """
+    if not model.contacts:
+        raise InputError("verify: the model has no contact to test; add one ([[contacts]])")
+    return tuple(_test(model, contact) for contact in model.contacts)
+
+
+def _test(model: Model, contact: Contact) -> InterfacePatch:
+    if contact.method == "node-to-segment-two-pass":
+        raise InputError(
+            f"verify: contact '{contact.name}' is {contact.method}, whose pressure is not unique; take another method"
+        )
+    contact = replace(contact, kind="contact", law="complementarity", offset=0.0)
+    normal = _plane_normal(model, contact)
+    bodies = Model(
+        model.mesh,
+        [Solid(body, LinearElastic(1.0, POISSON)) for body in model.mesh.bodies],
+        contacts=[contact],
+        plane=model.plane,
+    )
+    if normal is None:
+        own = pair(bodies, contact, supports(bodies))
+        force, moment = balance(own, np.ones(9 * len(own.contactor)))
+        return InterfacePatch(contact.name, False, None, None, force, moment)
+    stress = -np.outer(normal, normal)
+    exact = model.mesh.points @ _strain(stress, model.plane)
+    pinned = _pinned(bodies, exact)
+    held = supports(pinned)
+    own = pair(pinned, contact, held)
+    load = _load(model.mesh, own.contactor, own.target, stress)
+    full = stiffness(pinned.mesh, {solid.body: solid.material for solid in pinned.solids}, model.plane)
+    displacement, pressure = _solve(full, load, held.free, held.prescribed, own)
+    values = own.space.transfer @ pressure
+    nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]
+    force, moment = balance(own, values)
+    return InterfacePatch(
+        contact.name,
+        True,
+        float(np.nanmax(np.abs(nodal - 1.0))),
+        float(np.abs(displacement.reshape(exact.shape) - exact).max() / np.abs(exact).max()),
+        force,
+        moment,
+    )
+
+
+def _plane_normal(model: Model, contact: Contact) -> NDArray[np.float64] | None:
+    """The unit normal of a plane interface, None where it is curved (or, axisymmetric, not across the axis)."""
+    surfaces = [model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)]
+    used = [nodal_normals(s)[s.nodes >= 0] for s in surfaces]
+    normal = used[0].mean(axis=0)
+    normal /= max(float(np.linalg.norm(normal)), 1e-300)
+    if model.mesh.axisymmetric and abs(normal[0]) > FLAT:
+        return None
+    for own, sign in zip(used, (1.0, -1.0)):
+        if np.abs(own - sign * normal).max() > FLAT:
+            return None
+    return np.asarray(normal)
+
+
+def _strain(stress: NDArray[np.float64], plane: str | None) -> NDArray[np.float64]:
+    """Strain of a unit modulus; in plane strain the stress out of the plane is what keeps that strain zero."""
+    trace = np.trace(stress)
+    if plane == "strain":
+        trace = trace * (1.0 + POISSON)
+    return np.asarray((1.0 + POISSON) * stress - POISSON * trace * np.eye(len(stress)))
+
+
+def _pinned(model: Model, exact: NDArray[np.float64]) -> Model:
+    """Every body (or group of glued bodies) held in a statically determinate way at its exact displacement."""
+    mesh, dim = model.mesh, model.dim
+    rigid = rigid_modes(mesh)
+    sets: dict[str, NDArray[np.int64]] = {}
+    pins = []
+    for i, group in enumerate(rigid.groups):
+        nodes = np.unique(np.concatenate([mesh.nodes_of(body) for body in group]))
+        far = _spread_out(mesh.points[nodes])
+        candidates = (dim * nodes[far][:, None] + np.arange(dim)).ravel()
+        modes = rigid.modes[candidates, rigid.per_group * i : rigid.per_group * (i + 1)]
+        chosen = scipy.linalg.qr(modes.T, mode="r", pivoting=True)[1][: rigid.per_group]
+        for dof in candidates[chosen]:
+            node, axis = divmod(int(dof), dim)
+            sets[f"pin {dof}"] = np.array([node])
+            pins.append(Support(f"pin {dof}", **{"xyz"[axis]: float(exact[node, axis])}))
+    return replace(model, mesh=replace(mesh, node_sets={**mesh.node_sets, **sets}), supports=pins)
+
+
+def _spread_out(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Some points far from each other: each next one is farthest from those before."""
+    chosen = [int(np.linalg.norm(points - points.mean(axis=0), axis=1).argmax())]
+    distance = np.linalg.norm(points - points[chosen[0]], axis=1)
+    while len(chosen) < min(PINS, len(points)):
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return np.array(chosen)
+
+
+def _load(mesh: Mesh, contactor: Surface, target: Surface, stress: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Traction of the uniform stress on the whole boundary, less what the contact carries. That part comes from cutting
+    the target by the contactor, the other way round than the test does: an answer of its own."""
+    keys, rows = facet_keys(mesh, np.arange(len(mesh.points)))
+    (number,) = number_keys(keys)
+    boundary = mesh.facets(rows[np.bincount(number)[number] == 1])
+    back = couple(target, contactor, surface_degree(target))
+    ones = np.ones(9 * len(target))
+    carried = back.contactor_part.T @ ones - back.target_part.T @ ones
+    return np.asarray(stress_load(boundary, stress) - carried)
+
+
+def _solve(
+    full: sp.csr_matrix, load: NDArray[np.float64], free: sp.csr_matrix, prescribed: NDArray[np.float64], own: Pair
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Displacement at all points, (dim n_points,), and pressure with every multiplier in contact and no initial gap."""
+    n = len(own)
+    rows = Rows(
+        residual=-own.prescribed,
+        by_displacement=-own.operator,
+        by_pressure=sp.csr_matrix((n, n)),
+        decoupled=np.zeros(n, dtype=bool),
+        symmetric=True,
+    )
+    residual = free.T @ (full @ prescribed - load)
+    moved, pressure = newton_step((free.T @ full @ free).tocsr(), own.operator, rows, residual, np.zeros(n))
+    return np.asarray(free @ moved + prescribed), pressure
+
+
+def describe(result: InterfacePatch) -> Sequence[str]:
+    """The result in lines for a person."""
+    verdict = "pass" if result.passed else "FAIL"
+    balanced = f"force balance {result.force_balance:.1e}, moment balance {result.moment_balance:.1e}"
+    if result.pressure is None or result.displacement is None:
+        return (
+            f"{verdict}  {result.contact}: curved interface, where a uniform pressure is no exact solution: {balanced} of a "
+            f"uniform pressure (limit {BALANCE:.0e})",
+        )
+    return (
+        f"{verdict}  {result.contact}: plane interface, error of the pressure {result.pressure:.1e}, of the displacement "
+        f"{result.displacement:.1e} (limit {EXACT:.0e}); {balanced} (limit {BALANCE:.0e})",
+    )
