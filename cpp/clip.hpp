@@ -89,21 +89,25 @@ inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count
 }
 
 // Moves a vertex where two curves cross to their true intersection, theory (S8), starting from that of the chords.
+// Where Newton finds none nearby the chords' stays: both neighbours of either curve then see the same vertex, whichever
+// curve comes first.
 inline void polish(const Curve &c, const Curve &d, Point2 &p) {
   double s = c.parameter(p), t = d.parameter(p);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const Point2 f = c.at(s) - d.at(t), cs = c.slope(s), dt = d.slope(t);
     const double det = -cross2(cs, dt);
     if (std::abs(det) < 1e-12 * std::sqrt(dot2(cs, cs) * dot2(dt, dt)))
-      return; // nearly parallel: keep the chords'
+      return; // nearly parallel
     const double ds = (-f.x * -dt.y + f.y * -dt.x) / det;
     const double step = (cs.x * -f.y + cs.y * f.x) / det;
     s += ds, t += step;
-    if (std::abs(ds) + std::abs(step) < 1e-15)
-      break;
+    if (!(s > -0.5 && s < 1.5 && t > -0.5 && t < 1.5))
+      return;
+    if (std::abs(ds) + std::abs(step) < 1e-9) { // quadratic convergence: the next step would be rounding
+      p = c.at(s);
+      return;
+    }
   }
-  if (s > -0.5 && s < 1.5 && t > -0.5 && t < 1.5)
-    p = c.at(s);
 }
 
 // One-dimensional rules on [0, 1]: `t` along an edge, `r` from the apex with the weight r included.
@@ -113,7 +117,9 @@ struct Rule {
 };
 
 // Calls visit(point, weight) for a rule on every cone from an apex to an edge. Straight polygons are fanned from their
-// first vertex, curved ones from the mean of the vertices. The cones are theory (S9), the rule theory (Q1).
+// first vertex, curved ones from the mean of the vertices. The cones are theory (S9), the rule theory (Q1). A vertex
+// that is not on its curve (see `polish`) is linked to it by a straight edge: only a closed boundary has an area that
+// does not depend on the apex, and neighbours share links.
 template <class Visit>
 void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curves)[2], const Rule &rule, Visit visit) {
   bool straight = true;
@@ -123,18 +129,33 @@ void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curv
     mean = mean + (1.0 / polygon.size) * polygon.v[i].p;
   }
   const Point2 apex = straight ? polygon.v[0].p : mean;
-  for (int i = straight ? 1 : 0; i < polygon.size - (straight ? 1 : 0); ++i) {
-    const Point2 p = polygon.v[i].p, q = polygon.v[(i + 1) % polygon.size].p;
-    const Curve &curve = curves[polygon.v[i].side][polygon.v[i].edge];
-    const double t0 = curve.straight ? 0 : curve.parameter(p), t1 = curve.straight ? 1 : curve.parameter(q);
+  auto cone = [&](auto at, auto slope) {
     for (int k = 0; k < rule.n; ++k) {
-      const double t = t0 + rule.t[k] * (t1 - t0);
-      const Point2 on = curve.straight ? p + rule.t[k] * (q - p) : curve.at(t);
-      const Point2 along = curve.straight ? q - p : (t1 - t0) * curve.slope(t);
+      const Point2 on = at(rule.t[k]), along = slope(rule.t[k]);
       const double jacobian = cross2(on - apex, along) * rule.wt[k];
       for (int m = 0; m < rule.n; ++m)
         visit(apex + rule.r[m] * (on - apex), jacobian * rule.wr[m]);
     }
+  };
+  auto line = [&](Point2 p, Point2 q) {
+    cone([&](double t) { return p + t * (q - p); }, [&](double) { return q - p; });
+  };
+  for (int i = straight ? 1 : 0; i < polygon.size - (straight ? 1 : 0); ++i) {
+    const Point2 p = polygon.v[i].p, q = polygon.v[(i + 1) % polygon.size].p;
+    const Curve &curve = curves[polygon.v[i].side][polygon.v[i].edge];
+    if (curve.straight) {
+      line(p, q);
+      continue;
+    }
+    const double t0 = curve.parameter(p), t1 = curve.parameter(q);
+    const Point2 first = curve.at(t0), last = curve.at(t1);
+    const double off = 1e-24 * dot2(curve.b - curve.a, curve.b - curve.a);
+    if (dot2(first - p, first - p) > off)
+      line(p, first);
+    cone([&](double t) { return curve.at(t0 + t * (t1 - t0)); },
+         [&](double t) { return (t1 - t0) * curve.slope(t0 + t * (t1 - t0)); });
+    if (dot2(q - last, q - last) > off)
+      line(last, q);
   }
 }
 

@@ -67,7 +67,7 @@ double moment_error_line(const Facet<double> &f, const Rule &rule, const double 
 
 // theory (S7)
 int subdivisions_needed(const Facet<double> &f) {
-  if (!quadratic(f.kind) || f.dim == 2)
+  if (!quadratic(f.kind) || f.dim == 2 || f.affine)
     return 1;
   const Plane plane = mean_plane(f);
   const int corners = f.triangle() ? 3 : 4;
@@ -87,12 +87,18 @@ void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &e
   const int last = int(rules.count);
   const Rule fine = exact_rules.rule(int(exact_rules.count));
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
+  // One number of subdivisions for all facets with curves: were a common edge one chord here and two there, segments
+  // cut by the chords would overlap or leave out what lies between.
+  int most = 1;
+  for (std::size_t f = 0; f < surface.facets; ++f)
+    most = std::max(most, subdivisions_needed(surface.facet(f)));
   for (std::size_t f = 0; f < surface.facets; ++f) {
     Facet<double> facet = surface.facet(f);
     const bool plain = facet.affine && !axisymmetric;
+    const int m = quadratic(facet.kind) ? most : 1;
+    subdivisions.push_back(m);
     if (plain && affine_points[facet.kind]) {
       points.push_back(affine_points[facet.kind]);
-      subdivisions.push_back(1);
       continue;
     }
     double exact[9][9] = {{0}}, area = 0;
@@ -119,7 +125,6 @@ void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &e
           for (int j = 0; j < facet.nodes; ++j)
             exact[i][j] += weight * n[i] * n[j];
       }
-    const int m = subdivisions_needed(facet);
     int n = 1;
     if (line) {
       for (; n < last; ++n)
@@ -137,7 +142,6 @@ void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &e
     if (plain)
       affine_points[facet.kind] = n;
     points.push_back(n);
-    subdivisions.push_back(m);
   }
 }
 

@@ -65,14 +65,18 @@ template <class T> struct Facet {
   bool triangle() const { return kind == TRI3 || kind == TRI6; }
   // Reference coordinates of the middle.
   void centre(T *xi) const { xi[0] = xi[1] = triangle() ? T(1) / T(3) : T(0); }
-  // Nearest point of the reference domain, componentwise; `slack` widens the domain.
+  // A near point of the reference domain, `slack` wider: componentwise, in triangles' area coordinates, so that the
+  // answer does not depend on which corner comes first.
   void clamp(T *xi, T slack = T(0)) const {
     if (triangle()) {
-      const T over = xi[0] + xi[1] - (T(1) + slack);
-      if (over > T(0))
-        xi[0] -= T(0.5) * over, xi[1] -= T(0.5) * over;
+      T l[3] = {T(1) - xi[0] - xi[1] + slack, xi[0] + slack, xi[1] + slack};
+      if (l[0] >= T(0) && l[1] >= T(0) && l[2] >= T(0))
+        return;
+      T sum = T(0);
+      for (T &value : l)
+        value = std::max(value, T(0)), sum += value;
       for (int a = 0; a < 2; ++a)
-        xi[a] = std::min(std::max(xi[a], -slack), T(1) + slack);
+        xi[a] = l[a + 1] * (T(1) + T(3) * slack) / sum - slack;
     } else {
       for (int a = 0; a < dim - 1; ++a)
         xi[a] = std::min(std::max(xi[a], T(-1) - slack), T(1) + slack);

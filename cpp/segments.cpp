@@ -231,13 +231,19 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
   double xi[2], eta[2];
   c.facet.centre(xi), t.centre(eta);
   // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
-  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
+  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], turned[2][3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
   auto look = [&](Point2 p) {
     if (!c.locate(p, xi))
       return HUGE_VAL;
-    c.facet.at(xi, x, tangent, n, nc);
-    double t1[3], t2[3];
-    frame(n, t1, t2);
+    const double *t1 = c.plane.e1, *t2 = c.plane.e2;
+    if (c.flat) {
+      c.facet.at(xi, x, tangent, nullptr, nc);
+      std::copy(c.plane.n, c.plane.n + 3, n);
+    } else {
+      c.facet.at(xi, x, tangent, n, nc);
+      frame(n, turned[0], turned[1]);
+      t1 = turned[0], t2 = turned[1];
+    }
     if (!project(t, x, t1, t2, eta))
       return HUGE_VAL;
     t.at(eta, y, target_tangent, nullptr, nt);

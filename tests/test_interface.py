@@ -17,16 +17,7 @@ from abut.interface.geometry import full_moments
 from abut.interface.laws import constraint_function
 from abut.interface.pressure import non_negative_block, pressure_space, resolve
 from abut.mesh.surface import Surface
-from surfaces import FACETS_3D, grid
-
-
-def bulge(x):
-    """Moves nodes within the unit square, not on its rim: edges become curved in the plane."""
-    y = x.copy()
-    inner = np.sin(np.pi * x[:, 0]) * np.sin(np.pi * x[:, 1])
-    y[:, 0] += 0.06 * inner * np.cos(np.pi * x[:, 1])
-    y[:, 1] += 0.05 * inner * np.cos(np.pi * (x[:, 0] - 0.3))
-    return y
+from surfaces import FACETS_3D, grid, in_plane
 
 
 def nodal_areas(surface: Surface) -> np.ndarray:
@@ -43,8 +34,8 @@ def nodal_areas(surface: Surface) -> np.ndarray:
 def test_segments_tile_both_surfaces(kc: str, kt: str, curved: bool) -> None:
     """A unit pressure gives both sides their own consistent nodal forces: the segments leave no gap and no overlap, and
     are integrated exactly (to the 1e-12 of the moment condition), also with edges curved within the plane."""
-    contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=bulge if curved else None)
-    target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=bulge if curved else None)
+    contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane if curved else None)
+    target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane if curved else None)
     coupling = couple(contactor, target, surface_degree(contactor))
     space = pressure_space(resolve("auto", contactor)[0], contactor, coupling)
     unit = space.transfer @ np.ones(len(space))

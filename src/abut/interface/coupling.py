@@ -20,6 +20,8 @@ from abut.interface.geometry import by_kind, facet_sizes, nodal_normals
 from abut.interface.quadrature import MOMENT_TOLERANCE, rule_tables
 from abut.mesh.surface import Surface
 
+CURVED_POINTS = 6  # per direction, where the contactor's normal turns within a facet
+SAME_NORMAL = 1e-9
 ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
 
 
@@ -103,8 +105,11 @@ def couple(
     tables = rule_tables(rule)
     order_c, split_c = _plan(contactor, tables, points)
     order_t, split_t = _plan(target, tables, points)
+    normals = nodal_normals(contactor)
+    if points == "auto":
+        order_c = np.where(_varying(contactor, normals), np.maximum(order_c, CURVED_POINTS), order_c).astype(np.int32)
     raw = couple_surfaces(
-        contactor.points, contactor.kinds, contactor.nodes, nodal_normals(contactor),
+        contactor.points, contactor.kinds, contactor.nodes, normals,
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
         degree, not componentwise, keep_points, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
@@ -142,6 +147,13 @@ def _plan(
     if points != "auto":
         order = np.full_like(order, int(points))
     return order, split
+
+
+def _varying(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Facets over which the continuous normal turns: the place looked at on the target is no polynomial there."""
+    used = (surface.nodes >= 0)[..., None]
+    spread = np.where(used, normals, -np.inf).max(axis=1) - np.where(used, normals, np.inf).min(axis=1)
+    return np.asarray(spread.max(axis=1) > SAME_NORMAL)
 
 
 def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
