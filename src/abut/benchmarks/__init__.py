@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import fits, hertz, patch
+from abut.benchmarks import fits, hertz, patch, punches
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
 
-BENCHMARKS: dict[str, Benchmark] = {b.name: b for b in (*patch.BENCHMARKS, *hertz.BENCHMARKS, *fits.BENCHMARKS)}
+BENCHMARKS: dict[str, Benchmark] = {
+    b.name: b for b in (*patch.BENCHMARKS, *hertz.BENCHMARKS, *fits.BENCHMARKS, *punches.BENCHMARKS)
+}
