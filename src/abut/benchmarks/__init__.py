@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import fits, hertz, patch, punches
+from abut.benchmarks import contrast, fits, hertz, patch, punches, stability
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
 
 BENCHMARKS: dict[str, Benchmark] = {
-    b.name: b for b in (*patch.BENCHMARKS, *hertz.BENCHMARKS, *fits.BENCHMARKS, *punches.BENCHMARKS)
+    b.name: b
+    for b in (
+        *patch.BENCHMARKS,
+        *hertz.BENCHMARKS,
+        *fits.BENCHMARKS,
+        *punches.BENCHMARKS,
+        *contrast.BENCHMARKS,
+        *stability.BENCHMARKS,
+    )
 }
