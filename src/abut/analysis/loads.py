@@ -30,8 +30,8 @@ def applied_load(model: Model) -> NDArray[np.float64]:
     return total
 
 
-def external_load(model: Model) -> NDArray[np.float64]:
-    """Applied loads and the forces of thermal strains, (dim n_points,)."""
+def strain_load(model: Model) -> NDArray[np.float64]:
+    """Nodal forces of thermal strains, (dim n_points,)."""
     materials = {solid.body: solid.material for solid in model.solids}
     temperatures = {solid.body: solid.temperature for solid in model.solids}
-    return applied_load(model) + thermal_load(model.mesh, materials, temperatures, model.plane)
+    return thermal_load(model.mesh, materials, temperatures, model.plane)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import patch
+from abut.benchmarks import convergence, patch
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
 
-BENCHMARKS: dict[str, Benchmark] = {b.name: b for b in (*patch.BENCHMARKS,)}
+BENCHMARKS: dict[str, Benchmark] = {b.name: b for b in (*patch.BENCHMARKS, *convergence.BENCHMARKS)}
