@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import contrast, fits, hertz, patch, punches, stability
+from abut.benchmarks import beam, contrast, convergence, fits, hertz, patch, punches, stability
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
@@ -15,6 +15,8 @@ BENCHMARKS: dict[str, Benchmark] = {
         *fits.BENCHMARKS,
         *punches.BENCHMARKS,
         *contrast.BENCHMARKS,
+        *beam.BENCHMARKS,
         *stability.BENCHMARKS,
+        *convergence.BENCHMARKS,
     )
 }
