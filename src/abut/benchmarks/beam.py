@@ -36,7 +36,7 @@ def _beam(kind: str, squeeze: float) -> Benchmark:
             "right": rectangle((0.5 * LENGTH, LENGTH), (-half, half), (3 * n, 4 * n), "quad9"),
         }
         ends = [
-            Support(on, **{axis: lambda x, a=a: _exact(x, squeeze)[:, a] for a, axis in enumerate("xy")})
+            Support(on, x=lambda x: _exact(x, squeeze)[:, 0], y=lambda x: _exact(x, squeeze)[:, 1])
             for on in ("left.left", "right.right")
         ]
         return Model(
