@@ -19,7 +19,7 @@ PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
-LINEAR = ("auto", "direct")
+LINEAR = ("auto", "direct", "amg")
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,8 +20,8 @@ from abut.model import Model
 from abut.solids.elements import stiffness
 from abut.solvers.active_set import System, solve_step, start
 from abut.solvers.blocks import newton_step
-from abut.solvers.condensed import condense
-from abut.solvers.direct import solver_name
+from abut.solvers.iterative import NotConverged
+from abut.solvers.linear import Prepared, choose, prepare
 from abut.state import Observer, Solution, Step
 
 ABSURD = 1e6  # displacement over model size that no units explain
@@ -71,31 +70,42 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         freed=held_by.freed,
         step=partial(newton_step, reduced, operator),
     )
-    note(f"{n_free} free displacements, {sum(map(len, every))} multipliers, direct solver {solver_name()}")
+    note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
-    whole, condensed = system, condense(system, held.free.T @ held_by.free)
-    if condensed is not None:
-        note(f"displacements eliminated but {len(condensed.kept)}: what is left to solve is dense")
-        system = condensed.system
 
-    state = start(system)
+    def linear_solver(kind: str) -> Prepared:
+        modes = held_by.rigid
+        result = prepare(kind, system, held.free, modes.together, held_by.free, model.dim)
+        note(result.note)
+        return result
+
+    solver = linear_solver(choose(model.solve.linear, system, model.dim))
+    state = start(solver.system)
     steps: list[Step] = []
     count = model.solve.steps
     for number in range(1, count + 1):
         factor = number / count
-        outcome = solve_step(system, state, factor, number, model.solve.max_iterations, observe)
+        try:
+            outcome = solve_step(solver.system, state, factor, number, model.solve.max_iterations, observe)
+        except NotConverged as reason:
+            note(f"step {number}: {reason}: going on with the direct solver")
+            solver = linear_solver("direct")
+            outcome = solve_step(
+                solver.system, start(solver.system), factor, number, model.solve.max_iterations, observe
+            )
         state = outcome.unknowns
-        if condensed is not None:
-            outcome = replace(outcome, unknowns=condensed.expand(state, factor, outcome.laws))
+        outcome = solver.finish(outcome, factor)
         displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, resultant, displacement, whole, outcome, number, factor))
+        steps.append(step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
             break
-    return Solution(model, tuple(steps), n_free, f"direct ({solver_name()})", tuple(notes), clock.timings)
+    if solver.count is not None:
+        note(f"{solver.count.iterations} linear iterations in all")
+    return Solution(model, tuple(steps), n_free, solver.name, tuple(notes), clock.timings)
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

@@ -60,6 +60,7 @@ class Pair:
     scale: NDArray[np.float64]
     size: float
     stiffness: float
+    compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
 
     @property
@@ -103,7 +104,8 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
     if tied:
-        return _tied(contact, contactor, target, coupling, space, held, size, stiffness)
+        compliance = _compliance(model, contactor, target)
+        return _tied(contact, contactor, target, coupling, space, held, size, stiffness, compliance)
     space = _without_held(space, contactor, coupling, held)
     rows = (space.transfer.T @ coupling.operator).tocsr()
     free = (rows @ held.free).tocsr()
@@ -117,6 +119,7 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
         prescribed=rows @ held.prescribed,
         gap=space.transfer.T @ coupling.gap + contact.offset * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
+        compliance=_compliance(model, contactor, target),
         points=_points(contact, coupling, space, held, modulus / sizes),
     )  # fmt: skip
 
@@ -166,7 +169,7 @@ def _points(
 
 def _tied(
     contact: Contact, contactor: Surface, target: Surface, coupling: Coupling, space: PressureSpace,
-    held: Supports, size: float, stiffness: float,
+    held: Supports, size: float, stiffness: float, compliance: float,
 ) -> Pair:  # fmt: skip
     """All components of the displacement are tied, theory (L9). A multiplier component that supports hold at its node
     on the contactor follows its neighbour, direction by direction."""
@@ -199,7 +202,7 @@ def _tied(
     return Pair(
         contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
         prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
-        stiffness=stiffness,
+        stiffness=stiffness, compliance=compliance,
     )  # fmt: skip
 
 
@@ -225,6 +228,14 @@ def _row_norms(matrix: Any) -> NDArray[np.float64]:
 
 def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
     return default_reach(contactor, target) + 2.0 * float(np.abs(held.prescribed).max(initial=0.0))
+
+
+def _compliance(model: Model, contactor: Surface, target: Surface) -> float:
+    total = 0.0
+    for surface in (contactor, target):
+        bodies = [s for s in model.solids if np.isin(surface.cells, model.mesh.bodies[s.body]).any()]
+        total += max(2.0 * (1.0 - s.material.poisson**2) / s.material.young for s in bodies)
+    return total
 
 
 def _modulus(model: Model, contactor: Surface, target: Surface) -> float:

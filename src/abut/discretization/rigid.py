@@ -25,6 +25,12 @@ class RigidModes:
     groups: tuple[tuple[str, ...], ...]
     per_group: int
 
+    @property
+    def together(self) -> NDArray[np.float64]:
+        """(dim n_points, per_group) each body's own motions, those of all bodies added up: as they share no points, every
+        body still has its own."""
+        return np.asarray(self.modes.reshape(len(self.modes), -1, self.per_group).sum(axis=1))
+
 
 def rigid_modes(mesh: Mesh) -> RigidModes:
     """Rigid motions of every group of bodies that share nodes."""

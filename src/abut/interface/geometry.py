@@ -129,3 +129,28 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
             values, _ = shape_functions(own.code, np.ascontiguousarray(xi))
             moments[facets, : own.nodes] = area @ values
     return moments
+
+
+def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:
+    """int grad H_k . grad H_l along the surface over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
+    result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
+    x, w = np.polynomial.legendre.leggauss(3)
+    for kind, facets in by_kind(surface):
+        cell, own = CELLS[kind], CELLS[pressure_kind(kind, degree)]
+        xi, weight = x[:, None], w
+        if cell.dim == 2:
+            a, b = (grid.ravel() for grid in np.meshgrid(x, x, indexing="ij"))
+            xi, weight = np.stack([a, b], axis=1), np.outer(w, w).ravel()
+            if cell.corners == 3:
+                r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
+                xi, weight = np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weight * r
+        shapes, slopes = shape_functions(cell.code, np.ascontiguousarray(xi))
+        _, gradients = shape_functions(own.code, np.ascontiguousarray(xi))
+        at = _nodes(surface, kind, facets)
+        tangents = np.einsum("qna,fnd->fqda", slopes, at)
+        metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
+        measure = np.sqrt(np.linalg.det(metric)) * weight * surface.around(np.einsum("qn,fnd->fqd", shapes, at))
+        inverse = np.linalg.inv(metric)
+        block = np.einsum("fq,qka,fqab,qlb->fkl", measure, gradients, inverse, gradients, optimize=True)
+        result[facets[:, None, None], np.arange(own.nodes)[:, None], np.arange(own.nodes)] = block
+    return result

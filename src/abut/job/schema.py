@@ -103,7 +103,7 @@ class ContactTable(Table):
 
 class SolveTable(Table):
     steps: int = SolveOptions.steps
-    linear: Literal["auto", "direct"] = "auto"
+    linear: Literal["auto", "direct", "amg"] = "auto"
     max_iterations: int = SolveOptions.max_iterations
 
 

@@ -20,6 +20,13 @@ from abut.state import Iteration
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
 UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
+ACCURATE = 1e-8  # of equilibrium and of closed gaps, where linear systems are solved iteratively
+ROUGH, FINE, FINEST = (
+    1e-2,
+    1e-5,
+    1e-9,
+)  # reductions of the residual asked of them: while the set changes, cycles, is final
+FEW = 0.02  # share of the active set below which changes count as few
 TOLERANCE = 1e-8  # of the relative residuals, for laws that are not piecewise linear
 
 
@@ -46,7 +53,9 @@ class Rows:
     symmetric: bool
 
 
-Step = Callable[[Rows, NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+Step = Callable[
+    [Rows, NDArray[np.float64], NDArray[np.float64], float], tuple[NDArray[np.float64], NDArray[np.float64]]
+]
 
 
 @dataclass(frozen=True)
@@ -54,7 +63,8 @@ class System:
     """What stays the same over all iterations and steps.
 
     ``complete`` adds to an active set that lets a body go the multipliers closest to contact; ``freed`` says in words
-    which body it lets go. ``step``: (rows, residual of equilibrium, pressure) -> (du, dp). Where displacements have been
+    which body it lets go. ``step``: (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by
+    ``accuracy`` or, where ``exact``, to rounding. Where displacements have been
     eliminated, ``compliance`` (n, n) and ``opening`` (n,) are the gaps that come of them, by pressures and by full load.
     """
 
@@ -65,6 +75,7 @@ class System:
     complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
     freed: Callable[[NDArray[np.bool_]], str]
     step: Step
+    exact: bool = True
     compliance: NDArray[np.float64] | None = None
     opening: NDArray[np.float64] | None = None
 
@@ -150,24 +161,35 @@ def solve_step(
     done: list[Iteration] = []
     keep_largest = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
+    accuracy = finest = ROUGH
     for count in range(1, limit + 1):
         clock = time.perf_counter()
         active = system.complete(state.active, system.gap(state, factor)) | tied
-        solved = _solve_active(system, replace(state, active=active), factor)
+        solved = _solve_active(system, replace(state, active=active), factor, accuracy)
         wanted, violation = _next_active(system, solved, factor, tied)
         changed = wanted != active
+        closure = _closure(system, solved, factor)
         row = _report(system, solved, factor, number, count, int(changed.sum()), violation, time.perf_counter() - clock)
+        row = replace(row, contact_residual=max(row.contact_residual, closure))
         done.append(row)
         observe(row)
         history.append(active)
         if not changed.any():
-            return _finish_smooth(system, solved, factor, number, limit, done, observe)
+            error = max(row.residual, closure)
+            if system.exact or error <= ACCURATE:
+                return _finish_smooth(system, solved, factor, number, limit, done, observe)
+            state, accuracy = solved, max(0.3 * ACCURATE / error, FINEST)
+            continue
+        accuracy = min(finest, ROUGH if changed.sum() > FEW * active.sum() else 0.1 * ROUGH)
         if np.array_equal(system.complete(wanted, system.gap(solved, factor)) | tied, active):
             raise SingularModelError(
                 f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
             )
         seen.add(active.tobytes())
-        if wanted.tobytes() in seen or keep_largest:
+        if wanted.tobytes() in seen and not system.exact and finest > FINE:
+            accuracy = finest = FINE  # sets may repeat because they were not solved well enough
+            seen.clear()
+        elif wanted.tobytes() in seen or keep_largest:
             keep_largest = 0.3 if not keep_largest else min(1.0, 1.5 * keep_largest)
             if wanted.tobytes() not in seen:
                 keep_largest = max(0.3, keep_largest / 1.5)
@@ -179,8 +201,16 @@ def solve_step(
     return Outcome(replace(solved, active=active), tuple(done), False, cycling, partial(_active_laws, factor=factor))
 
 
-def _solve_active(system: System, state: Unknowns, factor: float) -> Unknowns:
-    return _advance(system, state, factor, _active_laws(system, state, factor))
+def _solve_active(system: System, state: Unknowns, factor: float, accuracy: float) -> Unknowns:
+    return _advance(system, state, factor, _active_laws(system, state, factor), accuracy)
+
+
+def _closure(system: System, state: Unknowns, factor: float) -> float:
+    """Largest weighted gap left where contact is closed, as a pressure over the largest pressure."""
+    if system.exact or not state.active.any():
+        return 0.0
+    gap = system.gap(state, factor) / system.join([pair.scale for pair in system.pairs])
+    return float(np.abs(gap[state.active]).max() / max(np.abs(state.pressure).max(), 1e-300))
 
 
 def _active_laws(system: System, state: Unknowns, factor: float) -> list[Linearisation]:
@@ -195,9 +225,11 @@ def _active_laws(system: System, state: Unknowns, factor: float) -> list[Lineari
     ]
 
 
-def _advance(system: System, state: Unknowns, factor: float, laws: Sequence[Linearisation]) -> Unknowns:
+def _advance(
+    system: System, state: Unknowns, factor: float, laws: Sequence[Linearisation], accuracy: float = FINEST
+) -> Unknowns:
     residual = _equilibrium(system, state, factor)
-    du, dp = system.step(system.rows(laws), residual, state.pressure)
+    du, dp = system.step(system.rows(laws), residual, state.pressure, accuracy)
     return replace(state, displacement=state.displacement + du, pressure=state.pressure + dp)
 
 

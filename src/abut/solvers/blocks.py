@@ -18,10 +18,12 @@ def newton_step(
     rows: Rows,
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
+    accuracy: float = 0.0,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
     stiffness: (n_u, n_u) sparse symmetric; operator B: (n, n_u), all pairs stacked; residual: K u - B^T p - f.
+    accuracy: not needed, the solution is direct.
     """
     n = len(pressure)
     if n == 0:

@@ -49,7 +49,7 @@ class Condensed:
                 if not linear[i].at_points:  # what those see has been kept
                     opened[i] = opened[i] + linear[i].by_gap @ shift
             rows = replace(self.system.rows(linear), residual=np.concatenate(opened))
-            inner[self.kept], inner[n:] = self.system.step(rows, -inner[self.kept], p)
+            inner[self.kept], inner[n:] = self.system.step(rows, -inner[self.kept], p, 0.0)
             state = replace(
                 state,
                 displacement=state.displacement + self.factorization.backward(inner)[:n],
@@ -74,7 +74,7 @@ class Flexibility:
     redundant: bool
 
     def step(
-        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64]
+        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float = 0.0
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r): du = K^-1 (B^T dp - residual) + R a, with R^T of the
         bracket zero, theory (V5), put into the rows of the laws."""

@@ -10,13 +10,13 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
-from scipy.special import ellipj, ellipk
 
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import product_rule
 from abut.mesh.surface import Surface, around
+from abut.solvers.fractional import inverse_root
 from abut.verify.trace import TraceSpace
 
 CHUNK = 4096
@@ -64,7 +64,7 @@ class TraceNorm:
 def trace_norm(space: TraceSpace, transfer: Any, accuracy: float = 1e-5) -> TraceNorm:
     """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor, squared to ``accuracy``."""
     largest = _largest(space.full, space.mass)
-    shifts, weights = _resolvents(1.0, largest, accuracy)
+    shifts, weights = inverse_root(1.0, largest, accuracy)
     solves = tuple(spla.splu((space.full + s * space.mass).tocsc()).solve for s in shifts)
     return TraceNorm((space.moments @ transfer).tocsr(), solves, weights)
 
@@ -74,15 +74,6 @@ def _largest(full: Any, mass: Any) -> float:
     smaller than a tenth of it on quadratic facets."""
     lumped = np.asarray(abs(mass).sum(axis=1)).ravel()
     return float(10.0 * (np.asarray(abs(full).sum(axis=1)).ravel() / lumped).max())
-
-
-def _resolvents(low: float, high: float, accuracy: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Shifts s_j and weights w_j with x^-1/2 = sum_j w_j / (x + s_j) to ``accuracy`` for low <= x <= high."""
-    count = int(np.ceil((np.log(high / low) + 3.0) * -np.log(accuracy) / (2.0 * np.pi**2)))
-    complement = 1.0 - low / high
-    period = ellipk(complement)
-    sn, cn, dn, _ = ellipj((np.arange(count) + 0.5) * period / count, complement)
-    return np.asarray(low * (sn / cn) ** 2), np.asarray(2.0 * period * np.sqrt(low) / (np.pi * count) * dn / cn**2)
 
 
 def facet_scale(surface: Surface, areas: NDArray[np.float64]) -> NDArray[np.float64]:

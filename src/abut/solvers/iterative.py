@@ -1,0 +1,125 @@
+"""Flexible GMRES on displacements and active pressures, preconditioned by blocks: multigrid for the stiffness, the
+interface's own operator for the pressures. Nothing but the interface's part changes with the active set."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+
+from abut.errors import InputError
+from abut.solvers.active_set import Rows, System
+from abut.solvers.multigrid import Hierarchy
+from abut.solvers.schur import Apply, Interface, interfaces, schur_inverse
+
+RESTART, CYCLES = 60, 4
+FAILED = "multigrid does not converge on this model"
+
+
+class NotConverged(Exception):
+    """The linear iteration gave up; a direct solver may not."""
+
+
+@dataclass
+class Count:
+    """Linear iterations so far, and the interface's preconditioner of the last active set."""
+
+    iterations: int = 0
+    active: bytes = b""
+    inverse: Apply | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True)
+class Iterative:
+    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
+
+    stiffness: Any
+    operator: Any
+    hierarchy: Hierarchy
+    parts: Sequence[Interface]
+    motions: NDArray[np.float64]
+    scale: float
+    count: Count
+
+    def step(
+        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Solve theory (V1) to a residual ``accuracy`` times the present one. Raises NotConverged."""
+        known = rows.decoupled
+        fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
+        active = ~known
+        operator = self.operator[active]
+        n, s = len(residual), self.scale
+        inverse = self._schur(active)
+        coarse = self._rigid(operator, inverse)
+
+        def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            u, q = x[:n], x[n:]
+            return np.concatenate([self.stiffness @ u - operator.T @ (s * q), -s * (operator @ u)])
+
+        def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            q = -inverse(x[n:] / s) / s
+            r = x[:n] + operator.T @ (s * q)
+            return np.concatenate([self.hierarchy.cycle(r) + coarse(r), q])
+
+        rhs = np.concatenate([-residual + self.operator.T @ fixed, -s * rows.residual[active]])
+        solution = self._krylov(multiply, precondition, rhs, accuracy)
+        dp = fixed
+        dp[active] = s * solution[n:]
+        return solution[:n], dp
+
+    def _krylov(
+        self, multiply: Apply, precondition: Apply, rhs: NDArray[np.float64], accuracy: float
+    ) -> NDArray[np.float64]:
+        from pyamg.krylov import fgmres
+
+        if not rhs.any():
+            return np.zeros_like(rhs)
+        shape = (len(rhs), len(rhs))
+        matrix = spla.LinearOperator(shape, matvec=multiply, dtype=float)
+        blocks = spla.LinearOperator(shape, matvec=precondition, dtype=float)
+        history: list[float] = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            solution, status = fgmres(
+                matrix, rhs, tol=accuracy, restart=RESTART, maxiter=CYCLES, M=blocks, residuals=history
+            )
+        self.count.iterations += max(len(history) - 1, 0)
+        if status != 0 or not np.isfinite(solution).all():
+            raise NotConverged(FAILED)
+        return np.asarray(solution)
+
+    def _schur(self, active: NDArray[np.bool_]) -> Apply:
+        if self.count.inverse is None or self.count.active != active.tobytes():
+            self.count.inverse, self.count.active = schur_inverse(self.parts, active), active.tobytes()
+        return self.count.inverse
+
+    def _rigid(self, operator: Any, inverse: Apply) -> Apply:
+        """What multigrid misses: rigid motions of bodies that only contact holds."""
+        if not self.motions.shape[1]:
+            return lambda r: np.zeros_like(r)
+        moved = operator @ self.motions
+        small = np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T]))
+        return lambda r: np.asarray(self.motions @ (small @ (self.motions.T @ r)))
+
+
+def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) -> tuple[System, Count]:
+    """The system with its linear systems solved iteratively, and the count of iterations.
+
+    Raises InputError for pairs with the constraint function, whose rows this preconditioner does not know."""
+    smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
+    if smooth:
+        raise InputError(
+            f"solve.linear: \"amg\" does not know the constraint function of contact '{smooth[0]}'; choose law = "
+            '"complementarity", or linear = "direct"'
+        )
+    largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
+    scale = float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
+    count = Count()
+    solver = Iterative(system.stiffness, system.operator, hierarchy, interfaces(system.pairs), motions, scale, count)
+    return replace(system, step=solver.step, exact=False), count

@@ -1,0 +1,65 @@
+"""Which linear solver serves a system: elimination, direct solution of the saddle, or multigrid with Krylov iterations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.solvers.active_set import Outcome, System
+from abut.solvers.condensed import condense
+from abut.solvers.direct import solver_name
+from abut.solvers.iterative import Count, iterate
+from abut.solvers.multigrid import hierarchy
+
+LARGE = 60_000  # free displacements in 3D from where on multigrid wins
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """system: with its linear solver; finish: what a step's outcome still needs at its load factor; name: for the summary;
+    note: for the log; count: linear iterations of an iterative solver."""
+
+    system: System
+    finish: Callable[[Outcome, float], Outcome]
+    name: str
+    note: str
+    count: Count | None = None
+
+
+def choose(linear: str, system: System, dim: int) -> str:
+    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do."""
+    if linear != "auto":
+        return linear
+    large = dim == 3 and len(system.load) >= LARGE
+    able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in system.pairs)
+    return "amg" if large and able else "direct"
+
+
+def prepare(
+    linear: str, system: System, free: Any, rigid: NDArray[np.float64], loose: NDArray[np.float64], dim: int
+) -> Prepared:
+    """Set a linear solver up.
+
+    linear: "direct" or "amg"; free: (dim n_points, n_free) change of variables; rigid: (dim n_points, m) rigid motions of
+    the bodies; loose: (dim n_points, k) those that supports leave free.
+    Raises InputError where the solver is not installed or cannot serve the system.
+    """
+    if linear == "amg":
+        levels = hierarchy(system.stiffness, free, rigid, dim)
+        iterative, count = iterate(system, levels, free.T @ loose)
+        return Prepared(iterative, lambda outcome, _: outcome, "multigrid (PyAMG)", levels.summary, count)
+    condensed = condense(system, free.T @ loose)
+    name = f"direct ({solver_name()})"
+    if condensed is None:
+        return Prepared(system, lambda outcome, _: outcome, name, f"direct solver {solver_name()}")
+
+    def finish(outcome: Outcome, factor: float) -> Outcome:
+        return replace(outcome, unknowns=condensed.expand(outcome.unknowns, factor, outcome.laws))
+
+    note = f"direct solver {solver_name()}; all displacements eliminated but {len(condensed.kept)}, the rest is dense"
+    return Prepared(condensed.system, finish, name, note)

@@ -1,0 +1,94 @@
+"""What pressures do to gaps, approximately: a preconditioner for B K^-1 B^T.
+
+A half space under a pressure cos(k x) yields 2 (1 - nu^2) / (E k) of it, so that the operator behaves as the inverse root of
+the surface Laplacian: S = kappa M (M^-1 (L + M / l^2))^-1/2 with kappa = 2 sum (1 - nu^2) / E over both sides and l the size
+of the contact, beyond which bodies are no half spaces. Its inverse needs nothing but sparse solutions on the interface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+
+from abut.discretization.pairs import Pair
+from abut.interface.geometry import facet_stiffness
+from abut.solvers.fractional import inverse_root
+
+ACCURACY = 1e-2
+Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Interface:
+    """One pair (or one component of a tied one): its rows in the system, L + M / l^2 and M on its coefficients, kappa and
+    1 / l^2."""
+
+    rows: NDArray[np.int64]
+    full: Any
+    mass: Any
+    compliance: float
+    lowest: float
+
+
+def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
+    """Everything about the interfaces that stays the same over all active sets."""
+    result, first = [], 0
+    for pair in pairs:
+        component = pair.space.node if pair.tied else np.zeros(len(pair), dtype=np.int64)
+        for a in np.unique(component):
+            own = np.flatnonzero(component == a)
+            result.append(_interface(pair, pair.space.transfer.tocsc()[:, own], first + own, pair.space.weight[own]))
+        first += len(pair)
+    return result
+
+
+def _interface(pair: Pair, transfer: Any, rows: NDArray[np.int64], weight: NDArray[np.float64]) -> Interface:
+    extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
+    lowest = (2.0 / extent) ** 2
+    continuous = pair.space.name in ("P1", "P2") and pair.coupling.mass.any()
+    if not continuous:  # no Laplacian across jumps: lumped, with the compliance of the shortest waves
+        mass = sp.diags(weight, format="csr")
+        return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
+    mass = (transfer.T @ sp.block_diag(list(pair.coupling.mass), format="csr") @ transfer).tocsr()
+    slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
+    laplacian = (transfer.T @ slopes @ transfer).tocsr()
+    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, pair.compliance, lowest)
+
+
+def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Apply:
+    """The inverse of S on the active rows, (n_active,) -> (n_active,)."""
+    position = np.cumsum(active) - 1
+    blocks = []
+    for part in parts:
+        own = np.flatnonzero(active[part.rows])
+        if len(own):
+            blocks.append((position[part.rows[own]], _inverse(part, own)))
+
+    def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
+        pressure = np.zeros_like(gap)
+        for where, solve in blocks:
+            pressure[where] = solve(gap[where])
+        return pressure
+
+    return apply
+
+
+def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
+    full, mass = part.full[own][:, own], part.mass[own][:, own]
+    rows = np.asarray(abs(mass).sum(axis=1)).ravel()
+    largest = max(10.0 * float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), 10.0 * part.lowest)
+    shifts, weights = inverse_root(part.lowest, largest, ACCURACY)
+    solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
+    undo = spla.splu(mass.tocsc()).solve
+
+    def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
+        rooted = sum(w * solve(gap) for w, solve in zip(weights, solves))
+        return np.asarray(undo(full @ rooted) / part.compliance)
+
+    return apply
