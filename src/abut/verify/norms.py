@@ -78,7 +78,8 @@ def _largest(full: Any, mass: Any) -> float:
 
 def _resolvents(low: float, high: float, accuracy: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Shifts s_j and weights w_j with x^-1/2 = sum_j w_j / (x + s_j) to ``accuracy`` for low <= x <= high."""
-    count = int(np.ceil((np.log(high / low) + 3.0) * -np.log(accuracy) / (2.0 * np.pi**2)))
+    # The error is at most 4 exp(-2 pi^2 count / (log(high / low) + 3)).
+    count = int(np.ceil((np.log(high / low) + 3.0) * np.log(4.0 / accuracy) / (2.0 * np.pi**2)))
     complement = 1.0 - low / high
     period = ellipk(complement)
     sn, cn, dn, _ = ellipj((np.arange(count) + 0.5) * period / count, complement)
