@@ -12,7 +12,7 @@ from abut.io.vtu import write_vtu
 from abut.mesh.check import check_mesh
 from abut.mesh.make import box, cylinder, disc, half_disc, join, rectangle, sphere_octant
 from abut.mesh.mesh import CellBlock, Mesh
-from abut.solids.elements import gravity_load
+from abut.solids.elements import body_load
 
 PIN_LUG = Path(__file__).parents[1] / "examples" / "pin-lug" / "pin-lug.msh"
 TWO_SQUARES = """$MeshFormat
@@ -87,7 +87,7 @@ $EndElements
 
 def volume(mesh: Mesh) -> float:
     direction = np.eye(mesh.dim)[0]
-    return float(gravity_load(mesh, dict.fromkeys(mesh.bodies, 1.0), direction).sum())
+    return float(body_load(mesh, dict.fromkeys(mesh.bodies, direction)).sum())
 
 
 @pytest.mark.parametrize("text", [TWO_SQUARES, TWO_SQUARES_4], ids=["2.2", "4.1"])

@@ -17,13 +17,13 @@ from abut.io.vtu import write_vtu
 from abut.mesh.make import box, cylinder, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.mesh.write import write_mesh
-from abut.solids.elements import gravity_load
+from abut.solids.elements import body_load
 
 DATA = Path(__file__).parent / "data"
 
 
 def volume(mesh: Mesh) -> float:
-    return float(gravity_load(mesh, dict.fromkeys(mesh.bodies, 1.0), np.eye(mesh.dim)[0]).sum())
+    return float(body_load(mesh, dict.fromkeys(mesh.bodies, np.eye(mesh.dim)[0])).sum())
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from abut.errors import InputError
 from abut.mesh.check import check_mesh
 from abut.mesh.make import box, cylinder, disc, half_disc, rectangle, sphere_octant
 from abut.mesh.mesh import Mesh
-from abut.solids.elements import gravity_load
+from abut.solids.elements import body_load
 
 PLANE = ["tri3", "tri6", "quad4", "quad8", "quad9"]
 SOLID = ["tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "wedge15"]
@@ -19,7 +19,7 @@ QUADRATIC = {"tri6", "quad8", "quad9", "tet10", "hex20", "hex27", "wedge15"}
 
 
 def volume(mesh: Mesh) -> float:
-    return float(gravity_load(mesh, dict.fromkeys(mesh.bodies, 1.0), np.eye(mesh.dim)[0]).sum())
+    return float(body_load(mesh, dict.fromkeys(mesh.bodies, np.eye(mesh.dim)[0])).sum())
 
 
 def facet_rows(mesh: Mesh) -> int:

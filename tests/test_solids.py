@@ -7,7 +7,7 @@ import pytest
 
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
-from abut.solids.elements import gravity_load, nodal_stress, stiffness, thermal_load
+from abut.solids.elements import body_load, nodal_stress, stiffness, thermal_load
 from abut.solids.loads import force_load, pressure_load, surface_area
 from abut.solids.materials import LinearElastic
 from patch import two_blocks
@@ -68,7 +68,7 @@ def test_loads_have_the_right_resultant(kind: str) -> None:
     down[-1] = -2.5
     for load in (pressure_load(top, 2.5), force_load(top, down)):
         assert load.reshape(-1, mesh.dim).sum(axis=0) == pytest.approx(down, abs=1e-13)
-    weight = gravity_load(mesh, {"lower": 3.0}, down).reshape(-1, mesh.dim).sum(axis=0)
+    weight = body_load(mesh, {"lower": 3.0 * down}).reshape(-1, mesh.dim).sum(axis=0)
     assert weight == pytest.approx(3.0 * down, abs=1e-12)  # the lower block has unit volume
 
 

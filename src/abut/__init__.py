@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from abut.io.results import write
     from abut.mesh.mesh import Mesh
     from abut.model import (
+        BodyForce,
         Contact,
         Force,
         Gravity,
@@ -30,15 +31,16 @@ __version__ = "0.1.0"
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
     "LinearElastic": "abut.solids.materials", **dict.fromkeys(
-        ("Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions", "Support", "Traction"),
+        ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
+         "Support", "Traction"),
         "abut.model",
     ),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration", "LinearElastic",
-    "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Traction",
-    "solve", "write",
+    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration",
+    "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support",
+    "Traction", "solve", "write",
 ]  # fmt: skip
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from abut import checks
 from abut.errors import InputError, nearest
+from abut.fields import Field
 from abut.mesh.mesh import Mesh
 from abut.solids.materials import LinearElastic
 
@@ -36,18 +37,20 @@ class Solid:
 @dataclass(frozen=True)
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); what is left out stays free. Values in the mesh's length unit, ramped over the load steps."""
+    outward normal); what is left out stays free. Values in the mesh's length unit, ramped over the load steps; x, y and z
+    may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
 
     on: str
-    x: float | None = None
-    y: float | None = None
-    z: float | None = None
+    x: float | Field | None = None
+    y: float | Field | None = None
+    z: float | Field | None = None
     normal: float | None = None
 
     def __post_init__(self) -> None:
         given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
         for name, value in given.items():
-            checks.finite(value, f"support on '{self.on}': {name}")
+            if name == "normal" or not callable(value):
+                checks.finite(value, f"support on '{self.on}': {name}")
         if not given:
             raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
@@ -65,7 +68,7 @@ class Pressure:
         checks.finite(self.value, f"pressure on '{self.on}': value")
 
 
-def _vector(values: Sequence[float], name: str) -> tuple[float, ...]:
+def _vector(values: Any, name: str) -> tuple[float, ...]:
     try:
         result = tuple(checks.finite(value, name) for value in values)
     except TypeError:
@@ -77,13 +80,14 @@ def _vector(values: Sequence[float], name: str) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Traction:
-    """Traction vector on a surface, force per area."""
+    """Traction vector on a surface, force per area; numbers or a function of position, points (n, dim) -> (n, dim)."""
 
     on: str
-    value: tuple[float, ...]
+    value: tuple[float, ...] | Field
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
+        if not callable(self.value):
+            object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
 
 
 @dataclass(frozen=True)
@@ -108,7 +112,20 @@ class Gravity:
         object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
 
 
-Load = Pressure | Traction | Force | Gravity
+@dataclass(frozen=True)
+class BodyForce:
+    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
+    function of position, points (n, dim) -> (n, dim)."""
+
+    value: tuple[float, ...] | Field
+    on: str | None = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            object.__setattr__(self, "value", _vector(self.value, "body force: value"))
+
+
+Load = Pressure | Traction | Force | Gravity | BodyForce
 
 
 @dataclass(frozen=True)
@@ -251,12 +268,14 @@ class Model:
             if self.dim == 2 and support.z is not None:
                 raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
         for i, load in enumerate(self.loads):
-            if isinstance(load, Gravity):
+            if isinstance(load, (Gravity, BodyForce)):
                 if load.on is not None:
                     _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
             else:
                 _known(load.on, mesh.surfaces, f"loads[{i}].on", "surface")
-            if not isinstance(load, Pressure) and len(load.value) != self.dim:
+            if isinstance(load, Pressure) or callable(load.value):
+                continue
+            if len(load.value) != self.dim:
                 raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
         names: set[str] = set()
         for i, contact in enumerate(self.contacts):

@@ -21,6 +21,8 @@ COMPLEMENTARITY = 1e-6
 OSCILLATION = 0.06
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
+BARE = 0.5
+REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
 COVERED_TWICE = 1e-3  # share of a facet
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 
@@ -52,8 +54,14 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     areas = full_moments(pair.contactor, 0)[:, 0]
     share = pair.coupling.covered / areas
     if pair.contact.method == "segment-to-segment":
-        add("facet moments", _moment_error(pair, areas, share), MOMENTS,
-            "integration error of int H over fully covered facets, over their area")  # fmt: skip
+        add("facet moments", _moment_error(pair, areas, share, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
+            "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
+    loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
+    bare = 1.0 - float(pair.coupling.covered[loaded].sum() / areas[loaded].sum()) if loaded.any() else 0.0
+    add("bare area", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
+    total = pair.space.removed + len(pair.space)
+    add("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
+        "share of the contactor's multipliers without target or held by supports")  # fmt: skip
     add("covered twice", max(float(share.max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
         "share of a facet with two layers of target opposite, both counted")  # fmt: skip
     return tuple(checks)
@@ -78,8 +86,11 @@ def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
     return float(np.abs(own - other).max()) / size, float(np.abs(own_turn - other_turn).max()) / (size * extent)
 
 
-def _moment_error(pair: Pair, areas: NDArray[np.float64], share: NDArray[np.float64]) -> float:
-    whole = np.abs(share - 1.0) < WHOLE
+def _moment_error(
+    pair: Pair, areas: NDArray[np.float64], share: NDArray[np.float64], loaded: NDArray[np.bool_]
+) -> float:
+    """Largest error of int H_k over the area, of facets that are fully covered and carry pressure."""
+    whole = loaded & (np.abs(share - 1.0) < WHOLE)
     if not whole.any():
         return 0.0
     exact = full_moments(pair.contactor, pair.coupling.degree)

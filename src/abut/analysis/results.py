@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
-from abut.analysis.loads import applied_load
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
@@ -22,13 +21,16 @@ def step_result(
     model: Model,
     stiffness: Any,
     load: NDArray[np.float64],
+    resultant: NDArray[np.float64],
     displacement: NDArray[np.float64],
     system: System,
     outcome: Outcome,
     number: int,
     factor: float,
 ) -> Step:
-    """Collect displacement, stress, reactions and contact results at a share ``factor`` of the load."""
+    """Collect displacement, stress, reactions and contact results at a share ``factor`` of the load.
+
+    load: (dim n_points,) nodal forces of loads and thermal strains, resultant: (dim,) of the loads, both at full size."""
     dim = model.dim
     unknowns = outcome.unknowns
     pressures = system.split(unknowns.pressure)
@@ -56,7 +58,7 @@ def step_result(
             on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=factor * applied_load(model).reshape(-1, dim).sum(axis=0),
+        load=factor * resultant,
         contacts=tuple(
             _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual)
             for pair, pressure, gap, active in zip(

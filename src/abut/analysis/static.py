@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.holding import Holding, holding
-from abut.analysis.loads import external_load
+from abut.analysis.loads import applied_load, strain_load
 from abut.analysis.results import step_result
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
@@ -50,7 +50,9 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
     full_stiffness = stiffness(model.mesh, materials, model.plane)
-    load = external_load(model)
+    applied = applied_load(model)
+    load = applied + strain_load(model)
+    resultant = applied.reshape(-1, model.dim).sum(axis=0)
     clock.mark("assembly")
     every = pairs(model, held)
     _describe(every, note)
@@ -88,7 +90,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, displacement, whole, outcome, number, factor))
+        steps.append(step_result(model, full_stiffness, load, resultant, displacement, whole, outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")

@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import patch
+from abut.benchmarks import beam, contrast, convergence, fits, hertz, patch, punches, stability
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
 
-BENCHMARKS: dict[str, Benchmark] = {b.name: b for b in (*patch.BENCHMARKS,)}
+BENCHMARKS: dict[str, Benchmark] = {
+    b.name: b
+    for b in (
+        *patch.BENCHMARKS,
+        *hertz.BENCHMARKS,
+        *fits.BENCHMARKS,
+        *punches.BENCHMARKS,
+        *contrast.BENCHMARKS,
+        *beam.BENCHMARKS,
+        *stability.BENCHMARKS,
+        *convergence.BENCHMARKS,
+    )
+}

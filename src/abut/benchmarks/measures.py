@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.state import ContactResult, Solution
 
-Field = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+Field = Callable[[NDArray[np.float64]], NDArray[Any]]
 
 
 def contact_points(contact: ContactResult) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

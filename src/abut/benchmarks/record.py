@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from abut.analysis import solve
 from abut.errors import InputError
 from abut.model import Model
-from abut.state import Solution
 
-Measure = Callable[[Solution], Mapping[str, float]]
+Measure = Callable[[Any], Mapping[str, float]]
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class Benchmark:
 
     model: level -> Model; level 0 is what ``abut verify`` runs by default, each next one is finer.
     size: level -> mesh size, up to a factor; halved from level to level if not given.
+    solve: Model -> what ``measure`` looks at; ``abut.solve`` if not given.
     measure: solution -> value of each quantity named in ``references``.
     levels: how many levels are run by default (more than one where a rate is asked for).
     """
@@ -46,6 +48,7 @@ class Benchmark:
     references: Mapping[str, Reference]
     levels: int = 1
     size: Callable[[int], float] = lambda level: 0.5**level
+    solve: Callable[[Model], Any] = solve
 
 
 @dataclass(frozen=True)
@@ -74,19 +77,13 @@ class Outcome:
         return sound and self.rate > self.reference.rate - self.reference.rate_tolerance
 
 
-def run(
-    benchmark: Benchmark, levels: int | None = None, solve: Callable[[Model], Solution] | None = None
-) -> list[Outcome]:
-    """Run a benchmark at levels 0 .. levels - 1 and compare. ``solve``: in place of ``abut.solve``.
-
-    Raises InputError for fewer levels than one."""
-    from abut.analysis import solve as default
-
+def run(benchmark: Benchmark, levels: int | None = None) -> list[Outcome]:
+    """Run a benchmark at levels 0 .. levels - 1 and compare. Raises InputError for fewer levels than one."""
     count = benchmark.levels if levels is None else levels
     if count < 1:
         raise InputError(f"levels: expected a whole number >= 1, got {count}")
     start = time.perf_counter()
-    measured = [dict(benchmark.measure((solve or default)(benchmark.model(level)))) for level in range(count)]
+    measured = [dict(benchmark.measure(benchmark.solve(benchmark.model(level)))) for level in range(count)]
     seconds = time.perf_counter() - start
     sizes = [benchmark.size(level) for level in range(count)]
     return [

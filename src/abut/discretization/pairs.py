@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.discretization.supports import Supports
 from abut.errors import InputError
-from abut.interface.coupling import Coupling, couple
+from abut.interface.coupling import Coupling, couple, default_reach
 from abut.interface.geometry import facet_sizes, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
@@ -98,7 +98,7 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
     """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
     contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
     tied = contact.kind == "tied"
-    coupling, space = _couple(contact, contactor, target, _reach(model, contactor, target))
+    coupling, space = _couple(contact, contactor, target, _reach(held, contactor, target))
     sizes = facet_sizes(contactor)
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
@@ -223,11 +223,8 @@ def _row_norms(matrix: Any) -> NDArray[np.float64]:
     return np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
 
 
-def _reach(model: Model, contactor: Surface, target: Surface) -> float:
-    from abut.interface.coupling import default_reach
-
-    moves = [abs(v) for s in model.supports for v in (s.x, s.y, s.z, s.normal) if v is not None]
-    return default_reach(contactor, target) + 2.0 * max(moves, default=0.0)
+def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
+    return default_reach(contactor, target) + 2.0 * float(np.abs(held.prescribed).max(initial=0.0))
 
 
 def _modulus(model: Model, contactor: Surface, target: Surface) -> float:

@@ -10,12 +10,14 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
+from abut.fields import evaluate
 from abut.interface.geometry import nodal_normals
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
 ON_AXIS = 1e-9  # radius over the model's size that counts as none
+ROUNDING = 1e-12  # of the largest prescribed value: functions of position that agree may differ by this
 SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
 
 
@@ -39,10 +41,12 @@ class Supports:
 
 
 def supports(model: Model) -> Supports:
-    """Collect all supports. Raises SingularModelError where two of them contradict each other at a node."""
+    """Collect all supports. Raises SingularModelError where two of them contradict each other at a node, InputError for
+    functions that do not return a finite number for each node."""
     mesh, dim = model.mesh, model.dim
     node, direction, value, origin = _conditions(model)
     prescribed = np.zeros((len(mesh.points), dim))
+    slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
     order = np.lexsort((np.abs(direction).argmax(axis=1), node))
     node, direction, value, origin = node[order], direction[order], value[order], origin[order]
     held, start = np.unique(node, return_index=True)
@@ -57,7 +61,7 @@ def supports(model: Model) -> Supports:
     for k, first, last in zip(held, start, stop):
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
-        if np.abs(matrix @ x - target).max() > 1e-9 * max(1e-30, np.abs(target).max()):
+        if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
             names = ", ".join(sorted({"the axis" if i == AXIS else model.supports[i].on for i in origin[first:last]}))
             raise SingularModelError(
                 f"supports on {names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
@@ -100,7 +104,7 @@ def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
         for where, vector, value in _directions(model.mesh, support, dim):
             nodes.append(where)
             directions.append(np.broadcast_to(vector, (len(where), dim)))
-            values.append(np.full(len(where), value))
+            values.append(value)
             origins.append(np.full(len(where), i))
     on_axis = points_on_axis(model.mesh)
     if len(on_axis):
@@ -118,15 +122,19 @@ def points_on_axis(mesh: Mesh) -> NDArray[np.int64]:
     return np.flatnonzero(mesh.points[:, 0] <= ON_AXIS * np.ptp(mesh.points, axis=0).max())
 
 
-def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], NDArray[Any], float]]:
+def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], ...]]:
+    """Nodes (n,), unit vectors (n, dim) or (dim,), values (n,)."""
     if support.normal is None:
         where = mesh.nodes_of(support.on)
-        given = [(a, getattr(support, "xyz"[a])) for a in range(dim)]
-        return [(where, np.eye(dim)[a], float(v)) for a, v in given if v is not None]
+        return [
+            (where, np.eye(dim)[a], evaluate(value, mesh.points[where], f"support on '{support.on}': {name}"))
+            for a, name in enumerate("xyz"[:dim])
+            if (value := getattr(support, name)) is not None
+        ]
     surface = mesh.surface(support.on)
     normals = nodal_normals(surface)
     facet, local = np.nonzero(surface.nodes >= 0)
     where = surface.nodes[facet, local].astype(np.int64)
     both = np.round(np.column_stack([where, normals[facet, local]]), 9)
     _, first = np.unique(both, axis=0, return_index=True)  # one condition for each normal at a node
-    return [(where[first], normals[facet, local][first], float(support.normal))]
+    return [(where[first], normals[facet, local][first], np.full(len(first), float(support.normal)))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
 from abut.cells import CELLS
+from abut.fields import Field, evaluate
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import stiffness_rule, stress_rule
+from abut.mesh.quadrature import field_rule, stiffness_rule, stress_rule
 from abut.mesh.surface import around
 from abut.solids.materials import LinearElastic
 
@@ -112,19 +113,31 @@ def _thermal_pressure(material: LinearElastic, change: float, plane: str | None)
     return young * strain / (1.0 - poisson) if plane == "stress" else young * strain / (1.0 - 2.0 * poisson)
 
 
-def gravity_load(mesh: Mesh, densities: Mapping[str, float], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
-    """int rho g N, (dim n_points,)."""
+def body_load(
+    mesh: Mesh, forces: Mapping[str, Sequence[float] | NDArray[np.float64] | Field], name: str = "body force: value"
+) -> NDArray[np.float64]:
+    """int f N of a force per volume in each of the bodies named, a vector or a function of position, points (n, dim) ->
+    (n, dim); (dim n_points,).
+
+    Raises InputError, beginning with ``name``, for a function that does not return a finite vector for each point."""
     load = np.zeros(mesh.points.shape)
-    density = np.zeros(mesh.n_cells)
-    for body, value in densities.items():
-        density[mesh.bodies[body]] = value
-    for kind, nodes, cells in _chunks(mesh):
-        xi, weights = stiffness_rule(kind)
-        values, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        _, det = _gradients(mesh.points, nodes, derivatives)
-        det = det * around(np.einsum("qn,cnd->cqd", values, mesh.points[nodes]), mesh.axisymmetric)
-        np.add.at(load, nodes, np.einsum("c,cq,q,qn,a->cna", density[cells], det, weights, values, acceleration))
+    dim = mesh.dim
+    for body, value in forces.items():
+        for kind, nodes in _pieces(mesh, body):
+            xi, weights = field_rule(kind) if callable(value) else stiffness_rule(kind)
+            shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+            at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
+            det = np.linalg.det(np.einsum("cna,qnb->cqab", mesh.points[nodes], derivatives))
+            density = evaluate(value, at, name, (dim,)) * (weights * det * around(at, mesh.axisymmetric))[..., None]
+            np.add.at(load, nodes, np.einsum("qn,cqa->cna", shapes, density))
     return load.ravel()
+
+
+def _pieces(mesh: Mesh, body: str) -> Iterator[tuple[str, NDArray[np.int32]]]:
+    """Cells of a body in manageable pieces: type, connectivity."""
+    for kind, nodes, _ in mesh.cells_of(body):
+        for i in range(0, len(nodes), CHUNK):
+            yield kind, nodes[i : i + CHUNK]
 
 
 def nodal_stress(

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
+from abut.fields import Field, evaluate
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 
 
 def _spread(
-    surface: Surface, traction: NDArray[np.float64] | None, stress: NDArray[np.float64] | None = None
+    surface: Surface,
+    traction: Sequence[float] | NDArray[np.float64] | Field | None,
+    stress: NDArray[np.float64] | None = None,
+    name: str = "",
 ) -> NDArray[np.float64]:
-    """int N t for a uniform traction t, or for t = stress n with the outward normal n."""
+    """int N t for a traction t, uniform or a function of position, or for t = stress n with the outward normal n."""
     load = np.zeros(surface.points.shape)
     for code in np.unique(surface.kinds):
         cell = CELLS[BY_CODE[code].name]
@@ -26,11 +32,12 @@ def _spread(
             normal = np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
         else:
             normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+        at = np.einsum("qn,fnd->fqd", values, surface.points[nodes])
         if traction is None:
             force = normal @ stress
         else:
-            force = np.linalg.norm(normal, axis=2)[..., None] * traction
-        force = force * surface.around(np.einsum("qn,fnd->fqd", values, surface.points[nodes]))[..., None]
+            force = np.linalg.norm(normal, axis=2)[..., None] * evaluate(traction, at, name, (surface.dim,))
+        force = force * surface.around(at)[..., None]
         np.add.at(load, nodes, np.einsum("q,qn,fqd->fnd", weights, values, force))
     return load
 
@@ -45,9 +52,13 @@ def stress_load(surface: Surface, stress: NDArray[np.float64]) -> NDArray[np.flo
     return _spread(surface, None, stress).ravel()
 
 
-def traction_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Uniform traction vector (force per area), (dim n_points,)."""
-    return _spread(surface, np.asarray(vector, dtype=float)).ravel()
+def traction_load(
+    surface: Surface, value: Sequence[float] | NDArray[np.float64] | Field, name: str = "traction: value"
+) -> NDArray[np.float64]:
+    """Traction (force per area), a vector or a function of position, points (n, dim) -> (n, dim); (dim n_points,).
+
+    Raises InputError, beginning with ``name``, for a function that does not return a finite vector for each point."""
+    return _spread(surface, value, name=name).ravel()
 
 
 def surface_area(surface: Surface) -> float:

@@ -1,0 +1,111 @@
+"""Errors of a solution against exact fields in the norms of the theory of convergence, all relative.
+
+Exact fields are functions of position, body by body: two bodies may differ where they touch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.cells import BY_CODE, CELLS
+from abut.errors import InputError
+from abut.fields import Field, evaluate
+from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import field_rule
+from abut.mesh.surface import around
+from abut.solids.elements import lame
+from abut.state import Solution
+
+CHUNK = 1024  # cells treated at once
+Array = NDArray[np.float64]
+Pieces = Iterator[tuple[str, Array, Array, Array, Array]]
+
+
+def displacement_l2(solution: Solution, exact: Mapping[str, Field]) -> float:
+    """Root of int |u_h - u|^2 over int |u|^2, both over the bodies named in ``exact``: points (n, dim) -> (n, dim)."""
+    dim = solution.model.dim
+    error = size = 0.0
+    for body, x, weight, u, _ in _pieces(solution, exact):
+        wanted = evaluate(exact[body], x, f"exact displacement of '{body}'", (dim,))
+        error += float(weight @ ((u - wanted) ** 2).sum(axis=1))
+        size += float(weight @ (wanted**2).sum(axis=1))
+    return _ratio(error, size)
+
+
+def energy_norm(solution: Solution, gradients: Mapping[str, Field]) -> float:
+    """Root of the elastic energy of the error u_h - u over that of u, over the bodies named in ``gradients``: points
+    (n, dim) -> (n, dim, dim), entry [i, j] the derivative of u_i along j. Elastic energy: that of the strains alone, as
+    if no temperature changed.
+
+    Raises InputError for axisymmetric models, whose hoop strain is no gradient."""
+    model = solution.model
+    if model.plane == "axisymmetric":
+        raise InputError("energy norm: axisymmetric models are not supported")
+    dim = model.dim
+    constants = {solid.body: lame(solid.material, model.plane) for solid in model.solids}
+    error = size = 0.0
+    for body, x, weight, _, slope in _pieces(solution, gradients):
+        wanted = evaluate(gradients[body], x, f"exact gradient of '{body}'", (dim, dim))
+        error += float(weight @ _energy(slope - wanted, *constants[body]))
+        size += float(weight @ _energy(wanted, *constants[body]))
+    return _ratio(error, size)
+
+
+def pressure_l2(solution: Solution, exact: Field, contact: int = 0) -> float:
+    """Root of int (p_h - p)^2 over int p^2, over the covered facets of a contact's contactor. ``exact``: points (n, dim) ->
+    (n,), compression positive."""
+    result = solution.contacts[contact]
+    surface = result.contactor
+    error = size = 0.0
+    for code in np.unique(surface.kinds[result.covered]):
+        cell = BY_CODE[code]
+        own = np.flatnonzero((surface.kinds == code) & result.covered)
+        xi, weights = field_rule(cell.name)
+        shapes, derivatives = shape_functions(code, np.ascontiguousarray(xi))
+        nodes = surface.points[surface.nodes[own, : cell.nodes]]
+        x = np.einsum("qn,fnd->fqd", shapes, nodes)
+        tangents = np.einsum("qna,fnd->fqad", derivatives, nodes)
+        area = np.sqrt(np.linalg.det(tangents @ np.swapaxes(tangents, 2, 3))) * surface.around(x) * weights
+        wanted = evaluate(exact, x, "exact pressure")
+        error += float((area * (result.pressure[own, : cell.nodes] @ shapes.T - wanted) ** 2).sum())
+        size += float((area * wanted**2).sum())
+    return _ratio(error, size)
+
+
+def _pieces(solution: Solution, bodies: Mapping[str, Field]) -> Pieces:
+    """Of the integration points of each body: its name, positions (n, dim), weights (n,), displacement (n, dim) and its
+    gradient (n, dim, dim)."""
+    mesh = solution.model.mesh
+    dim = mesh.dim
+    for body, kind, nodes in _cells(mesh, bodies):
+        xi, weights = field_rule(kind)
+        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        jacobian = np.einsum("cna,qnb->cqab", mesh.points[nodes], derivatives)
+        by_reference = np.einsum("cna,qnb->cqab", solution.displacement[nodes], derivatives)
+        x = np.einsum("qn,cna->cqa", shapes, mesh.points[nodes])
+        u = np.einsum("qn,cna->cqa", shapes, solution.displacement[nodes])
+        weight = weights * np.linalg.det(jacobian) * around(x, mesh.axisymmetric)
+        slope = by_reference @ np.linalg.inv(jacobian)
+        yield body, x.reshape(-1, dim), weight.ravel(), u.reshape(-1, dim), slope.reshape(-1, dim, dim)
+
+
+def _cells(mesh: Mesh, bodies: Mapping[str, Field]) -> Iterator[tuple[str, str, NDArray[np.int32]]]:
+    for body in bodies:
+        for kind, nodes, _ in mesh.cells_of(body):
+            for i in range(0, len(nodes), CHUNK):
+                yield body, kind, nodes[i : i + CHUNK]
+
+
+def _energy(slope: Array, lambda_: float, mu: float) -> Array:
+    """lambda (tr eps)^2 + 2 mu eps : eps of gradients (n, dim, dim); strains out of the plane are in lambda."""
+    strain = 0.5 * (slope + np.swapaxes(slope, 1, 2))
+    trace = np.trace(strain, axis1=1, axis2=2)
+    return np.asarray(lambda_ * trace**2 + 2.0 * mu * (strain**2).sum(axis=(1, 2)))
+
+
+def _ratio(error: float, size: float) -> float:
+    return float(np.sqrt(error / size)) if size > 0.0 else float(np.sqrt(error))
