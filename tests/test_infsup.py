@@ -384,6 +384,8 @@ def test_bad_input() -> None:
     with pytest.raises(InputError, match="no contact named 'jiont'; did you mean 'joint'"):
         inf_sup(named, "jiont")
     assert inf_sup(named, "joint").levels[0].contact == "joint"
+    with pytest.raises(InputError, match="no model given"):
+        inf_sup([])
     rigid = [abut.Support(f"{body}.{side}", x=0, y=0) for body, side in (("lower", "top"), ("upper", "bottom"))]
     with pytest.raises(InputError, match=r"no pressure of contact .* let its bodies deform"):
         inf_sup(replace(model, supports=rigid))

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import abut
-import abut.benchmarks
 from abut.benchmarks import BENCHMARKS, Benchmark, Reference, run
 from abut.cli import main
 from abut.errors import InputError

@@ -65,6 +65,8 @@ def inf_sup(models: Model | Sequence[Model], contact: str | None = None) -> InfS
     contact, with a tied pair, or where supports hold everything.
     """
     sequence = [models] if isinstance(models, Model) else list(models)
+    if not sequence:
+        raise InputError("inf-sup: no model given")
     levels = tuple(_level(model, contact) for model in sequence)
     rate = None
     last = levels[-1]
