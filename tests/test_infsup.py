@@ -152,7 +152,7 @@ def test_one_pass_of_nodes_is_not_unstable(cell: str) -> None:
         ("hex8", "auto", True, ((4, 2), (8, 4))),
         ("tet4", "auto", True, ((4, 2), (8, 4))),
         ("hex20", "auto", True, ((4, 2), (8, 4))),
-        ("tet10", "auto", True, ((4, 2), (8, 4))),
+        pytest.param("tet10", "auto", True, ((4, 2), (8, 4)), marks=pytest.mark.long),
         ("hex8", "P0", False, ((4, 4), (8, 8))),
     ],
 )
