@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import isnan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,7 +141,7 @@ class Solution:
             )
             for check in (balance, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
-                if key not in worst or not check.value <= worst[key].value:
+                if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
                     worst[key] = check
         return tuple(worst.values())
 

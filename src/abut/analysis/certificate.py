@@ -107,7 +107,8 @@ def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float) -> floa
         return _jumps(pair, nodal, CLOSED * largest) / largest
     graph, value = _node_graph(pair, nodal) if continuous else _facet_graph(pair, nodal)
     closed = value > CLOSED * largest
-    closed &= ~_rim(pair) if continuous else True  # at the rim of the surface the pressure may be singular
+    if continuous:
+        closed &= ~_near_corners(pair, graph)
     degree = np.asarray(graph.sum(axis=1)).ravel()
     inside = closed & (graph @ (value > CLOSED * largest).astype(float) == degree) & (degree > 1)
     ripple = np.where(inside, value - graph @ value / np.maximum(degree, 1.0), 0.0)
@@ -117,6 +118,18 @@ def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float) -> floa
         return 0.0
     product = ripple[edges.row[both]] * ripple[edges.col[both]]
     return float(np.sqrt(np.maximum(-product, 0.0).mean())) / largest
+
+
+def _near_corners(pair: Pair, graph: Any) -> NDArray[np.bool_]:
+    """Points within a facet of the contactor's rim, or of facets that are only partly covered: the pressure of a body with
+    corners is singular there, and no mesh shows that without a swing."""
+    share = pair.coupling.covered / full_moments(pair.contactor, 0)[:, 0]
+    near = _rim(pair)
+    partly = pair.contactor.nodes[np.abs(share - 1.0) > WHOLE]
+    near[partly[partly >= 0]] = True
+    for _ in range(pair.coupling.degree):
+        near |= graph @ near.astype(float) > 0.0
+    return near
 
 
 def _jumps(pair: Pair, nodal: NDArray[np.float64], closed: float) -> float:

@@ -22,7 +22,7 @@ from abut.interface.geometry import by_kind, full_moments, function_count
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
-WEAK_SUPPORT = 0.02  # below this share a multiplier follows its neighbour: alone it would be ill-determined
+WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
 
 
 @dataclass(frozen=True)
