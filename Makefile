@@ -15,8 +15,8 @@ test: .venv/installed-test
 	$(BIN)/python -m pytest -n 2 --durations=10
 
 lint: .venv/installed-lint
-	$(BIN)/ruff check src tests examples bench
-	$(BIN)/ruff format --check src tests examples bench
+	$(BIN)/ruff check src tests examples bench docs
+	$(BIN)/ruff format --check src tests examples bench docs
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp

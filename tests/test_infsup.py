@@ -173,8 +173,15 @@ def no_dense(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
 def dense_on_coarse_traces(model: abut.Model, monkeypatch: pytest.MonkeyPatch) -> infsup.InfSupLevel:
     """The dense way with the trace space that the iterative one uses: facets undivided."""
 
-    def coarse(surface: Surface, degree: int, share: NDArray[np.float64], divisions: int) -> TraceSpace:
-        return trace_space(surface, degree, share, divisions // 2)
+    def coarse(
+        surface: Surface,
+        degree: int,
+        share: NDArray[np.float64],
+        divisions: int,
+        length: float,
+        covered: NDArray[np.float64] | None,
+    ) -> TraceSpace:
+        return trace_space(surface, degree, share, divisions // 2, length, covered)
 
     with monkeypatch.context() as patched:
         patched.setattr(infsup, "DENSE", 10**6)
@@ -249,7 +256,7 @@ def test_rational_approximation_of_the_trace_norm(kind: str, accuracy: float) ->
     q = np.random.default_rng(0).standard_normal((9 * len(surface), 5))
     c = vectors.T @ (space.moments @ q)
     exact = c.T @ np.diag(values**-0.5) @ c
-    norm = trace_norm(space, sp.eye(len(q)), accuracy)
+    norm = trace_norm(space, sp.eye(len(q)), accuracy=accuracy)
     assert q.T @ norm(q) == pytest.approx(exact, abs=accuracy * np.abs(exact).max())
     assert values.min() == pytest.approx(1.0, abs=1e-10)  # the constant
 

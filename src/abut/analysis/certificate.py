@@ -46,7 +46,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
         add("moment balance", moment, BALANCE, "the same of moments, over force times extent")
         add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
-        tension = max(-float(np.nanmin(nodal, initial=0.0)), 0.0) / largest
+        tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
         add("oscillation", _oscillation(pair, nodal, largest), OSCILLATION,

@@ -1,8 +1,8 @@
 """Node-to-segment contact, the method that segment-to-segment replaces: a reference for comparison only.
 
 Each contactor node is held off the target facet that its normal meets; its multiplier is the nodal force over the node's
-tributary area. One pass fails the patch test where the meshes differ; two passes (both sides as contactor) pass it and
-lock, since their inf-sup constant is zero (El-Abbasi and Bathe 2001, sections 2 and 5).
+tributary area. One pass fails the patch test where the meshes differ. Two passes (both sides as contactor) pass it between
+straight facets of first order in 2D only, and their inf-sup constant is zero (El-Abbasi and Bathe 2001, sections 2 and 5).
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def node_to_segment(contactor: Surface, target: Surface, reach: float | None = N
         area = gather.T @ (non_negative(contactor).T @ moments)
     normal = nodal_normals(contactor).reshape(-1, contactor.dim)[row[first]]
     reach = default_reach(contactor, target) if reach is None else reach
-    facet, shapes, gap = _feet(contactor.points[ids], normal, target, reach)
+    facet, shapes, gap = feet(contactor.points[ids], normal, target, reach)
     seen = np.flatnonzero(facet >= 0)
     rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
     gap = np.where(np.abs(gap) < rounding, 0.0, gap)
@@ -80,7 +80,7 @@ def _rows(
     return sp.csr_matrix((value.ravel(), (np.repeat(row[k], dim), column.ravel())), shape=shape)
 
 
-def _feet(
+def feet(
     points: NDArray[np.float64], normals: NDArray[np.float64], target: Surface, reach: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """For each point the target facet met along its normal (-1: none), shape functions there (n, 9), and the gap."""

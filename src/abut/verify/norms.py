@@ -22,8 +22,8 @@ from abut.verify.trace import TraceSpace
 CHUNK = 4096
 
 
-def h1_matrix(mesh: Mesh) -> Any:
-    """int u v + grad u . grad v of scalar functions over all cells, (n_points, n_points) CSR."""
+def h1_matrix(mesh: Mesh, length: float = 1.0) -> Any:
+    """int u v / length^2 + grad u . grad v of scalar functions over all cells, (n_points, n_points) CSR."""
     n = len(mesh.points)
     total = sp.csr_matrix((n, n))
     for block in mesh.blocks:
@@ -36,7 +36,7 @@ def h1_matrix(mesh: Mesh) -> Any:
             gradients = np.einsum("qnb,cqba->cqna", derivatives, np.linalg.inv(jacobian))
             measure = np.linalg.det(jacobian) * weights
             measure = measure * around(np.einsum("qn,cnd->cqd", shapes, x), mesh.axisymmetric)
-            values = np.einsum("cq,qn,qm->cnm", measure, shapes, shapes)
+            values = np.einsum("cq,qn,qm->cnm", measure / length**2, shapes, shapes)
             weighted = gradients * measure[..., None, None]
             values += np.einsum("cqna,cqma->cnm", weighted, gradients, optimize=True)
             rows = np.repeat(nodes, nodes.shape[1], axis=1).ravel()
@@ -47,9 +47,9 @@ def h1_matrix(mesh: Mesh) -> Any:
 
 @dataclass(frozen=True)
 class TraceNorm:
-    """q^T T q = c^T V Lambda^-1/2 V^T c with c = C q and (M + L) V = M V Lambda on a fine continuous space of the surface:
-    the norm of H^-1/2, dual to the trace space between L2 and H1. The power is a sum of resolvents (Hale, Higham and
-    Trefethen 2008, method 3), so that nothing dense is needed."""
+    """q^T T q = c^T V Lambda^-1/2 V^T c with c = C q and (M / length^2 + L) V = M V Lambda on a fine continuous space of the
+    surface: the norm of H^-1/2, dual to the trace space between L2 and H1. The power is a sum of resolvents (Hale, Higham
+    and Trefethen 2008, method 3), so that nothing dense is needed."""
 
     moments: Any  # C (n_trace, n), sparse
     solves: tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], ...]
@@ -61,10 +61,11 @@ class TraceNorm:
         return np.asarray(self.moments.T @ sum(w * solve(c) for w, solve in zip(self.weights, self.solves)))
 
 
-def trace_norm(space: TraceSpace, transfer: Any, accuracy: float = 1e-5) -> TraceNorm:
-    """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor, squared to ``accuracy``."""
+def trace_norm(space: TraceSpace, transfer: Any, length: float = 1.0, accuracy: float = 1e-5) -> TraceNorm:
+    """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor, squared to ``accuracy``;
+    ``length``: that of the space."""
     largest = _largest(space.full, space.mass)
-    shifts, weights = inverse_root(1.0, largest, accuracy)
+    shifts, weights = inverse_root(length**-2, largest, accuracy)
     solves = tuple(spla.splu((space.full + s * space.mass).tocsc()).solve for s in shifts)
     return TraceNorm((space.moments @ transfer).tocsr(), solves, weights)
 

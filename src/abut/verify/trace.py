@@ -23,8 +23,8 @@ SAME = 1e-7  # distance over the smallest facet size below which two nodes are o
 
 @dataclass(frozen=True)
 class TraceSpace:
-    """mass, full: (n, n) int v w and int v w + grad v . grad w along the surface; moments: (n, 9 n_facets) int v H_k;
-    pressure_mass: (n_facets, 9, 9) int H_k H_l over whole facets."""
+    """mass, full: (n, n) int v w and int v w / length^2 + grad v . grad w along the surface; moments: (n, 9 n_facets)
+    int v H_k; pressure_mass: (n_facets, 9, 9) int H_k H_l over whole facets."""
 
     mass: Any
     full: Any
@@ -32,10 +32,20 @@ class TraceSpace:
     pressure_mass: NDArray[np.float64]
 
 
-def trace_space(surface: Surface, degree: int, share: NDArray[np.float64], divisions: int) -> TraceSpace:
+def trace_space(
+    surface: Surface,
+    degree: int,
+    share: NDArray[np.float64],
+    divisions: int,
+    length: float = 1.0,
+    covered: NDArray[np.float64] | None = None,
+) -> TraceSpace:
     """The space on all facets with a ``share`` (n_facets,) of their area in contact, divided ``divisions`` times along
-    each edge; moments and pressure mass with the
-    pressure functions of ``degree`` count by that share."""
+    each edge; moments with the pressure functions of ``degree`` on the part in contact.
+
+    covered: (n_facets, 9, 9) int H_k H_l over that part. A function cut off at its rim counts as its projection on the
+    facet's pressure functions; without ``covered`` (and in the pressure mass) as the whole function times the share.
+    """
     points: list[NDArray[np.float64]] = []
     nodes: list[NDArray[np.int64]] = []
     entries: list[tuple[NDArray[Any], ...]] = []
@@ -43,14 +53,20 @@ def trace_space(surface: Surface, degree: int, share: NDArray[np.float64], divis
     first = 0
     for kind, facets in by_kind(surface):
         facets = facets[share[facets] > 0.0]
-        for part in _parts(surface, kind, facets, degree, divisions):
+        parts = _parts(surface, kind, facets, degree, divisions, length)
+        whole = np.sum([part.pm for part in parts], axis=0)
+        k = whole.shape[1]
+        cut = share[facets, None, None] * np.eye(k)
+        if covered is not None:
+            cut = np.linalg.solve(whole, covered[facets, :k, :k])
+        for part in parts:
             pressure_mass[facets[:, None, None], np.arange(part.pm.shape[1])[:, None], np.arange(part.pm.shape[2])] += (
                 part.pm * share[facets, None, None]
             )
             count = part.at_nodes.shape[1]
             points.append(part.at_nodes.reshape(-1, surface.dim))
             nodes.append(first + np.arange(len(facets) * count).reshape(-1, count))
-            entries.append((facets, part.mass, part.full, part.moments * share[facets, None, None]))
+            entries.append((facets, part.mass, part.full, part.moments @ cut))
             first += len(facets) * count
     merged, n = _merge(np.concatenate(points), SAME * facet_sizes(surface).min())
     mass: Any = sp.csr_matrix((n, n))
@@ -77,7 +93,9 @@ class _Part:
     pm: NDArray[np.float64]
 
 
-def _parts(surface: Surface, kind: str, facets: NDArray[np.int64], degree: int, divisions: int) -> list[_Part]:
+def _parts(
+    surface: Surface, kind: str, facets: NDArray[np.int64], degree: int, divisions: int, length: float
+) -> list[_Part]:
     cell = CELLS[kind]
     fine = "line3" if cell.dim == 1 else "tri6" if cell.corners == 3 else "quad9"
     code, functions = CELLS[fine].code, function_count(kind, degree)
@@ -103,7 +121,7 @@ def _parts(surface: Surface, kind: str, facets: NDArray[np.int64], degree: int, 
             _Part(
                 np.einsum("qn,fnd->fqd", shape_functions(cell.code, at)[0], x),
                 mass,
-                mass + stiff,
+                mass / length**2 + stiff,
                 np.einsum("fq,qn,qk->fnk", measure, values, pressure[:, :functions]),
                 np.einsum("fq,qk,ql->fkl", measure, pressure, pressure),
             )
