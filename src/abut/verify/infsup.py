@@ -62,8 +62,8 @@ def inf_sup(models: Model | Sequence[Model], contact: str | None = None) -> InfS
 
     beta^2 is the smallest eigenvalue of B S^-1 B^T q = beta^2 T q, with S the H1 matrix of all bodies on the displacements
     that supports leave free and T the pressure norm, theory (P7), (P8); the length in both norms is the contactor's (3D: the
-    root of its area), so that the unit of length does not matter. Raises InputError for models without contact, with a tied pair, or
-    where supports hold everything.
+    root of its area), so that the unit of length does not matter. Raises InputError for models without contact,
+    with a tied pair, or where supports hold everything.
     """
     sequence = [models] if isinstance(models, Model) else list(models)
     if not sequence:
