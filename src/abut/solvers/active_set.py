@@ -161,7 +161,8 @@ def solve_step(
     done: list[Iteration] = []
     keep_largest = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
-    accuracy = finest = ROUGH
+    finest = ROUGH
+    accuracy = 0.1 * ACCURATE if state.active.all() else ROUGH  # closed all over may well be the answer
     for count in range(1, limit + 1):
         clock = time.perf_counter()
         active = system.complete(state.active, system.gap(state, factor)) | tied
