@@ -74,12 +74,11 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     clock.mark("set-up")
 
     def linear_solver(kind: str) -> Prepared:
-        modes = held_by.rigid
-        result = prepare(kind, system, held.free, modes.together, held_by.free, model.dim)
+        result = prepare(kind, system, held.free, held_by.rigid.together, held_by.free, model.dim)
         note(result.note)
         return result
 
-    solver = linear_solver(choose(model.solve.linear, system, model.dim))
+    solver = linear_solver(choose(model.solve.linear, system, model.mesh))
     state = start(solver.system)
     steps: list[Step] = []
     count = model.solve.steps

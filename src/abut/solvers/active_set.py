@@ -20,7 +20,7 @@ from abut.state import Iteration
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
 UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
-ACCURATE = 1e-8  # of equilibrium and of closed gaps, where linear systems are solved iteratively
+ACCURATE = 2e-9  # of equilibrium and of closed gaps, where linear systems are solved iteratively
 ROUGH, FINE, FINEST = (
     1e-2,
     1e-5,

@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.cells import CELLS
+from abut.mesh.mesh import Mesh
 from abut.solvers.active_set import Outcome, System
 from abut.solvers.condensed import condense
 from abut.solvers.direct import solver_name
 from abut.solvers.iterative import Count, iterate
 from abut.solvers.multigrid import hierarchy
 
-LARGE = 60_000  # free displacements in 3D from where on multigrid wins
+LARGE = {1: 60_000, 2: 120_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
 
 @dataclass(frozen=True)
@@ -31,11 +33,12 @@ class Prepared:
     count: Count | None = None
 
 
-def choose(linear: str, system: System, dim: int) -> str:
+def choose(linear: str, system: System, mesh: Mesh) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do."""
     if linear != "auto":
         return linear
-    large = dim == 3 and len(system.load) >= LARGE
+    degree = max(CELLS[block.kind].degree for block in mesh.blocks)
+    large = mesh.dim == 3 and len(system.load) >= LARGE[degree]
     able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in system.pairs)
     return "amg" if large and able else "direct"
 
