@@ -58,13 +58,17 @@ Step = Callable[
 ]
 
 
+Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
+
+
 @dataclass(frozen=True)
 class System:
     """What stays the same over all iterations and steps.
 
     ``complete`` adds to an active set that lets a body go the multipliers closest to contact; ``freed`` says in words
     which body it lets go. ``step``: (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by
-    ``accuracy`` or, where ``exact``, to rounding. Where displacements have been
+    ``accuracy`` or, where ``exact``, to rounding. ``predict``: (gap, pressure, active, tied) -> a guess at the final active
+    set, where one is cheap. Where displacements have been
     eliminated, ``compliance`` (n, n) and ``opening`` (n,) are the gaps that come of them, by pressures and by full load.
     """
 
@@ -76,6 +80,7 @@ class System:
     freed: Callable[[NDArray[np.bool_]], str]
     step: Step
     exact: bool = True
+    predict: Predict | None = None
     compliance: NDArray[np.float64] | None = None
     opening: NDArray[np.float64] | None = None
 
@@ -181,6 +186,10 @@ def solve_step(
                 return _finish_smooth(system, solved, factor, number, limit, done, observe)
             state, accuracy = solved, max(0.3 * ACCURATE / error, FINEST)
             continue
+        if system.predict is not None and changed.sum() > FEW * active.sum():
+            guess = system.predict(system.gap(solved, factor), solved.pressure, wanted, tied)
+            if guess.tobytes() not in {*seen, active.tobytes()}:
+                wanted = guess
         accuracy = min(finest, ROUGH if changed.sum() > FEW * active.sum() else 0.1 * ROUGH)
         if np.array_equal(system.complete(wanted, system.gap(solved, factor)) | tied, active):
             raise SingularModelError(

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.solvers.active_set import Rows, System
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import Apply, Interface, interfaces, schur_inverse
+from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
 
 RESTART, CYCLES = 60, 4
 FAILED = "multigrid does not converge on this model"
@@ -120,6 +120,7 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) 
         )
     largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
     scale = float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
-    count = Count()
-    solver = Iterative(system.stiffness, system.operator, hierarchy, interfaces(system.pairs), motions, scale, count)
-    return replace(system, step=solver.step, exact=False), count
+    count, parts = Count(), interfaces(system.pairs)
+    solver = Iterative(system.stiffness, system.operator, hierarchy, parts, motions, scale, count)
+    predict = predictor(parts, np.asarray(system.operator @ motions))
+    return replace(system, step=solver.step, exact=False, predict=predict), count

@@ -21,6 +21,8 @@ from abut.interface.geometry import facet_stiffness
 from abut.solvers.fractional import inverse_root
 
 ACCURACY = 1e-2
+PREDICTIONS = 15  # active sets tried on the interface alone
+Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -79,11 +81,85 @@ def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Appl
     return apply
 
 
+def predictor(parts: Sequence[Interface], moved: NDArray[np.float64]) -> Predict:
+    """A guess at the next active set: contact of half spaces, g = g0 + S (p - p0) + C a, solved on the interface alone.
+
+    moved: (n, m) change of the weighted gaps by rigid motions that supports leave free (C), which the pressures keep in
+    balance. The function takes gap g0, pressure p0, a first active set and the rows that are never open."""
+    apply_parts = [(part.rows, _forward(part)) for part in parts]
+
+    def forward(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+        gap = np.zeros_like(pressure)
+        for rows, apply in apply_parts:
+            gap[rows] = apply(pressure[rows])
+        return gap
+
+    def predict(
+        gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        rest = gap - forward(np.where(tied, 0.0, pressure))
+        for _ in range(PREDICTIONS):
+            own = np.flatnonzero(active & ~tied)
+            if not len(own):
+                return active
+            p, shift = _balanced(forward, rest, moved, moved.T @ np.where(tied, 0.0, pressure), own)
+            g = rest + forward(p) + moved @ shift
+            following = np.where(active, p > 0.0, g < 0.0) | tied
+            if (following == active).all() or not following[~tied].any():
+                return active
+            active = following
+        return active
+
+    return predict
+
+
+def _balanced(
+    forward: Apply, rest: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
+    own: NDArray[np.int64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+    """Pressures on the rows ``own`` that close the gap there, with the resultants ``force`` on loose bodies."""
+
+    def restricted(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        whole = np.zeros_like(rest)
+        whole[own] = values
+        return forward(whole)[own]
+
+    operator = spla.LinearOperator((len(own), len(own)), matvec=restricted, dtype=float)
+
+    def solve(rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(spla.cg(operator, rhs, rtol=ACCURACY, maxiter=200)[0])
+
+    pressure = np.zeros_like(rest)
+    closing = solve(-rest[own])
+    if not moved.shape[1]:
+        pressure[own] = closing
+        return pressure, np.zeros(0)
+    answers = np.column_stack([solve(column) for column in moved[own].T])
+    shift = np.linalg.lstsq(moved[own].T @ answers, moved[own].T @ closing - force, rcond=1e-9)[0]
+    pressure[own] = closing - answers @ shift
+    return pressure, np.asarray(shift)
+
+
+def _forward(part: Interface) -> Apply:
+    shifts, weights = _resolvents(part.full, part.mass, part.lowest)
+    solves = [spla.splu((part.full + s * part.mass).tocsc()).solve for s in shifts]
+
+    def apply(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+        spread = part.mass @ pressure
+        return np.asarray(part.compliance * (part.mass @ sum(w * solve(spread) for w, solve in zip(weights, solves))))
+
+    return apply
+
+
+def _resolvents(full: Any, mass: Any, lowest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    rows = np.asarray(abs(mass).sum(axis=1)).ravel()
+    largest = 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)
+    return inverse_root(lowest, largest, ACCURACY)
+
+
 def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
     full, mass = part.full[own][:, own], part.mass[own][:, own]
-    rows = np.asarray(abs(mass).sum(axis=1)).ravel()
-    largest = max(10.0 * float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), 10.0 * part.lowest)
-    shifts, weights = inverse_root(part.lowest, largest, ACCURACY)
+    shifts, weights = _resolvents(full, mass, part.lowest)
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
     undo = spla.splu(mass.tocsc()).solve
 

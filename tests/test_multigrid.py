@@ -1,0 +1,139 @@
+"""The iterative path: the same answer as the direct one, iterations that do not grow, and what it does where it cannot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import abut
+from abut.discretization.pairs import pairs
+from abut.discretization.supports import supports
+from abut.mesh.make import box, join
+from abut.solvers.fractional import inverse_root
+from abut.solvers.schur import interfaces, schur_inverse
+
+STEEL = abut.LinearElastic(210e3, 0.3)
+AGREE = 1e-7  # in pressure: the equations are met to 2e-9, and pressures are worse conditioned than residuals
+
+
+def blocks(n: int, cell: str = "hex8", tilt: float = 0.01, **contact: object) -> abut.Model:
+    """A block pressed on a larger one with other cells; tilted, so that half of it stays open."""
+    lower = box((0, 10), (0, 10), (0, 10), (n, n, n), cell)
+    m = max(3 * n // 4, 1)
+    upper = box((1, 9), (1, 9), (10, 18), (m, m, m), cell)
+    slope = np.column_stack([np.zeros((len(upper.points), 2)), tilt * (upper.points[:, 0] - 1)])
+    return abut.Model(
+        join({"lower": lower, "upper": replace(upper, points=upper.points + slope)}),
+        [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
+        [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.05)],
+        contacts=[abut.Contact("upper.bottom", "lower.top", **contact)],
+    )
+
+
+def both(model: abut.Model) -> tuple[abut.Solution, abut.Solution]:
+    found = [abut.solve(replace(model, solve=abut.SolveOptions(linear=kind))) for kind in ("amg", "direct")]
+    assert found[0].converged
+    return found[0], found[1]
+
+
+def assert_same(model: abut.Model, limit: float = AGREE) -> abut.Solution:
+    iterative, direct = both(model)
+    assert "multigrid" in iterative.solver
+    p, q = iterative.contacts[0].pressure, direct.contacts[0].pressure
+    assert np.nanmax(np.abs(p - q)) < limit * np.nanmax(np.abs(q))
+    assert all(check.passed for check in iterative.certificate if check.name not in ("oscillation", "tension"))
+    return iterative
+
+
+def linear_iterations(solution: abut.Solution) -> int:
+    (note,) = (note for note in solution.notes if "linear iterations" in note)
+    return int(note.split()[0])
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.01])
+@pytest.mark.parametrize("cell", ["hex8", "hex20", "hex27", "tet4", "tet10", "wedge6", "wedge15"])
+def test_same_answer_as_the_direct_path(cell: str, tilt: float) -> None:
+    assert_same(blocks(8 if cell in ("hex8", "tet4", "wedge6") else 4, cell, tilt))
+
+
+@pytest.mark.parametrize("pressure", ["P0", "dual"])
+def test_other_pressure_spaces(pressure: str) -> None:
+    assert_same(blocks(8, pressure=pressure))
+
+
+def test_tied_blocks() -> None:
+    assert_same(blocks(8, tilt=0.0, kind="tied"))
+
+
+def test_block_that_only_contact_holds() -> None:
+    """The stiffness is singular: multigrid does not see the rigid motions, which pressures and gaps determine."""
+    model = blocks(8, tilt=0.0)
+    loose = replace(
+        model,
+        supports=[model.supports[0], abut.Support("upper.left", x=0), abut.Support("upper.front", y=0)],
+        loads=[abut.Pressure("upper.top", 100.0)],
+    )
+    assert_same(loose)
+
+
+def test_several_steps() -> None:
+    model = blocks(8)
+    stepped = [replace(model, solve=abut.SolveOptions(steps=3, linear=kind)) for kind in ("amg", "direct")]
+    iterative, direct = (abut.solve(m) for m in stepped)
+    for a, b in zip(iterative.steps, direct.steps):
+        assert a.contacts[0].force == pytest.approx(b.contacts[0].force, rel=1e-7, abs=1e-7 * b.contacts[0].force[2])
+
+
+def test_nearly_incompressible() -> None:
+    model = blocks(6)
+    rubber = abut.LinearElastic(10.0, 0.49)
+    assert_same(replace(model, solids=[abut.Solid("lower", rubber), abut.Solid("upper", rubber)]), 1e-6)
+
+
+def test_what_it_cannot_solve_goes_to_the_direct_solver() -> None:
+    """Stiffness that differs 1e4 times stalls the iteration; the log says so, and the answer is the direct one."""
+    model = blocks(6)
+    soft = abut.LinearElastic(21.0, 0.3)
+    iterative, direct = both(replace(model, solids=[abut.Solid("lower", STEEL), abut.Solid("upper", soft)]))
+    if "multigrid" not in iterative.solver:
+        assert any("going on with the direct solver" in note for note in iterative.notes)
+    assert iterative.contacts[0].max_pressure == pytest.approx(direct.contacts[0].max_pressure, rel=AGREE)
+
+
+def test_constraint_function_is_refused() -> None:
+    with pytest.raises(abut.InputError, match='"amg" does not know the constraint function'):
+        abut.solve(replace(blocks(4, law="constraint-function"), solve=abut.SolveOptions(linear="amg")))
+
+
+@pytest.mark.long
+def test_iterations_do_not_grow() -> None:
+    """Multigrid and the interface's operator are both optimal: from 9 000 to 65 000 displacements, no more than a third."""
+    few, many = (linear_iterations(both(blocks(n))[0]) for n in (12, 24))
+    assert many < 1.34 * few
+
+
+@pytest.mark.parametrize("high", [1e2, 1e6])
+def test_inverse_root(high: float) -> None:
+    x = np.geomspace(1.0, high, 200)
+    shifts, weights = inverse_root(1.0, high, 1e-4)
+    assert (weights / (x[:, None] + shifts)).sum(axis=1) == pytest.approx(x**-0.5, rel=1e-4)
+
+
+def test_interface_operator_is_close_to_the_true_one() -> None:
+    """S and B K^-1 B^T have the same eigenvalues within a factor of five, for all contact and for a part of it."""
+    from abut.solids.elements import stiffness
+
+    model = blocks(6, tilt=0.0)
+    held = supports(model)
+    (pair,) = pairs(model, held)
+    k = (held.free.T @ stiffness(model.mesh, dict.fromkeys(("lower", "upper"), STEEL)) @ held.free).tocsc()
+    exact = pair.operator @ sp.linalg.spsolve(k, pair.operator.T.toarray())
+    for active in (np.ones(len(pair), dtype=bool), np.arange(len(pair)) % 5 > 1):
+        inverse = schur_inverse(interfaces([pair]), active)
+        product = np.column_stack([inverse(column) for column in exact[np.ix_(active, active)].T])
+        values = np.linalg.eigvals(product).real
+        assert values.min() > 0.2
+        assert values.max() < 5.0 * max(values.min(), 0.2)
