@@ -58,7 +58,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     clock.mark("interface")
     held_by: Holding = holding(model.mesh, held, every)
     held_by.check()
-    reduced = (held.free.T @ full_stiffness @ held.free).tocsr()
+    reduced = held.reduce(full_stiffness)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
     system = System(
