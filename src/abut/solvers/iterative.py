@@ -49,7 +49,9 @@ class Iterative:
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Solve theory (V1) to a residual ``accuracy`` times the present one. Raises NotConverged."""
+        """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
+
+        Raises NotConverged."""
         known = rows.decoupled
         fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
         active = ~known
