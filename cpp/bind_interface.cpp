@@ -54,8 +54,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
     out[name] = nb::make_tuple(to_numpy(std::move(e.row)), to_numpy(std::move(e.column)),
                                to_numpy(std::move(e.value), {n, width}));
   };
-  entries("contactor", c.contactor);
-  entries("target", c.target);
+  entries("contactor", c.lists.contactor);
+  entries("target", c.lists.target);
   out["gap"] = to_numpy(std::move(c.gap), {facets, 9});
   out["weight"] = to_numpy(std::move(c.weight), {facets, 9});
   out["mass"] = to_numpy(std::move(c.mass), {facets, 9, 9});
@@ -63,15 +63,15 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   out["segments"] = to_numpy(std::move(c.segments));
   out["first_target"] = to_numpy(std::move(c.first_target));
   if (keep_points) {
-    const std::size_t n = c.points.weight.size();
-    out["point_weight"] = to_numpy(std::move(c.points.weight));
-    out["point_gap"] = to_numpy(std::move(c.points.gap));
-    out["point_normal"] = to_numpy(std::move(c.points.normal), {n, dim});
-    out["point_pressure"] = to_numpy(std::move(c.points.pressure), {n, 9});
-    out["point_contactor"] = to_numpy(std::move(c.points.contactor), {n, 9});
-    out["point_target"] = to_numpy(std::move(c.points.target), {n, 9});
-    out["point_contactor_facet"] = to_numpy(std::move(c.points.contactor_facet));
-    out["point_target_facet"] = to_numpy(std::move(c.points.target_facet));
+    const std::size_t n = c.lists.points.weight.size();
+    out["point_weight"] = to_numpy(std::move(c.lists.points.weight));
+    out["point_gap"] = to_numpy(std::move(c.lists.points.gap));
+    out["point_normal"] = to_numpy(std::move(c.lists.points.normal), {n, dim});
+    out["point_pressure"] = to_numpy(std::move(c.lists.points.pressure), {n, 9});
+    out["point_contactor"] = to_numpy(std::move(c.lists.points.contactor), {n, 9});
+    out["point_target"] = to_numpy(std::move(c.lists.points.target), {n, 9});
+    out["point_contactor_facet"] = to_numpy(std::move(c.lists.points.contactor_facet));
+    out["point_target_facet"] = to_numpy(std::move(c.lists.points.target_facet));
   }
   return out;
 }

@@ -1,10 +1,13 @@
 // Element kernels: sparsity pattern of the stiffness, and isotropic stiffness matrices scattered straight into it.
 #include "bind.hpp"
+#include "parallel.hpp"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace abut {
+
+constexpr std::size_t FEW_CELLS = 5000; // not worth a thread
 
 // Node adjacency through cells, rows sorted: cell c has the nodes nodes[start[c] .. start[c+1]].
 static nb::tuple node_pattern(std::int64_t n_points, Vector<std::int64_t> start, Vector<std::int32_t> nodes) {
@@ -55,16 +58,20 @@ static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t>
   return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)));
 }
 
-// Adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to the values of a block pattern.
-// shapes (q, n), derivatives (q, n, dim), weights (q): the rule on the reference cell; lame (cells, 2): lambda, mu of
-// each cell. Axisymmetric: coordinates are (r, z), the hoop strain is u_r / r and the integral runs round the axis.
+// For the rows of points first .. last - 1: adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to
+// the values of a block pattern. shapes (q, n), derivatives (q, n, dim), weights (q): the rule on the reference cell;
+// lame (cells, 2): lambda, mu of each cell. Axisymmetric: coordinates are (r, z), the hoop strain is u_r / r and the
+// integral runs round the axis.
 template <int dim, bool axisymmetric>
 static void add_stiffness(const double *points, const std::int32_t *nodes, std::size_t cells, std::size_t n,
                           const double *shapes, const double *derivatives, const double *weights, std::size_t rule,
-                          const double *lame, const std::int64_t *indptr, const std::int32_t *indices, double *values) {
+                          const double *lame, const std::int64_t *indptr, const std::int32_t *indices, double *values,
+                          std::int32_t first, std::int32_t last) {
   std::vector<double> gradient(n * dim), hoop(n), block(n * n * dim * dim);
   for (std::size_t c = 0; c < cells; ++c) {
     const std::int32_t *own = nodes + c * n;
+    if (std::none_of(own, own + n, [&](std::int32_t i) { return i >= first && i < last; }))
+      continue;
     const double lambda = lame[2 * c], mu = lame[2 * c + 1];
     std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < rule; ++q) {
@@ -125,6 +132,8 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
         }
     }
     for (std::size_t i = 0; i < n; ++i) {
+      if (own[i] < first || own[i] >= last)
+        continue;
       const std::int64_t row = indptr[own[i]], length = indptr[own[i] + 1] - row;
       const std::int32_t *begin = indices + row, *end = begin + length;
       double *out = values + row * dim * dim;
@@ -148,11 +157,15 @@ static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes
       lame.shape(0) != nodes.shape(0) || lame.shape(1) != 2 || (axisymmetric && dim != 2))
     throw nb::value_error("rule, cells and materials disagree");
   nb::gil_scoped_release release;
-  (axisymmetric ? add_stiffness<2, true>
-   : dim == 2   ? add_stiffness<2, false>
-                : add_stiffness<3, false>)(points.data(), nodes.data(), nodes.shape(0), n, shapes.data(),
-                                         derivatives.data(), weights.data(), weights.shape(0), lame.data(),
-                                         indptr.data(), indices.data(), values.data());
+  const auto add = axisymmetric ? add_stiffness<2, true> : dim == 2 ? add_stiffness<2, false> : add_stiffness<3, false>;
+  // Every thread owns a range of rows and computes all cells that reach into it: each row is added up in the order of
+  // the cells, whatever the number of threads.
+  const std::size_t rows = points.shape(0), parts = nodes.shape(0) < FEW_CELLS ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    add(points.data(), nodes.data(), nodes.shape(0), n, shapes.data(), derivatives.data(), weights.data(),
+        weights.shape(0), lame.data(), indptr.data(), indices.data(), values.data(), std::int32_t(rows * part / parts),
+        std::int32_t(rows * (part + 1) / parts));
+  });
 }
 
 void bind_solids(nb::module_ &m) {

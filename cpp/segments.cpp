@@ -1,6 +1,7 @@
 // The 2D and 3D loops over contactor facets; see docs/theory/segments.md for the construction.
 #include "segments.hpp"
 #include "contactor.hpp"
+#include "parallel.hpp"
 #include "tree.hpp"
 #include <numbers>
 
@@ -20,6 +21,8 @@ Facet<double> SurfaceView::facet(std::size_t f) const {
 }
 
 namespace {
+
+constexpr std::size_t FEW_FACETS = 500; // not worth a thread
 
 Box box_of(const Facet<double> &f) {
   Box box;
@@ -47,7 +50,9 @@ void pressure_values(int kind, int degree, const double *xi, const double *own, 
 // Sums of one contactor facet with all its targets.
 class Accumulator {
 public:
-  Accumulator(Coupling &out, const Options &options, int dim) : out_(out), options_(options), dim_(dim) {}
+  // Values facet by facet go to `out`, which all threads share; lists to `own`.
+  Accumulator(Coupling &out, Lists &own, const Options &options, int dim)
+      : out_(out), lists_(own), options_(options), dim_(dim) {}
 
   void begin(std::size_t f, const Facet<double> &c) {
     f_ = f, functions_ = pressure_functions(c.kind, options_.degree), nodes_ = c.nodes;
@@ -89,12 +94,12 @@ public:
       return;
     if (out_.first_target[f_] < 0)
       out_.first_target[f_] = std::int32_t(t_);
-    emit(out_.target, other_, nodes, target_nodes_);
+    emit(lists_.target, other_, nodes, target_nodes_);
   }
   void count_segment() { ++out_.segments[f_]; }
   void end(const std::int32_t *nodes) {
     if (out_.segments[f_] > 0)
-      emit(out_.contactor, own_, nodes, nodes_);
+      emit(lists_.contactor, own_, nodes, nodes_);
   }
 
 private:
@@ -112,7 +117,7 @@ private:
   }
 
   void keep(const double *h, const double *nc, const double *nt, double weight, double gap, const double *normal) {
-    IntegrationPoints &p = out_.points;
+    IntegrationPoints &p = lists_.points;
     p.weight.push_back(weight), p.gap.push_back(gap);
     p.normal.insert(p.normal.end(), normal, normal + dim_);
     for (int k = 0; k < MAX_FACET_NODES; ++k) {
@@ -124,6 +129,7 @@ private:
   }
 
   Coupling &out_;
+  Lists &lists_;
   const Options &options_;
   int dim_;
   std::size_t f_ = 0, t_ = 0;
@@ -131,6 +137,21 @@ private:
   bool hit_ = false;
   Block own_, other_;
 };
+
+template <class T> void append(std::vector<T> &to, std::vector<T> &from) {
+  if (to.empty())
+    to.swap(from);
+  else
+    to.insert(to.end(), from.begin(), from.end());
+}
+void append(Entries &to, Entries &from) {
+  append(to.row, from.row), append(to.column, from.column), append(to.value, from.value);
+}
+void append(IntegrationPoints &to, IntegrationPoints &from) {
+  append(to.weight, from.weight), append(to.gap, from.gap), append(to.normal, from.normal);
+  append(to.pressure, from.pressure), append(to.contactor, from.contactor), append(to.target, from.target);
+  append(to.contactor_facet, from.contactor_facet), append(to.target_facet, from.target_facet);
+}
 
 // ---- 2D ------------------------------------------------------------------------------------------------------------
 
@@ -320,42 +341,50 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
   const Tree tree(boxes, dim);
 
-  Accumulator sums(out, options, dim);
-  std::vector<int> found;
-  std::vector<Piece> pieces;
-  for (std::size_t f = 0; f < contactor.facets; ++f) {
-    const Facet<double> c = contactor.facet(f);
-    Box swept = box_of(c);
-    for (int i = 0; i < c.nodes; ++i) {
-      double far[3];
-      for (int side = -1; side <= 1; side += 2) {
-        for (int a = 0; a < dim; ++a)
-          far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
-        swept.add(far, dim);
+  const std::size_t parts = contactor.facets < FEW_FACETS ? 1 : thread_count();
+  std::vector<Lists> lists(parts);
+  run_parts(parts, [&](std::size_t part) {
+    Accumulator sums(out, lists[part], options, dim);
+    std::vector<int> found;
+    std::vector<Piece> pieces;
+    for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
+      const Facet<double> c = contactor.facet(f);
+      Box swept = box_of(c);
+      for (int i = 0; i < c.nodes; ++i) {
+        double far[3];
+        for (int side = -1; side <= 1; side += 2) {
+          for (int a = 0; a < dim; ++a)
+            far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
+          swept.add(far, dim);
+        }
       }
+      swept.inflate(1e-9 * swept.diagonal(dim), dim);
+      tree.query(swept, found);
+      if (found.empty())
+        continue;
+      sums.begin(f, c);
+      if (dim == 2) {
+        for (int t : found) {
+          sums.begin_target(t, targets[t].nodes);
+          couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
+                      options.axisymmetric, sums);
+          sums.end_target(target.nodes + 9 * t);
+        }
+      } else {
+        const Contactor3 own(c, subdivide_c[f]);
+        for (int t : found) {
+          sums.begin_target(t, targets[t].nodes);
+          couple_facet(own, targets[t], subdivide_t[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
+                       pieces, sums);
+          sums.end_target(target.nodes + 9 * t);
+        }
+      }
+      sums.end(contactor.nodes + 9 * f);
     }
-    swept.inflate(1e-9 * swept.diagonal(dim), dim);
-    tree.query(swept, found);
-    if (found.empty())
-      continue;
-    sums.begin(f, c);
-    if (dim == 2) {
-      for (int t : found) {
-        sums.begin_target(t, targets[t].nodes);
-        couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach, options.axisymmetric,
-                    sums);
-        sums.end_target(target.nodes + 9 * t);
-      }
-    } else {
-      const Contactor3 own(c, subdivide_c[f]);
-      for (int t : found) {
-        sums.begin_target(t, targets[t].nodes);
-        couple_facet(own, targets[t], subdivide_t[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
-                     pieces, sums);
-        sums.end_target(target.nodes + 9 * t);
-      }
-    }
-    sums.end(contactor.nodes + 9 * f);
+  });
+  for (Lists &part : lists) {
+    append(out.lists.contactor, part.contactor), append(out.lists.target, part.target);
+    append(out.lists.points, part.points);
   }
   return out;
 }
