@@ -70,3 +70,11 @@ def test_without_pardiso(monkeypatch: pytest.MonkeyPatch) -> None:
     solution = abut.solve(model)
     assert "SuperLU" in solution.solver
     assert np.abs(solution.displacement - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("law", ["complementarity", "constraint-function"])
+def test_direct_solver_that_does_not_fit_says_so(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before anything is factorised: what it needs, what there is, what to choose instead."""
+    monkeypatch.setattr(direct, "available_memory", lambda: 1e4)
+    with pytest.raises(abut.InputError, match=r'the direct solver needs about .* GB .* choose linear = "amg"'):
+        abut.solve(pressed_block(law))

@@ -14,7 +14,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut.errors import SingularModelError
+from abut.errors import InputError, SingularModelError
 
 POSITIVE_DEFINITE, SYMMETRIC_INDEFINITE, UNSYMMETRIC = 2, -2, 11
 ACCURATE = 1e-10  # relative residual that a sound factorisation stays below
@@ -85,7 +85,9 @@ def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.f
             solver.iparm[key - 1] = value
         upper = sp.triu(matrix, format="csr")
         upper.sort_indices()
-        solver.factorize(upper)
+        _analyse(solver, upper, np.zeros(upper.shape[0]))
+        solver.set_phase(22)
+        solver._call_pardiso(upper, np.zeros(upper.shape[0]))
     except failures as error:
         raise SingularModelError(f"the direct solver gave up ({error}); check supports and contacts") from None
 
@@ -94,6 +96,32 @@ def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.f
         return np.asarray(solver._call_pardiso(upper, np.asfortranarray(b)))
 
     return solve
+
+
+def _analyse(solver: Any, matrix: Any, b: NDArray[np.float64]) -> None:
+    """PARDISO's symbolic phase. Raises InputError where the factors would not fit into memory."""
+    solver.set_phase(11)
+    solver._call_pardiso(matrix, b)
+    needed = 1024.0 * max(solver.iparm[14], int(solver.iparm[15]) + int(solver.iparm[16]))
+    available = available_memory()
+    if available is not None and needed > available:
+        solver.free_memory(everything=True)
+        raise InputError(
+            f"solve.linear: the direct solver needs about {needed / 1e9:.1f} GB, but {available / 1e9:.1f} GB of memory are "
+            'free; choose linear = "amg" (3D, law complementarity), a coarser mesh, or a larger machine'
+        )
+
+
+def available_memory() -> float | None:
+    """Bytes that can be had without swapping; None where the system does not say."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            for line in lines:
+                if line.startswith("MemAvailable:"):
+                    return 1024.0 * int(line.split()[1])
+    except OSError:
+        pass
+    return None
 
 
 class PartialFactorization:
@@ -111,7 +139,9 @@ class PartialFactorization:
         self._solver.perm = np.zeros(matrix.shape[0], dtype=np.int32)
         self._solver.perm[kept] = 1
         weakref.finalize(self, self._solver.free_memory, everything=True)
-        self.schur = self._call(12, np.zeros((len(kept), len(kept)), order="F"))
+        place = np.zeros((len(kept), len(kept)), order="F")
+        _analyse(self._solver, matrix, place)
+        self.schur = self._call(22, place)
         self.sound = self._solver.iparm[13] == 0  # number of perturbed pivots
 
     def forward(self, b: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -166,7 +196,9 @@ def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> ND
     for key, value in settings.items():
         solver.iparm[key - 1] = value
     try:
-        x: NDArray[np.float64] = solver.solve(matrix, rhs)
+        _analyse(solver, matrix, rhs)
+        solver.set_phase(23)
+        x: NDArray[np.float64] = solver._call_pardiso(matrix, rhs)
     except module.pardiso_wrapper.PyPardisoError as error:
         raise SingularModelError(f"the direct solver gave up ({error}); check supports, contacts and units") from None
     finally:
