@@ -83,10 +83,15 @@ def test_ties_are_checked_for_their_integration_only() -> None:
     [("quad4", "P1-discontinuous", 16, 16), ("quad4", "P1-discontinuous", 12, 9)],
 )
 def test_oscillation_of_spurious_modes(cell: str, pressure: str, n: int, m: int) -> None:
-    """With spurious modes the law picks corners of the set of solutions: facets' values jump by about the pressure."""
-    solution = abut.solve(pressed(n, m, cell, pressure=pressure))
-    assert "oscillation" in failed(solution)
-    assert checks(solution)["oscillation"].value > 0.2
+    """With spurious modes the law picks corners of the set of solutions: facets' values jump by about the pressure. Which
+    corners is up to rounding, and so is whether the equations are refused as singular on the way."""
+    try:
+        solution = abut.solve(pressed(n, m, cell, pressure=pressure))
+    except abut.SingularModelError as error:
+        assert "no unique solution" in str(error)
+    else:
+        assert "oscillation" in failed(solution)
+        assert checks(solution)["oscillation"].value > 0.2
     assert checks(abut.solve(pressed(n, m, cell)))["oscillation"].value < 0.01
 
 
