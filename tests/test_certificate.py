@@ -87,9 +87,9 @@ def test_oscillation_of_spurious_modes(cell: str, pressure: str, n: int, m: int)
     corners is up to rounding, and so is whether the equations are refused as singular on the way."""
     try:
         solution = abut.solve(pressed(n, m, cell, pressure=pressure))
-    except abut.SingularModelError as error:
-        assert "no unique solution" in str(error)
-    else:
+    except abut.SingularModelError:
+        solution = None
+    if solution is not None:
         assert "oscillation" in failed(solution)
         assert checks(solution)["oscillation"].value > 0.2
     assert checks(abut.solve(pressed(n, m, cell)))["oscillation"].value < 0.01
