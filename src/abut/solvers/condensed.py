@@ -3,6 +3,7 @@ iteration of every load step solves dense systems of the size of the interface."
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -176,7 +177,8 @@ def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundan
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
     if redundant:
         return np.asarray(np.linalg.lstsq(scaled, b, rcond=REPEATED)[0] / columns)
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)  # the residual below tells
         factor = scipy.linalg.lu_factor(scaled, check_finite=False)
         x = scipy.linalg.lu_solve(factor, b, check_finite=False)
         x = x + scipy.linalg.lu_solve(factor, b - scaled @ x, check_finite=False)
