@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -111,5 +112,5 @@ def _death(code: int, output: str) -> str:
     """Why a child died, in few words."""
     if code < 0:
         return signal.Signals(-code).name
-    errors = [line.strip() for line in output.splitlines() if "Error" in line]
+    errors = [line.strip(" *") for line in output.splitlines() if re.search("error", line, re.IGNORECASE)]
     return errors[-1][:100] if errors else f"exit status {code}"

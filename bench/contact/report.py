@@ -49,6 +49,11 @@ def cores(number: int) -> str:
     return f"{number} core{'s' * (number > 1)}"
 
 
+def spaced(number: int) -> str:
+    """A whole number with spaces between thousands."""
+    return f"{number:,}".replace(",", " ")
+
+
 def _partner(rows: Iterable[Row], row: Row, code: str) -> Row | None:
     """The sound run of another code on the same mesh and as many cores."""
     for other in rows:
@@ -87,14 +92,14 @@ def cells(rows: Sequence[Row], row: Row) -> list[str]:
     sound = row["status"] == "ok"
     return [
         row["case"],
-        f"{row['dofs']:,}".replace(",", " "),
+        spaced(row["dofs"]),
         str(row["cores"]),
         row["code"],
         show(row.get("seconds") if sound else None, ".3g"),
         show(row.get("peak_mb"), ".0f"),
         show(row.get("iterations"), "d"),
         show(row.get("force"), ".1f"),
-        show(difference(rows, row), "+.2%"),
+        show(difference(rows, row), "+.2%").replace("-0.00", "+0.00"),
         show(ratio("abut"), ".2f"),
         show(ratio("abut-tied"), ".2f"),
         verdict(rows, row),
@@ -129,6 +134,17 @@ def exponent_table(rows: Sequence[Row]) -> list[list[str]]:
     return lines
 
 
+def stage_table(rows: Sequence[Row]) -> list[list[str]]:
+    """Seconds of abut's contact runs by stage."""
+    own = [row for row in rows if row["code"] == "abut" and row["status"] == "ok" and "stages" in row]
+    stages = list(dict.fromkeys(name for row in own for name in row["stages"]))
+    lines = [["case", "dofs", "cores", *stages]]
+    for row in own:
+        values = [f"{row['stages'].get(name, 0.0):.3g}" for name in stages]
+        lines.append([row["case"], spaced(row["dofs"]), str(row["cores"]), *values])
+    return lines
+
+
 def markdown(lines: Sequence[Sequence[str]]) -> str:
     """A Markdown table; the first line is its head."""
     text = ["| " + " | ".join(line) + " |" for line in lines]
@@ -155,6 +171,8 @@ def page(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
             markdown(table(rows)),
             "Exponents of time against dofs:",
             markdown(exponent_table(rows)),
+            "Seconds of abut's contact runs by stage:",
+            markdown(stage_table(rows)),
         ]
     )
 

@@ -177,6 +177,7 @@ def main() -> None:
     (options.output / "table.md").write_text(text + "\n", encoding="utf-8")
     print(report.plain(report.table(bench.rows)))
     print("\nexponents of time against dofs\n" + report.plain(report.exponent_table(bench.rows)))
+    print("\nseconds of abut's contact runs by stage\n" + report.plain(report.stage_table(bench.rows)))
     picture = options.output / "times.png"
     plotted = report.plot(bench.rows, picture)
     print(f"\nwritten to {options.output}" + ("" if plotted else "; no plot, matplotlib is not installed"))
