@@ -23,6 +23,7 @@ import codes  # noqa: E402
 import kratos  # noqa: E402
 import process  # noqa: E402
 import report  # noqa: E402
+import run  # noqa: E402
 
 # Faces and edges of CalculiX's elements, from 1, as its manual numbers them.
 HEX_FACES = ((1, 2, 3, 4), (5, 8, 7, 6), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1))
@@ -174,16 +175,16 @@ def environment() -> dict[str, str]:
 def test_abut_child(tmp_path: Path) -> None:
     """A run in a process of its own gives a converged result with a force of about E strain area."""
     command = [sys.executable, str(BENCH / "abut_child.py"), "flat-hex8", "200"]
-    run = process.run(command, tmp_path, process.available_cores()[:1], 60.0, 4e9, environment())
-    assert run.status == "ok", run.output
-    result = run.json()
+    child = process.run(command, tmp_path, process.available_cores()[:1], 60.0, 4e9, environment())
+    assert child.status == "ok", child.output
+    result = child.json()
     assert result is not None
     assert result["status"] == "ok"
     force = cases.STEEL.young * cases.DEPTH / (2 * cases.SIDE) * cases.SIDE**2
     assert force < result["force"] < 1.1 * force  # held sideways at both ends
     assert result["iterations"] >= 1
     assert {"assembly", "interface", "solve"} <= set(result["stages"])
-    assert 10.0 < run.peak_mb < 4000.0
+    assert 10.0 < child.peak_mb < 4000.0
 
 
 @pytest.mark.parametrize(
@@ -202,8 +203,8 @@ def test_process(tmp_path: Path, code: str, status: str) -> None:
 
 def test_memory_limit(tmp_path: Path) -> None:
     code = "x = bytearray(200_000_000); import time; time.sleep(20)"
-    run = process.run([sys.executable, "-c", code], tmp_path, process.available_cores(), 10.0, 100e6)
-    assert run.status == ("memory limit" if sys.platform == "linux" else "time limit")
+    child = process.run([sys.executable, "-c", code], tmp_path, process.available_cores(), 10.0, 100e6)
+    assert child.status == ("memory limit" if sys.platform == "linux" else "time limit")
 
 
 def test_calculix_results(tmp_path: Path) -> None:
@@ -216,10 +217,10 @@ def test_calculix_results(tmp_path: Path) -> None:
     )
     text = "\n total force (fx,fy,fz) for set FOOT and time  {}\n\n  1.0E-15  4.0E-14  -2.5E+04\n"
     (tmp_path / "deck.dat").write_text(text.format("0.1000000E+01"))
-    run = process.Run("ok", "...\nJob finished\n", 1.0, 1.0, 1.0)
-    assert own.read(run, tmp_path) == {"status": "ok", "iterations": 2, "force": 2.5e4}
+    ended = process.Run("ok", "...\nJob finished\n", 1.0, 1.0, 1.0)
+    assert own.read(ended, tmp_path) == {"status": "ok", "iterations": 2, "force": 2.5e4}
     (tmp_path / "deck.dat").write_text(text.format("0.2500000E+00"))
-    assert own.read(run, tmp_path)["status"] == "not converged"
+    assert own.read(ended, tmp_path)["status"] == "not converged"
     stopped = process.Run("ok", " *ERROR in spooles: matrix found to be singular\n", 1.0, 1.0, 1.0)
     assert own.read(stopped, tmp_path)["status"] == "failed: ERROR in spooles: matrix found to be singular"
 
@@ -271,6 +272,12 @@ def test_page(tmp_path: Path) -> None:
     page.write_text("no markers")
     with pytest.raises(ValueError, match="begin table"):
         report.put_into(page, "text")
+
+
+def test_case_names() -> None:
+    """The names that the command line takes are those of the cases."""
+    assert all(run.CASE.fullmatch(name) for name in NAMES)
+    assert run.CASE.pattern.count("|") == len(cases.GEOMETRIES) + len(cases.CELLS) - 2
 
 
 def test_kratos_parameters_are_json() -> None:

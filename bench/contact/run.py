@@ -14,6 +14,7 @@ import argparse
 import json
 import os
 import platform
+import re
 import shutil
 import statistics
 import sys
@@ -27,6 +28,7 @@ import report
 from codes import CODES, Code, code
 from report import Row
 
+CASE = re.compile(r"(flat|tilted|hertz)-(hex8|hex20|tet10)")
 ENOUGH = 20.0  # seconds spent on one code and mesh after which no run is repeated
 NUMBERS = ("seconds", "wall", "cpu", "peak_mb")
 
@@ -107,7 +109,7 @@ class Bench:
 
 
 def machine() -> str:
-    """The machine in words."""
+    """The machine in words, and how busy it is."""
     model = platform.machine()
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
@@ -115,7 +117,8 @@ def machine() -> str:
     except (OSError, StopIteration):
         pass
     count = len(process.available_cores())
-    return f"{count} cores ({model}), {process.memory_of_machine() / 1e9:.0f} GB, {platform.system()}"
+    load = f", load average {os.getloadavg()[0]:.1f} at the start" if hasattr(os, "getloadavg") else ""
+    return f"{count} cores ({model}), {process.memory_of_machine() / 1e9:.0f} GB, {platform.system()}{load}"
 
 
 def arguments() -> argparse.Namespace:
@@ -130,7 +133,8 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=names, default=["flat-hex8", "tilted-hex8"])
     parser.add_argument("--dofs", type=numbers, default=[10_000, 50_000, 150_000])
-    parser.add_argument("--cores", type=numbers, default=[1, 2])
+    count = len(process.available_cores())
+    parser.add_argument("--cores", type=numbers, default=[n for n in (1, 2) if n <= count])
     parser.add_argument("--codes", type=names, default=list(CODES))
     parser.add_argument("--repeat", type=int, default=3, help=f"median of so many; fewer from {ENOUGH:.0f} s on")
     parser.add_argument("--linear", default="auto", help="abut's linear solver")
@@ -149,7 +153,9 @@ def arguments() -> argparse.Namespace:
     unknown = sorted(set(result.codes) - set(CODES))
     if unknown:
         parser.error(f"no code {unknown[0]!r}; use {', '.join(CODES)}")
-    count = len(process.available_cores())
+    wrong = [case for case in result.cases if not CASE.fullmatch(case)]
+    if wrong:
+        parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,hertz}}-{{hex8,hex20,tet10}}")
     if result.cores[-1] > count:
         parser.error(f"--cores {result.cores[-1]}: there are {count}")
     return result
@@ -164,6 +170,7 @@ def main() -> None:
     every = process.available_cores()
     cores = [every[:n] for n in options.cores]
     bench = Bench(codes, options.repeat, options.limit, options.memory * 1e9)
+    place = machine()
     versions = {"Python": platform.python_version(), **{own.family: own.version or "missing" for own in codes}}
     options.output.mkdir(parents=True, exist_ok=True)
     for case in options.cases:
@@ -171,9 +178,9 @@ def main() -> None:
             print(f"{case}, {wanted} dofs", file=sys.stderr, flush=True)
             with tempfile.TemporaryDirectory() as folder:
                 bench.rows += bench.measure(case, wanted, cores, Path(folder))
-            record = {"machine": machine(), "versions": versions, "rows": bench.rows}
+            record = {"machine": place, "versions": versions, "rows": bench.rows}
             (options.output / "results.json").write_text(json.dumps(record, indent=1), encoding="utf-8")
-    text = report.page(bench.rows, machine(), versions)
+    text = report.page(bench.rows, place, versions)
     (options.output / "table.md").write_text(text + "\n", encoding="utf-8")
     print(report.plain(report.table(bench.rows)))
     print("\nexponents of time against dofs\n" + report.plain(report.exponent_table(bench.rows)))
