@@ -197,7 +197,9 @@ def plot(rows: Sequence[Row], file: Path) -> bool:
         return False
     cases, codes = (list(dict.fromkeys(row[key] for row in rows)) for key in ("case", "code"))
     every = sorted({row["cores"] for row in rows})
-    figure, panels = pyplot.subplots(1, len(cases), figsize=(5 * len(cases), 4), sharey=True, squeeze=False)
+    figure, panels = pyplot.subplots(
+        1, len(cases), figsize=(5 * len(cases), 4), sharey=True, squeeze=False, layout="constrained"
+    )
     for panel, case in zip(panels[0], cases):
         for i, code in enumerate(codes):
             for n in every:
@@ -210,10 +212,10 @@ def plot(rows: Sequence[Row], file: Path) -> bool:
                     panel.loglog(x, y, f"o{style}", color=f"C{i}", markersize=3, label=label)
         panel.set(title=case, xlabel="dofs")
         panel.grid(True, which="both", alpha=0.3)
-        if panel.get_legend_handles_labels()[0]:
-            panel.legend(fontsize=7)
     panels[0][0].set_ylabel("seconds")
-    figure.tight_layout()
+    lines = {label: line for panel in panels[0] for line, label in zip(*panel.get_legend_handles_labels())}
+    if lines:
+        figure.legend(lines.values(), lines.keys(), fontsize=7, loc="outside right upper")
     figure.savefig(file, dpi=120)
     pyplot.close(figure)
     return True
