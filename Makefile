@@ -30,3 +30,4 @@ build:
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py
 	$(BIN)/python bench/assembly.py
+	$(BIN)/python bench/contact/run.py $(BENCH)

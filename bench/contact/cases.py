@@ -1,0 +1,134 @@
+"""The models that every code solves: two blocks pressed flat, two blocks with the upper one tilted, a ball on a block.
+
+A case is named GEOMETRY-CELL, as in flat-hex8, tilted-tet10, hertz-hex20; its size is chosen by the number of
+displacements wanted, fixed ones included. Units are mm, N and MPa.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import abut
+from abut.mesh.make import box, join, sphere_octant
+from abut.mesh.mesh import Mesh
+
+STEEL = abut.LinearElastic(young=210e3, poisson=0.3)
+CELLS = ("hex8", "hex20", "tet10")
+SIDE = 10.0  # of each block
+DEPTH = 0.02  # the top is pressed down by: a strain of 0.1 %
+TILT = 2.0 * DEPTH / SIDE  # radians: the gap at the open end is twice the depth, about half of the interface closes
+RADIUS, ZONE = 8.0, 1.1  # of the ball and of its fine zone
+INDENT = 0.12  # the ball is pressed down by; half of it on either side of the contact
+
+
+def _blocks(n: int, cell: str) -> tuple[Mesh, Mesh]:
+    """Lower block of n cells along each side, upper block of three quarters as many."""
+    m = max(1, round(0.75 * n))
+    return box((0, SIDE), (0, SIDE), (0, SIDE), (n, n, n), cell), box(
+        (0, SIDE), (0, SIDE), (SIDE, 2 * SIDE), (m, m, m), cell
+    )
+
+
+def _tilted(mesh: Mesh) -> Mesh:
+    """The upper block turned about the edge of the interface along y, so that it opens toward +x."""
+    c, s = math.cos(TILT), math.sin(TILT)
+    points = mesh.points.copy()
+    x, z = mesh.points[:, 0], mesh.points[:, 2] - SIDE
+    points[:, 0], points[:, 2] = c * x - s * z, s * x + c * z + SIDE
+    return replace(mesh, points=points)
+
+
+def _two_blocks(n: int, cell: str, tilt: bool) -> abut.Model:
+    lower, upper = _blocks(n, cell)
+    return abut.Model(
+        join({"lower": lower, "upper": _tilted(upper) if tilt else upper}),
+        [abut.Solid(body, STEEL) for body in ("lower", "upper")],
+        [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-DEPTH)],
+        contacts=[abut.Contact("lower.top", "upper.bottom")],
+    )
+
+
+def _flat(n: int, cell: str) -> abut.Model:
+    return _two_blocks(n, cell, False)
+
+
+def _tilted_blocks(n: int, cell: str) -> abut.Model:
+    return _two_blocks(n, cell, True)
+
+
+def _hertz(n: int, cell: str) -> abut.Model:
+    """A quarter of a ball's lower half on a quarter of a block; symmetry on x = 0 and y = 0."""
+    m = max(1, round(0.75 * n))
+    ball = sphere_octant(RADIUS, (0.0, 0.0, RADIUS), fine=ZONE, cells=n, growth=1.3, cell=cell)
+    fine = {"x": [0.0, ZONE], "y": [0.0, ZONE], "z": [-ZONE, 0.0]}
+    block = box((0.0, RADIUS), (0.0, RADIUS), (-RADIUS, 0.0), (m, m, m), cell, fine, growth=1.3)
+    return abut.Model(
+        join({"block": block, "ball": ball}),
+        [abut.Solid(body, STEEL) for body in ("block", "ball")],
+        [
+            abut.Support("block.bottom", x=0, y=0, z=0),
+            abut.Support("block.left", x=0),
+            abut.Support("block.front", y=0),
+            abut.Support("ball.x0", x=0),
+            abut.Support("ball.y0", y=0),
+            abut.Support("ball.z0", x=0, y=0, z=-INDENT),
+        ],
+        contacts=[abut.Contact("ball.round", "block.top")],
+    )
+
+
+GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {"flat": _flat, "tilted": _tilted_blocks, "hertz": _hertz}
+
+
+def dofs(model: abut.Model) -> int:
+    """Displacements of a model, fixed ones included."""
+    return int(model.mesh.points.size)
+
+
+def nodes_of_blocks(n: int, cell: str) -> int:
+    """Nodes of the two blocks, without making them."""
+
+    def cube(k: int) -> int:
+        return {"hex8": (k + 1) ** 3, "hex20": (k + 1) ** 3 + 3 * k * (k + 1) ** 2, "tet10": (2 * k + 1) ** 3}[cell]
+
+    return cube(n) + cube(max(1, round(0.75 * n)))
+
+
+def model(name: str, wanted: int) -> abut.Model:
+    """The case whose number of displacements is nearest to the one wanted."""
+    geometry, cell = name.split("-")
+    make = GEOMETRIES[geometry]
+    if cell not in CELLS:
+        raise ValueError(f"no cell {cell!r}; use {', '.join(CELLS)}")
+    size = (lambda n: dofs(make(n, cell))) if geometry == "hertz" else (lambda n: 3 * nodes_of_blocks(n, cell))
+    n = _nearest(size, wanted)
+    return make(n, cell)
+
+
+def _nearest(size: Callable[[int], int], wanted: int) -> int:
+    """The number of cells >= 2 whose ``size`` (growing with it) comes nearest to the wanted one, by bisection."""
+    low, high = 2, 4
+    while size(high) < wanted:
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if size(middle) < wanted else (low, middle)
+    return low if wanted - size(low) < size(high) - wanted else high
+
+
+def with_options(case: abut.Model, *, linear: str, tied: bool) -> abut.Model:
+    """The same model for another linear solver, or with the bodies tied."""
+    contacts = [replace(c, kind="tied" if tied else "contact") for c in case.contacts]
+    return replace(case, contacts=contacts, solve=abut.SolveOptions(linear=linear))
+
+
+def prescribed(case: abut.Model) -> dict[int, dict[int, float]]:
+    """Prescribed displacements by axis and node (from zero): {axis: {node: value}}; later supports win."""
+    result: dict[int, dict[int, float]] = {0: {}, 1: {}, 2: {}}
+    for support in case.supports:
+        for axis, value in enumerate((support.x, support.y, support.z)):
+            if value is not None:
+                result[axis].update(dict.fromkeys(case.mesh.nodes_of(support.on).tolist(), float(value)))
+    return result

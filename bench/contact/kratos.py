@@ -1,0 +1,172 @@
+"""Kratos: model, material and parameter files of a case.
+
+As a script, python bench/contact/kratos.py CASE DOFS FOLDER writes them; kratos_child.py runs them.
+
+Frictionless augmented Lagrangian mortar contact with dual multipliers, Newton-Raphson, residual criterion, AMGCL, all
+with Kratos' own defaults; the slave side is abut's contactor.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import cases
+import numpy as np
+
+import abut
+from abut.cells import BY_CODE
+
+ELEMENTS = {
+    "hex8": "SmallDisplacementElement3D8N",
+    "hex20": "SmallDisplacementElement3D20N",
+    "tet10": "SmallDisplacementElement3D10N",
+}
+CONDITIONS = {
+    "quad4": "SurfaceCondition3D4N",
+    "quad8": "SurfaceCondition3D8N",
+    "tri6": "SurfaceCondition3D6N",
+}
+# Kratos numbers the edges of a hexahedron bottom, upright, top; abut bottom, top, upright.
+ORDER = {"hex20": [*range(12), *range(16, 20), *range(12, 16)]}
+
+
+def _block(name: str, lines: Iterable[str]) -> Iterator[str]:
+    yield f"Begin {name}"
+    yield from lines
+    yield f"End {name.split()[0]}"
+
+
+def _part(name: str, **members: Iterable[int]) -> Iterator[str]:
+    def lines() -> Iterator[str]:
+        for kind, numbers in members.items():
+            yield from _block(f"SubModelPart{kind}", map(str, numbers))
+
+    return _block(f"SubModelPart {name}", lines())
+
+
+def mdpa(case: abut.Model) -> Iterator[str]:
+    """The lines of the model part file: nodes, elements, contact faces, parts."""
+    mesh, contact = case.mesh, case.contacts[0]
+    for i in range(len(case.solids) + 1):
+        yield from _block(f"Properties {i}", ())
+    yield from _block("Nodes", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(mesh.points.tolist(), 1)))
+    for i, solid in enumerate(case.solids, 1):
+        for kind, nodes, numbers in mesh.cells_of(solid.body):
+            table = np.column_stack([numbers, nodes[:, ORDER.get(kind, slice(None))]]) + 1
+            rows = (f"{row[0]} {i} {' '.join(map(str, row[1:]))}" for row in table.tolist())
+            yield from _block(f"Elements {ELEMENTS[kind]}", rows)
+    first, faces = 1, {}
+    for i, name in enumerate((contact.contactor, contact.target), 1):
+        surface = mesh.surface(name)
+        kind = BY_CODE[int(surface.kinds[0])]
+        table = (surface.nodes[:, : kind.nodes] + 1).tolist()
+        rows = (f"{number} {i} {' '.join(map(str, row))}" for number, row in enumerate(table, first))
+        yield from _block(f"Conditions {CONDITIONS[kind.name]}", rows)
+        faces[name] = range(first, first + len(table))
+        first += len(table)
+    for body in mesh.bodies:
+        cells = (mesh.bodies[body] + 1).tolist()
+        yield from _part(f"body_{body}", Nodes=(mesh.nodes_of(body) + 1).tolist(), Elements=cells)
+    for side, name in (("slave", contact.contactor), ("master", contact.target)):
+        yield from _part(side, Nodes=(mesh.nodes_of(name) + 1).tolist(), Conditions=faces[name])
+    for i, support in enumerate(case.supports):
+        yield from _part(f"support_{i}", Nodes=(mesh.nodes_of(support.on) + 1).tolist())
+
+
+def materials(case: abut.Model) -> dict[str, Any]:
+    """StructuralMaterials.json."""
+    return {
+        "properties": [
+            {
+                "model_part_name": f"Structure.body_{solid.body}",
+                "properties_id": i,
+                "Material": {
+                    "constitutive_law": {"name": "LinearElastic3DLaw"},
+                    "Variables": {"YOUNG_MODULUS": solid.material.young, "POISSON_RATIO": solid.material.poisson},
+                    "Tables": {},
+                },
+            }
+            for i, solid in enumerate(case.solids, 1)
+        ]
+    }
+
+
+def parameters(case: abut.Model) -> dict[str, Any]:
+    """ProjectParameters.json."""
+    supports = [
+        {
+            "python_module": "assign_vector_variable_process",
+            "kratos_module": "KratosMultiphysics",
+            "Parameters": {
+                "model_part_name": f"Structure.support_{i}",
+                "variable_name": "DISPLACEMENT",
+                "constrained": [value is not None for value in (s.x, s.y, s.z)],
+                "value": [s.x, s.y, s.z],
+                "interval": [0.0, "End"],
+            },
+        }
+        for i, s in enumerate(case.supports)
+    ]
+    contact = {
+        "python_module": "alm_contact_process",
+        "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
+        "Parameters": {
+            "model_part_name": "Structure",
+            "contact_model_part": {"0": ["slave", "master"]},
+            "assume_master_slave": {"0": ["slave"]},
+            "contact_type": "Frictionless",
+        },
+    }
+    return {
+        "problem_data": {
+            "problem_name": "case",
+            "parallel_type": "OpenMP",
+            "start_time": 0.0,
+            "end_time": 1.0,
+            "echo_level": 0,
+        },
+        "solver_settings": {
+            "solver_type": "Static",
+            "model_part_name": "Structure",
+            "domain_size": 3,
+            "echo_level": 0,
+            "analysis_type": "non_linear",
+            "model_import_settings": {"input_type": "mdpa", "input_filename": "case"},
+            "material_import_settings": {"materials_filename": "materials.json"},
+            "time_stepping": {"time_step": 1.1},
+            "contact_settings": {"mortar_type": "ALMContactFrictionless"},
+            "convergence_criterion": "contact_residual_criterion",
+            "compute_reactions": True,
+            "max_iteration": 50,
+            "linear_solver_settings": {"solver_type": "amgcl"},
+            "rotation_dofs": False,
+        },
+        "processes": {"constraints_process_list": supports, "contact_process_list": [contact]},
+        "output_processes": {},
+    }
+
+
+def write(case: abut.Model, folder: Path) -> None:
+    """Write case.mdpa, materials.json and parameters.json."""
+    (folder / "case.mdpa").write_text("\n".join(mdpa(case)) + "\n", encoding="ascii")
+    (folder / "materials.json").write_text(json.dumps(materials(case), indent=1), encoding="ascii")
+    (folder / "parameters.json").write_text(json.dumps(parameters(case), indent=1), encoding="ascii")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("case")
+    parser.add_argument("dofs", type=int)
+    parser.add_argument("folder", type=Path)
+    arguments = parser.parse_args()
+    case = cases.model(arguments.case, arguments.dofs)
+    write(case, arguments.folder)
+    print(json.dumps({"dofs": cases.dofs(case)}))
+
+
+if __name__ == "__main__":
+    main()
