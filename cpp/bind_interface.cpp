@@ -61,7 +61,6 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   out["mass"] = to_numpy(std::move(c.mass), {facets, 9, 9});
   out["covered"] = to_numpy(std::move(c.covered));
   out["segments"] = to_numpy(std::move(c.segments));
-  out["first_target"] = to_numpy(std::move(c.first_target));
   if (keep_points) {
     const std::size_t n = c.lists.points.weight.size();
     out["point_weight"] = to_numpy(std::move(c.lists.points.weight));

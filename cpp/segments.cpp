@@ -92,8 +92,6 @@ public:
   void end_target(const std::int32_t *nodes) {
     if (!hit_)
       return;
-    if (out_.first_target[f_] < 0)
-      out_.first_target[f_] = std::int32_t(t_);
     emit(lists_.target, other_, nodes, target_nodes_);
   }
   void count_segment() { ++out_.segments[f_]; }
@@ -333,7 +331,7 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
   Coupling out;
   out.gap.assign(9 * contactor.facets, 0), out.weight.assign(9 * contactor.facets, 0);
   out.mass.assign(81 * contactor.facets, 0), out.covered.assign(contactor.facets, 0);
-  out.segments.assign(contactor.facets, 0), out.first_target.assign(contactor.facets, -1);
+  out.segments.assign(contactor.facets, 0);
 
   std::vector<Facet<double>> targets(target.facets);
   std::vector<Box> boxes(target.facets);

@@ -61,8 +61,8 @@ struct Lists {
 
 struct Coupling {
   Lists lists;
-  std::vector<double> gap, weight, mass, covered;   // 9 f, 9 f, 81 f, f
-  std::vector<std::int32_t> segments, first_target; // f: number of segments; f: one target facet, -1 if none
+  std::vector<double> gap, weight, mass, covered; // 9 f, 9 f, 81 f, f
+  std::vector<std::int32_t> segments;             // f: how many
 };
 
 // `exact_rules` give the moments that are to be met. Points per direction so that int N_i N_j over every facet alone is

@@ -14,13 +14,13 @@ from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
 from abut.errors import InputError
 from abut.fields import Field, evaluate
-from abut.mesh.mesh import Mesh
+from abut.interface.geometry import facet_measure
+from abut.mesh.integrals import body_chunks, gradients
 from abut.mesh.quadrature import field_rule
 from abut.mesh.surface import around
 from abut.solids.elements import lame
 from abut.state import Solution
 
-CHUNK = 1024  # cells treated at once
 Array = NDArray[np.float64]
 Pieces = Iterator[tuple[str, Array, Array, Array, Array]]
 
@@ -36,8 +36,8 @@ def displacement_l2(solution: Solution, exact: Mapping[str, Field]) -> float:
     return _ratio(error, size)
 
 
-def energy_norm(solution: Solution, gradients: Mapping[str, Field]) -> float:
-    """Root of the elastic energy of the error u_h - u over that of u, over the bodies named in ``gradients``: points
+def energy_norm(solution: Solution, exact: Mapping[str, Field]) -> float:
+    """Root of the elastic energy of the error u_h - u over that of u, over the bodies named in ``exact``: points
     (n, dim) -> (n, dim, dim), entry [i, j] the derivative of u_i along j. Elastic energy: that of the strains alone, as
     if no temperature changed.
 
@@ -48,8 +48,8 @@ def energy_norm(solution: Solution, gradients: Mapping[str, Field]) -> float:
     dim = model.dim
     constants = {solid.body: lame(solid.material, model.plane) for solid in model.solids}
     error = size = 0.0
-    for body, x, weight, _, slope in _pieces(solution, gradients):
-        wanted = evaluate(gradients[body], x, f"exact gradient of '{body}'", (dim, dim))
+    for body, x, weight, _, slope in _pieces(solution, exact):
+        wanted = evaluate(exact[body], x, f"exact gradient of '{body}'", (dim, dim))
         error += float(weight @ _energy(slope - wanted, *constants[body]))
         size += float(weight @ _energy(wanted, *constants[body]))
     return _ratio(error, size)
@@ -65,11 +65,9 @@ def pressure_l2(solution: Solution, exact: Field, contact: int = 0) -> float:
         cell = BY_CODE[code]
         own = np.flatnonzero((surface.kinds == code) & result.covered)
         xi, weights = field_rule(cell.name)
-        shapes, derivatives = shape_functions(code, np.ascontiguousarray(xi))
-        nodes = surface.points[surface.nodes[own, : cell.nodes]]
-        x = np.einsum("qn,fnd->fqd", shapes, nodes)
-        tangents = np.einsum("qna,fnd->fqad", derivatives, nodes)
-        area = np.sqrt(np.linalg.det(tangents @ np.swapaxes(tangents, 2, 3))) * surface.around(x) * weights
+        shapes, _ = shape_functions(code, np.ascontiguousarray(xi))
+        x, _, area = facet_measure(surface, cell.name, own, xi)
+        area = area * weights
         wanted = evaluate(exact, x, "exact pressure")
         error += float((area * (result.pressure[own, : cell.nodes] @ shapes.T - wanted) ** 2).sum())
         size += float((area * wanted**2).sum())
@@ -81,23 +79,17 @@ def _pieces(solution: Solution, bodies: Mapping[str, Field]) -> Pieces:
     gradient (n, dim, dim)."""
     mesh = solution.model.mesh
     dim = mesh.dim
-    for body, kind, nodes in _cells(mesh, bodies):
-        xi, weights = field_rule(kind)
-        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        jacobian = np.einsum("cna,qnb->cqab", mesh.points[nodes], derivatives)
-        by_reference = np.einsum("cna,qnb->cqab", solution.displacement[nodes], derivatives)
-        x = np.einsum("qn,cna->cqa", shapes, mesh.points[nodes])
-        u = np.einsum("qn,cna->cqa", shapes, solution.displacement[nodes])
-        weight = weights * np.linalg.det(jacobian) * around(x, mesh.axisymmetric)
-        slope = by_reference @ np.linalg.inv(jacobian)
-        yield body, x.reshape(-1, dim), weight.ravel(), u.reshape(-1, dim), slope.reshape(-1, dim, dim)
-
-
-def _cells(mesh: Mesh, bodies: Mapping[str, Field]) -> Iterator[tuple[str, str, NDArray[np.int32]]]:
     for body in bodies:
-        for kind, nodes, _ in mesh.cells_of(body):
-            for i in range(0, len(nodes), CHUNK):
-                yield body, kind, nodes[i : i + CHUNK]
+        for kind, nodes in body_chunks(mesh, body):
+            xi, weights = field_rule(kind)
+            shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+            slopes, det = gradients(mesh.points, nodes, derivatives)
+            moved = solution.displacement[nodes]
+            x = np.einsum("qn,cna->cqa", shapes, mesh.points[nodes])
+            u = np.einsum("qn,cna->cqa", shapes, moved)
+            weight = weights * det * around(x, mesh.axisymmetric)
+            slope = np.matmul(moved.transpose(0, 2, 1)[:, None], slopes)
+            yield body, x.reshape(-1, dim), weight.ravel(), u.reshape(-1, dim), slope.reshape(-1, dim, dim)
 
 
 def _energy(slope: Array, lambda_: float, mu: float) -> Array:

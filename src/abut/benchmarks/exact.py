@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.solids.elements import lame
 from abut.solids.materials import LinearElastic
 
 Array = NDArray[np.float64]
@@ -51,11 +52,6 @@ class WaveField:
     components: tuple[Waves, ...]
     material: LinearElastic
 
-    @property
-    def lame(self) -> tuple[float, float]:
-        young, poisson = self.material.young, self.material.poisson
-        return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
-
     def displacement(self, x: Array) -> Array:
         """(n, dim) at points (n, dim)."""
         return np.stack([u(x) for u in self.components], axis=1)
@@ -67,14 +63,14 @@ class WaveField:
 
     def stress(self, x: Array) -> Array:
         """(n, dim, dim)."""
-        lambda_, mu = self.lame
+        lambda_, mu = lame(self.material, "strain")
         slope = self.gradient(x)
         trace = np.trace(slope, axis1=1, axis2=2)[:, None, None]
         return lambda_ * trace * np.eye(len(self.components)) + mu * (slope + np.swapaxes(slope, 1, 2))
 
     def body_force(self, x: Array) -> Array:
         """-div sigma = -(lambda + mu) grad div u - mu laplace u, (n, dim)."""
-        lambda_, mu = self.lame
+        lambda_, mu = lame(self.material, "strain")
         result = []
         for i, u in enumerate(self.components):
             force = Waves(())
@@ -96,7 +92,7 @@ def full_contact(
     the normal stress (lambda + 2 mu) g + lambda div slide there.
     """
     field = WaveField((), material)
-    lambda_, mu = field.lame
+    lambda_, mu = lame(material, "strain")
     slope = pressure.times(-1.0)
     for i, slide in enumerate(slides):
         slope = slope + slide.along(i).times(-lambda_)
@@ -152,6 +148,6 @@ class EdgeOfContact:
         return self.strength * np.sqrt(np.maximum(-x[:, 0], 0.0))
 
     def _complex(self, x: Array) -> tuple[NDArray[np.complex128], float, float, float]:
-        young, poisson = self.material.young, self.material.poisson
+        _, mu = lame(self.material, "strain")
         zeta = -x[:, 0] + 1j * np.abs(x[:, -1])
-        return zeta, -self.strength / 3.0, 3.0 - 4.0 * poisson, young / (2.0 * (1.0 + poisson))
+        return zeta, -self.strength / 3.0, 3.0 - 4.0 * self.material.poisson, mu

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.fields import Field
 from abut.state import ContactResult, Solution
 
-Field = Callable[[NDArray[np.float64]], NDArray[Any]]
+Where = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # points (n, dim) -> (n,)
 
 
 def contact_points(contact: ContactResult) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -19,10 +19,10 @@ def contact_points(contact: ContactResult) -> tuple[NDArray[np.float64], NDArray
     return contact.contactor.points[contact.contactor.nodes[used]], contact.pressure[used]
 
 
-def pressure_error(solution: Solution, exact: Field, where: Field | None = None) -> float:
+def pressure_error(solution: Solution, exact: Field, where: Where | None = None) -> float:
     """Largest difference from ``exact(points)`` at the contactor's nodes (those for which ``where`` is true)."""
     x, p = contact_points(solution.contacts[0])
-    inside = np.ones(len(x), dtype=bool) if where is None else where(x).astype(bool)
+    inside = np.ones(len(x), dtype=bool) if where is None else where(x)
     return float(np.abs(p - exact(x))[inside].max())
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 
 CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge
@@ -104,53 +105,42 @@ def function_count(kind: str, degree: int) -> int:
     return 1 if degree == 0 else CELLS[pressure_kind(kind, degree)].nodes
 
 
+def facet_measure(
+    surface: Surface, kind: str, facets: NDArray[np.int64], xi: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Facets of one type at reference points xi (q, dim of the facet): positions (facets, q, dim), metric of the reference
+    coordinates (facets, q, a, a), and area per reference area (facets, q)."""
+    shapes, slopes = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+    x = _nodes(surface, kind, facets)
+    at = np.einsum("qn,fnd->fqd", shapes, x)
+    tangents = np.einsum("qna,fnd->fqda", slopes, x)
+    metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
+    return at, metric, np.sqrt(np.linalg.det(metric)) * surface.around(at)
+
+
 def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
     """int H_k over the whole of each facet, (n_facets, 9), zero where padded."""
     moments = np.zeros((len(surface), MAX_FACET_NODES))
-    x, w = np.polynomial.legendre.leggauss(6)
     for kind, facets in by_kind(surface):
-        cell = CELLS[kind]
-        if cell.dim == 1:
-            xi, weight = x[:, None], w
-        else:
-            a, b = (grid.ravel() for grid in np.meshgrid(x, x, indexing="ij"))
-            xi, weight = np.stack([a, b], axis=1), np.outer(w, w).ravel()
-            if cell.corners == 3:
-                r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
-                xi, weight = np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weight * r
-        area = np.linalg.norm(_area_vectors(surface, kind, facets, xi), axis=2) * weight
-        if surface.axisymmetric:
-            shapes, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
-            area = area * surface.around(np.einsum("pn,fnd->fpd", shapes, _nodes(surface, kind, facets)))
+        xi, weights = gauss_rule(kind, 6)
+        _, _, area = facet_measure(surface, kind, facets, xi)
         if degree == 0:
-            moments[facets, 0] = area.sum(axis=1)
+            moments[facets, 0] = area @ weights
         else:
             own = CELLS[pressure_kind(kind, degree)]
             values, _ = shape_functions(own.code, np.ascontiguousarray(xi))
-            moments[facets, : own.nodes] = area @ values
+            moments[facets, : own.nodes] = (area * weights) @ values
     return moments
 
 
 def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:
     """int grad H_k . grad H_l along the surface over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
     result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
-    x, w = np.polynomial.legendre.leggauss(3)
     for kind, facets in by_kind(surface):
-        cell, own = CELLS[kind], CELLS[pressure_kind(kind, degree)]
-        xi, weight = x[:, None], w
-        if cell.dim == 2:
-            a, b = (grid.ravel() for grid in np.meshgrid(x, x, indexing="ij"))
-            xi, weight = np.stack([a, b], axis=1), np.outer(w, w).ravel()
-            if cell.corners == 3:
-                r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
-                xi, weight = np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weight * r
-        shapes, slopes = shape_functions(cell.code, np.ascontiguousarray(xi))
-        _, gradients = shape_functions(own.code, np.ascontiguousarray(xi))
-        at = _nodes(surface, kind, facets)
-        tangents = np.einsum("qna,fnd->fqda", slopes, at)
-        metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
-        measure = np.sqrt(np.linalg.det(metric)) * weight * surface.around(np.einsum("qn,fnd->fqd", shapes, at))
-        inverse = np.linalg.inv(metric)
-        block = np.einsum("fq,qka,fqab,qlb->fkl", measure, gradients, inverse, gradients, optimize=True)
+        own = CELLS[pressure_kind(kind, degree)]
+        xi, weights = gauss_rule(kind, 3)
+        _, metric, area = facet_measure(surface, kind, facets, xi)
+        _, slopes = shape_functions(own.code, np.ascontiguousarray(xi))
+        block = np.einsum("fq,qka,fqab,qlb->fkl", area * weights, slopes, np.linalg.inv(metric), slopes, optimize=True)
         result[facets[:, None, None], np.arange(own.nodes)[:, None], np.arange(own.nodes)] = block
     return result

@@ -25,7 +25,7 @@ def _product(*rules: Rule) -> Rule:
 
 
 def _triangle(n: int) -> Rule:
-    """Symmetric where small: 1 point (degree 1), 3 (degree 2), 6 (degree 4); else collapsed Gauss with n x n points."""
+    """Symmetric where small: 1 point (degree 1), 3 (degree 2), 6 (degree 4); else ``_simplex``."""
     if n == 1:
         return np.full((1, 2), 1 / 3), np.array([0.5])
     if n == 3:
@@ -36,10 +36,7 @@ def _triangle(n: int) -> Rule:
             points += [[a, a], [1 - 2 * a, a], [a, 1 - 2 * a]]
             weights += [0.5 * w] * 3
         return _polish(np.array(points), np.array(weights))
-    (x, wx), (y, wy) = _line(n), _line(n)
-    r, t = 0.5 * (x[:, 0] + 1), 0.5 * (y[:, 0] + 1)
-    rr, tt = (g.ravel() for g in np.meshgrid(r, t, indexing="ij"))
-    return np.stack([rr * (1 - tt), rr * tt], axis=1), 0.25 * np.outer(wx * r, wy).ravel()
+    return _simplex(n, 2)
 
 
 def _polish(points: NDArray[np.float64], weights: NDArray[np.float64]) -> Rule:
@@ -51,15 +48,13 @@ def _polish(points: NDArray[np.float64], weights: NDArray[np.float64]) -> Rule:
 
 
 def _tetrahedron(n: int) -> Rule:
-    """1 point, 4 points (degree 2), or collapsed Gauss with n^3 points."""
+    """1 point, 4 points (degree 2), else ``_simplex``."""
     if n == 1:
         return np.full((1, 3), 0.25), np.array([1 / 6])
     if n == 4:
         a = (5 - np.sqrt(5)) / 20
         return np.full((4, 3), a) + (1 - 4 * a) * np.vstack([np.zeros(3), np.eye(3)]), np.full(4, 1 / 24)
-    points, weights = _product(_line(n), _line(n), _line(n))
-    r, s, t = (0.5 * (points + 1)).T
-    return np.stack([r * (1 - s), r * s * (1 - t), r * s * t], axis=1), weights / 8 * r * r * s
+    return _simplex(n, 3)
 
 
 def _cube(n: int, dim: int) -> Rule:
@@ -101,8 +96,12 @@ def product_rule(kind: str) -> Rule:
 def field_rule(kind: str) -> Rule:
     """For functions of position that are no polynomials (loads, errors against exact fields): exact to degree 2 p + 3 with
     shape functions of degree p and an affine map, more than the square of the first terms that these lack."""
+    return gauss_rule(kind, CELLS[kind].degree + 2)
+
+
+def gauss_rule(kind: str, n: int) -> Rule:
+    """n points per direction on any cell or facet type, exact to degree 2 n - 1 (on cubes: in each coordinate)."""
     cell = CELLS[kind]
-    n = cell.degree + 2
     if kind.startswith("wedge"):
         return _product(_simplex(n, 2), _line(n))
     return _simplex(n, cell.dim) if cell.corners == cell.dim + 1 and cell.dim > 1 else _cube(n, cell.dim)
@@ -135,7 +134,4 @@ def stress_rule(kind: str) -> Rule:
 
 def facet_rule(kind: str) -> Rule:
     """Exact for consistent loads on curved quadratic facets."""
-    cell = CELLS[kind]
-    if cell.dim == 1:
-        return _line(4)
-    return _triangle(4) if cell.corners == 3 else _cube(5, 2)
+    return gauss_rule(kind, 5 if kind.startswith("quad") else 4)

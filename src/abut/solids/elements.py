@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.fields import Field, evaluate
+from abut.mesh.integrals import body_chunks, chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import field_rule, stiffness_rule, stress_rule
 from abut.mesh.surface import around
 from abut.solids.materials import LinearElastic
-
-CHUNK = 4096  # cells treated at once where NumPy does the work
 
 
 def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:
@@ -66,37 +65,6 @@ def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | N
     return matrix
 
 
-def _chunks(mesh: Mesh) -> Iterator[tuple[str, NDArray[np.int32], slice]]:
-    """Blocks in manageable pieces: type, connectivity, cell numbers."""
-    first = 0
-    for block in mesh.blocks:
-        for i in range(0, len(block.nodes), CHUNK):
-            part = block.nodes[i : i + CHUNK]
-            yield block.kind, part, slice(first + i, first + i + len(part))
-        first += len(block.nodes)
-
-
-def _gradients(
-    points: NDArray[np.float64], nodes: NDArray[np.int32], derivatives: NDArray[np.float64]
-) -> tuple[Any, Any]:
-    """Gradients of the shape functions (cells, q, n, dim) and Jacobian determinants (cells, q)."""
-    n, (q, k, dim) = len(nodes), derivatives.shape
-    # Matrix products and cofactors: several times faster than einsum and linalg.inv on stacks of small matrices.
-    jacobian = (
-        points[nodes].transpose(0, 2, 1).reshape(-1, k) @ derivatives.transpose(1, 0, 2).reshape(k, -1)
-    ).reshape(n, dim, q, dim)
-    columns = [jacobian[..., b].transpose(0, 2, 1) for b in range(dim)]  # (cells, q, dim) each
-    if dim == 2:
-        (a, c), (b, d) = (np.moveaxis(column, -1, 0) for column in columns)
-        det = a * d - b * c
-        inverse = np.stack([np.stack([d, -b], -1), np.stack([-c, a], -1)], -2) / det[..., None, None]
-    else:
-        rows = [np.cross(columns[(a + 1) % 3], columns[(a + 2) % 3]) for a in range(3)]
-        det = (columns[0] * rows[0]).sum(axis=-1)
-        inverse = np.stack(rows, axis=-2) / det[..., None, None]
-    return np.matmul(derivatives[None], inverse), det
-
-
 def thermal_load(
     mesh: Mesh, materials: Mapping[str, LinearElastic], temperatures: Mapping[str, float], plane: str | None = None
 ) -> NDArray[np.float64]:
@@ -107,15 +75,15 @@ def thermal_load(
     )
     if not pressure.any():
         return load.ravel()
-    for kind, nodes, cells in _chunks(mesh):
+    for kind, nodes, cells in chunks(mesh):
         xi, weights = stiffness_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        gradients, det = _gradients(mesh.points, nodes, derivatives)
+        slopes, det = gradients(mesh.points, nodes, derivatives)
         at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
         if mesh.axisymmetric:
-            gradients[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
+            slopes[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
         det = det * around(at, mesh.axisymmetric)
-        np.add.at(load, nodes, np.einsum("c,cq,q,cqna->cna", pressure[cells, 0], det, weights, gradients))
+        np.add.at(load, nodes, np.einsum("c,cq,q,cqna->cna", pressure[cells, 0], det, weights, slopes))
     return load.ravel()
 
 
@@ -136,21 +104,14 @@ def body_load(
     load = np.zeros(mesh.points.shape)
     dim = mesh.dim
     for body, value in forces.items():
-        for kind, nodes in _pieces(mesh, body):
+        for kind, nodes in body_chunks(mesh, body):
             xi, weights = field_rule(kind) if callable(value) else stiffness_rule(kind)
             shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
             at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
-            det = np.linalg.det(np.einsum("cna,qnb->cqab", mesh.points[nodes], derivatives))
+            _, det = gradients(mesh.points, nodes, derivatives)
             density = evaluate(value, at, name, (dim,)) * (weights * det * around(at, mesh.axisymmetric))[..., None]
             np.add.at(load, nodes, np.einsum("qn,cqa->cna", shapes, density))
     return load.ravel()
-
-
-def _pieces(mesh: Mesh, body: str) -> Iterator[tuple[str, NDArray[np.int32]]]:
-    """Cells of a body in manageable pieces: type, connectivity."""
-    for kind, nodes, _ in mesh.cells_of(body):
-        for i in range(0, len(nodes), CHUNK):
-            yield kind, nodes[i : i + CHUNK]
 
 
 def nodal_stress(
@@ -169,11 +130,11 @@ def nodal_stress(
         mesh,
         {body: (*lame(m, None), m.poisson, m.expansion * temperatures.get(body, 0.0)) for body, m in materials.items()},
     )
-    for kind, nodes, cells in _chunks(mesh):
+    for kind, nodes, cells in chunks(mesh):
         xi, _ = stress_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        gradients, _ = _gradients(mesh.points, nodes, derivatives)
-        slope = np.matmul(displacement[nodes].transpose(0, 2, 1)[:, None], gradients)
+        slopes, _ = gradients(mesh.points, nodes, derivatives)
+        slope = np.matmul(displacement[nodes].transpose(0, 2, 1)[:, None], slopes)
         strain = np.zeros((*slope.shape[:2], 3, 3))
         strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
         lambda_, mu, poisson, thermal = (v[:, None] for v in constants[cells].T)

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.interface.coupling import couple, default_reach
-from abut.interface.geometry import by_kind, full_moments, nodal_normals
+from abut.interface.geometry import by_kind, facet_measure, full_moments, nodal_normals
 from abut.interface.node_to_segment import feet
+from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 
 CHUNK = 4096  # points whose feet are sought together
@@ -31,13 +32,10 @@ def facet_forces(contactor: Surface, target: Surface, points: int) -> NDArray[np
     force = np.zeros(len(target.points))
     for kind, facets in by_kind(contactor):
         cell = CELLS[kind]
-        xi, weights = _gauss(kind, points)
-        shapes, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
-        x = contactor.points[contactor.nodes[facets, : cell.nodes]]
-        tangents = np.einsum("qna,fnd->fqda", derivatives, x)
-        metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
-        area = (np.sqrt(np.linalg.det(metric)) * weights).ravel()
-        at = np.einsum("qn,fnd->fqd", shapes, x).reshape(-1, contactor.dim)
+        xi, weights = gauss_rule(kind, points)
+        shapes, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+        at, _, area = facet_measure(contactor, kind, facets, xi)
+        at, area = at.reshape(-1, contactor.dim), (area * weights).ravel()
         normal = np.einsum("qn,fnd->fqd", shapes, nodal[facets, : cell.nodes]).reshape(-1, contactor.dim)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         for first in range(0, len(at), CHUNK):
@@ -63,16 +61,3 @@ def force_error(force: NDArray[np.float64], target: Surface) -> float:
     used = target.nodes >= 0
     np.add.at(exact, target.nodes[used], full_moments(target, 2)[used])
     return float(np.abs(force - exact).max() / np.abs(exact).max())
-
-
-def _gauss(kind: str, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """n Gauss points per direction on a reference facet (collapsed on triangles), points (q, dim) and weights (q,)."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    if CELLS[kind].dim == 1:
-        return x[:, None], w
-    a, b = (g.ravel() for g in np.meshgrid(x, x, indexing="ij"))
-    weights = np.outer(w, w).ravel()
-    if CELLS[kind].corners == 4:
-        return np.stack([a, b], axis=1), weights
-    r, t = 0.5 * (a + 1.0), 0.5 * (b + 1.0)
-    return np.stack([r * (1.0 - t), r * t], axis=1), 0.25 * weights * r

@@ -13,35 +13,28 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
+from abut.mesh.integrals import chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import product_rule
 from abut.mesh.surface import Surface, around
 from abut.solvers.fractional import inverse_root
 from abut.verify.trace import TraceSpace
 
-CHUNK = 4096
-
 
 def h1_matrix(mesh: Mesh, length: float = 1.0) -> Any:
     """int u v / length^2 + grad u . grad v of scalar functions over all cells, (n_points, n_points) CSR."""
     n = len(mesh.points)
     total = sp.csr_matrix((n, n))
-    for block in mesh.blocks:
-        xi, weights = product_rule(block.kind)
-        shapes, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
-        for first in range(0, len(block.nodes), CHUNK):
-            nodes = block.nodes[first : first + CHUNK]
-            x = mesh.points[nodes]
-            jacobian = np.einsum("cna,qnb->cqab", x, derivatives)
-            gradients = np.einsum("qnb,cqba->cqna", derivatives, np.linalg.inv(jacobian))
-            measure = np.linalg.det(jacobian) * weights
-            measure = measure * around(np.einsum("qn,cnd->cqd", shapes, x), mesh.axisymmetric)
-            values = np.einsum("cq,qn,qm->cnm", measure / length**2, shapes, shapes)
-            weighted = gradients * measure[..., None, None]
-            values += np.einsum("cqna,cqma->cnm", weighted, gradients, optimize=True)
-            rows = np.repeat(nodes, nodes.shape[1], axis=1).ravel()
-            columns = np.tile(nodes, (1, nodes.shape[1])).ravel()
-            total = total + sp.csr_matrix((values.ravel(), (rows, columns)), shape=(n, n))
+    for kind, nodes, _ in chunks(mesh):
+        xi, weights = product_rule(kind)
+        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        slopes, det = gradients(mesh.points, nodes, derivatives)
+        measure = det * weights * around(np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes]), mesh.axisymmetric)
+        values = np.einsum("cq,qn,qm->cnm", measure / length**2, shapes, shapes)
+        values += np.einsum("cqna,cqma->cnm", slopes * measure[..., None, None], slopes, optimize=True)
+        rows = np.repeat(nodes, nodes.shape[1], axis=1).ravel()
+        columns = np.tile(nodes, (1, nodes.shape[1])).ravel()
+        total = total + sp.csr_matrix((values.ravel(), (rows, columns)), shape=(n, n))
     return total
 
 

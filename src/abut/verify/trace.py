@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.geometry import by_kind, facet_sizes, function_count, node_coordinates, pressure_kind
+from abut.interface.geometry import by_kind, facet_measure, facet_sizes, function_count, node_coordinates, pressure_kind
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 
@@ -99,27 +99,23 @@ def _parts(
     cell = CELLS[kind]
     fine = "line3" if cell.dim == 1 else "tri6" if cell.corners == 3 else "quad9"
     code, functions = CELLS[fine].code, function_count(kind, degree)
-    x = surface.points[surface.nodes[facets, : cell.nodes]]
     eta, weights = facet_rule(fine)
     values, slopes = shape_functions(code, np.ascontiguousarray(eta))
     parts = []
     for origin, scale in _division(fine, divisions):
         xi = np.ascontiguousarray(origin + scale * eta)
-        own, derivatives = shape_functions(cell.code, xi)
-        tangents = np.einsum("qna,fnd->fqda", derivatives, x)
-        metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
-        measure = np.sqrt(np.linalg.det(metric)) * weights * abs(scale) ** cell.dim
-        measure = measure * surface.around(np.einsum("qn,fnd->fqd", own, x))
+        _, metric, area = facet_measure(surface, kind, facets, xi)
+        measure = area * weights * abs(scale) ** cell.dim
         gradients = slopes / scale
         mass = np.einsum("fq,qn,qm->fnm", measure, values, values)
         stiff = np.einsum("fq,qna,fqab,qmb->fnm", measure, gradients, np.linalg.inv(metric), gradients, optimize=True)
         pressure = np.ones((len(xi), 1))
         if degree:
             pressure, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, xi)
-        at = np.ascontiguousarray(origin + scale * node_coordinates(fine))
+        at_nodes, _, _ = facet_measure(surface, kind, facets, origin + scale * node_coordinates(fine))
         parts.append(
             _Part(
-                np.einsum("qn,fnd->fqd", shape_functions(cell.code, at)[0], x),
+                at_nodes,
                 mass,
                 mass / length**2 + stiff,
                 np.einsum("fq,qn,qk->fnk", measure, values, pressure[:, :functions]),
