@@ -6,4 +6,5 @@ NB_MODULE(_core, m) {
   abut::bind_cells(m);
   abut::bind_solids(m);
   abut::bind_interface(m);
+  abut::bind_sparse(m);
 }

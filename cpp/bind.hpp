@@ -25,4 +25,5 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> &&data, std
 void bind_cells(nb::module_ &m);
 void bind_solids(nb::module_ &m);
 void bind_interface(nb::module_ &m);
+void bind_sparse(nb::module_ &m);
 } // namespace abut

@@ -16,7 +16,7 @@ from process import Run
 
 HERE = Path(__file__).parent
 TYPES = {"calculix-mortar": "mortar", "calculix-penalty": "penalty"}
-CODES = ("abut", "abut-tied", *TYPES, "kratos")
+CODES = ("abut", "abut-tied", "pyamg", *TYPES, "kratos")
 DISTRIBUTION = "KratosContactStructuralMechanicsApplication"
 
 
@@ -58,6 +58,11 @@ def _abut(name: str, linear: str) -> Code:
     options = ["--linear", linear, *(["--tied"] if name == "abut-tied" else [])]
     version = _output([sys.executable, "-c", "import abut; print(abut.__version__)"])
     return Code(name, "abut", version, None, lambda case, dofs: _script("abut_child.py", case, dofs, *options), _said)
+
+
+def _pyamg(name: str) -> Code:
+    version = _output([sys.executable, "-c", "import pyamg; print(pyamg.__version__)"])
+    return Code(name, "PyAMG", version, None, lambda case, dofs: _script("pyamg_child.py", case, dofs), _said)
 
 
 def _calculix(name: str, ccx: str) -> Code:
@@ -104,4 +109,6 @@ def code(name: str, linear: str, ccx: str, kratos_python: str) -> Code:
     """A code by its name in CODES."""
     if name.startswith("abut"):
         return _abut(name, linear)
+    if name == "pyamg":
+        return _pyamg(name)
     return _calculix(name, ccx) if name in TYPES else _kratos(name, kratos_python)

@@ -1,7 +1,8 @@
-"""Contact in abut, in abut with the bodies tied (the linear problem on the same mesh), in CalculiX and in Kratos.
+"""Contact in abut, in abut with the bodies tied (the linear problem on the same mesh), in CalculiX and in Kratos; and PyAMG
+by hand on the stiffness alone.
 
 python bench/contact/run.py [--cases flat-hex8,tilted-hex8] [--dofs 10000,50000,150000] [--cores 1,2] [--repeat 3]
-    [--codes abut,abut-tied,calculix-mortar,calculix-penalty,kratos] [--linear auto] [--limit 60]
+    [--codes abut,abut-tied,pyamg,calculix-mortar,calculix-penalty,kratos] [--linear auto] [--limit 60]
 
 Cases are {flat,tilted,hertz}-{hex8,hex20,tet10}. Every run is a new process with limits of time and memory; a code that
 is missing, fails or runs out of either is named in the table. Results go to results-bench: results.json, table.md and,

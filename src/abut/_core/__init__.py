@@ -5,17 +5,21 @@ from __future__ import annotations
 from abut._core._core import (
     assemble_stiffness,
     block_pattern,
+    block_product,
     couple_surfaces,
     node_pattern,
     plan_facets,
+    principal_submatrix,
     shape_functions,
 )
 
 __all__ = [
     "assemble_stiffness",
     "block_pattern",
+    "block_product",
     "couple_surfaces",
     "node_pattern",
     "plan_facets",
+    "principal_submatrix",
     "shape_functions",
 ]

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut._core import principal_submatrix
 from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.interface.geometry import nodal_normals
@@ -30,9 +31,14 @@ class Supports:
 
     def reduce(self, matrix: Any) -> Any:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
-        if self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all():
-            kept = self.free.tocsc().indices
-            return matrix[kept][:, kept].tocsr()
+        picks = self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all()
+        if picks and matrix.nnz < 2**31:
+            place = np.full(matrix.shape[0], -1, dtype=np.int32)
+            place[self.free.tocsc().indices] = np.arange(self.free.shape[1])
+            indptr, indices, data = principal_submatrix(
+                matrix.indptr.astype(np.int32), matrix.indices, matrix.data, place, self.free.shape[1]
+            )
+            return sp.csr_matrix((data, indices, indptr), shape=(self.free.shape[1], self.free.shape[1]))
         return (self.free.T @ matrix @ self.free).tocsr()
 
     def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -80,10 +86,12 @@ def supports(model: Model) -> Supports:
         free_columns.append(np.repeat(column + np.arange(count), dim))
         free_values.append(basis.T.ravel())
         column += count
-    free = sp.csr_matrix(
-        (np.concatenate(free_values), (np.concatenate(free_rows), np.concatenate(free_columns))),
-        shape=(dim * len(mesh.points), column),
-    )
+    rows, columns = np.concatenate(free_rows), np.concatenate(free_columns)
+    point = np.empty(column, dtype=np.int64)
+    point[columns] = rows // dim
+    place = np.empty(column, dtype=np.int64)
+    place[np.argsort(point, kind="stable")] = np.arange(column)  # columns in the order of the points
+    free = sp.csr_matrix((np.concatenate(free_values), (rows, place[columns])), shape=(dim * len(mesh.points), column))
     free.eliminate_zeros()
     return Supports(free, prescribed.ravel())
 

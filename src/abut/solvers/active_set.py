@@ -26,7 +26,7 @@ ROUGH, FINE, FINEST = (
     1e-5,
     1e-9,
 )  # reductions of the residual asked of them: while the set changes, cycles, is final
-FEW = 0.02  # share of the active set below which changes count as few
+FEW = 0.01  # share of the active set below which changes count as few
 TOLERANCE = 1e-8  # of the relative residuals, for laws that are not piecewise linear
 
 
@@ -295,10 +295,16 @@ def _report(
         active=int(state.active.sum()),
         changed=changed,
         residual=float(np.abs(_equilibrium(system, state, factor)).max(initial=0.0) / force),
-        contact_residual=float(violation.max(initial=0.0) / max(np.abs(state.pressure).max(initial=0.0), 1e-300)),
+        contact_residual=_relative(violation, state.pressure),
         penetration=max(depth, default=0.0),
         seconds=seconds,
     )
+
+
+def _relative(violation: NDArray[np.float64], pressure: NDArray[np.float64]) -> float:
+    """Largest violation over the largest pressure; 1 while there is none."""
+    worst, largest = float(violation.max(initial=0.0)), float(np.abs(pressure).max(initial=0.0))
+    return worst / largest if largest > 0.0 else float(worst > 0.0)
 
 
 def _finish_smooth(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,18 +27,15 @@ class NotConverged(Exception):
 
 @dataclass
 class Count:
-    """Linear iterations so far, and the interface's preconditioner of the last active set."""
+    """Linear iterations so far."""
 
     iterations: int = 0
-    active: bytes = b""
-    inverse: Apply | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)
 class Iterative:
     """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
 
-    stiffness: Any
     operator: Any
     hierarchy: Hierarchy
     parts: Sequence[Interface]
@@ -57,12 +54,12 @@ class Iterative:
         active = ~known
         operator = self.operator[active]
         n, s = len(residual), self.scale
-        inverse = self._schur(active)
+        inverse = schur_inverse(self.parts, active)
         coarse = self._rigid(operator, inverse)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
             u, q = x[:n], x[n:]
-            return np.concatenate([self.stiffness @ u - operator.T @ (s * q), -s * (operator @ u)])
+            return np.concatenate([self.hierarchy.product(u) - operator.T @ (s * q), -s * (operator @ u)])
 
         def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
             q = -inverse(x[n:] / s) / s
@@ -96,11 +93,6 @@ class Iterative:
             raise NotConverged(FAILED)
         return np.asarray(solution)
 
-    def _schur(self, active: NDArray[np.bool_]) -> Apply:
-        if self.count.inverse is None or self.count.active != active.tobytes():
-            self.count.inverse, self.count.active = schur_inverse(self.parts, active), active.tobytes()
-        return self.count.inverse
-
     def _rigid(self, operator: Any, inverse: Apply) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         if not self.motions.shape[1]:
@@ -123,6 +115,6 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) 
     largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
     scale = float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
     count, parts = Count(), interfaces(system.pairs)
-    solver = Iterative(system.stiffness, system.operator, hierarchy, parts, motions, scale, count)
+    solver = Iterative(system.operator, hierarchy, parts, motions, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ motions))
     return replace(system, step=solver.step, exact=False, predict=predict), count

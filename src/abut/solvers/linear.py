@@ -18,7 +18,7 @@ from abut.solvers.direct import solver_name
 from abut.solvers.iterative import Count, iterate
 from abut.solvers.multigrid import hierarchy
 
-LARGE = {1: 60_000, 2: 120_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
+LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,120 @@
+// Sparse matrices: products of small dense blocks with vectors, on which a multigrid cycle spends its time, and the
+// choice of rows and columns.
+#include "bind.hpp"
+#include "parallel.hpp"
+
+namespace abut {
+
+constexpr std::size_t FEW_ENTRIES = 400'000; // not worth a thread
+
+// Rows of blocks first .. last - 1 of y = A x, with blocks of r x c.
+template <class T, int r, int c>
+static void rows_fixed(const std::int32_t *indptr, const std::int32_t *indices, const T *blocks, const T *x, T *y,
+                       std::size_t first, std::size_t last, int, int) {
+  for (std::size_t i = first; i < last; ++i) {
+    T sum[r] = {0};
+    for (std::int32_t k = indptr[i]; k < indptr[i + 1]; ++k) {
+      const T *block = blocks + std::size_t(k) * r * c, *in = x + std::size_t(indices[k]) * c;
+      for (int a = 0; a < r; ++a)
+        for (int b = 0; b < c; ++b)
+          sum[a] += block[a * c + b] * in[b];
+    }
+    for (int a = 0; a < r; ++a)
+      y[i * r + a] = sum[a];
+  }
+}
+
+template <class T>
+static void rows_any(const std::int32_t *indptr, const std::int32_t *indices, const T *blocks, const T *x, T *y,
+                     std::size_t first, std::size_t last, int r, int c) {
+  for (std::size_t i = first; i < last; ++i) {
+    T *sum = y + i * r;
+    for (int a = 0; a < r; ++a)
+      sum[a] = 0;
+    for (std::int32_t k = indptr[i]; k < indptr[i + 1]; ++k) {
+      const T *block = blocks + std::size_t(k) * r * c, *in = x + std::size_t(indices[k]) * c;
+      for (int a = 0; a < r; ++a)
+        for (int b = 0; b < c; ++b)
+          sum[a] += block[a * c + b] * in[b];
+    }
+  }
+}
+
+template <class T> static auto rows_of(int r, int c) {
+  if (r == 3 && c == 3)
+    return rows_fixed<T, 3, 3>;
+  if (r == 3 && c == 6)
+    return rows_fixed<T, 3, 6>;
+  if (r == 6 && c == 3)
+    return rows_fixed<T, 6, 3>;
+  if (r == 6 && c == 6)
+    return rows_fixed<T, 6, 6>;
+  if (r == 2 && c == 2)
+    return rows_fixed<T, 2, 2>;
+  return rows_any<T>;
+}
+
+template <class T>
+static nb::ndarray<nb::numpy, T> block_product(Vector<std::int32_t> indptr, Vector<std::int32_t> indices,
+                                               Tensor3<T> blocks, Vector<T> x) {
+  const std::size_t rows = indptr.shape(0) - 1, r = blocks.shape(1), c = blocks.shape(2);
+  if (indices.shape(0) != blocks.shape(0) || std::size_t(indptr(rows)) > blocks.shape(0))
+    throw nb::value_error("pattern and blocks disagree");
+  std::vector<T> y(rows * r);
+  {
+    nb::gil_scoped_release release;
+    const auto multiply = rows_of<T>(int(r), int(c));
+    const std::size_t parts = blocks.size() < FEW_ENTRIES ? 1 : thread_count();
+    run_parts(parts, [&](std::size_t part) {
+      multiply(indptr.data(), indices.data(), blocks.data(), x.data(), y.data(), rows * part / parts,
+               rows * (part + 1) / parts, int(r), int(c));
+    });
+  }
+  return to_numpy(std::move(y));
+}
+
+// The rows and columns i of a CSR matrix with place[i] >= 0, which ascend, as a matrix of their own.
+static nb::tuple principal_submatrix(Vector<std::int32_t> indptr, Vector<std::int32_t> indices, Vector<double> data,
+                                     Vector<std::int32_t> place, std::int64_t size) {
+  const std::size_t rows = indptr.shape(0) - 1;
+  if (place.shape(0) != rows || indices.shape(0) != data.shape(0))
+    throw nb::value_error("matrix and places disagree");
+  std::vector<std::int32_t> start(size + 1, 0);
+  for (std::size_t i = 0; i < rows; ++i)
+    if (place(i) >= 0) {
+      std::int32_t count = 0;
+      for (std::int32_t k = indptr(i); k < indptr(i + 1); ++k)
+        count += place(indices(k)) >= 0;
+      start[place(i) + 1] = count;
+    }
+  for (std::int64_t i = 0; i < size; ++i)
+    start[i + 1] += start[i];
+  std::vector<std::int32_t> columns(start[size]);
+  std::vector<double> values(start[size]);
+  {
+    nb::gil_scoped_release release;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < rows; ++i)
+      if (place(i) >= 0)
+        for (std::int32_t k = indptr(i); k < indptr(i + 1); ++k)
+          if (place(indices(k)) >= 0) {
+            columns[to] = place(indices(k));
+            values[to++] = data(k);
+          }
+  }
+  return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)), to_numpy(std::move(values)));
+}
+
+void bind_sparse(nb::module_ &m) {
+  const char *text =
+      "Product of a block sparse row matrix, blocks (n, r, c), with a vector; single or double precision.";
+  m.def("block_product", &block_product<float>, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(),
+        nb::arg("blocks").noconvert(), nb::arg("x").noconvert(), text);
+  m.def("block_product", &block_product<double>, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(),
+        nb::arg("blocks").noconvert(), nb::arg("x").noconvert(), text);
+  m.def("principal_submatrix", &principal_submatrix, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(),
+        nb::arg("data").noconvert(), nb::arg("place").noconvert(), nb::arg("size"),
+        "CSR (indptr, indices, data) of the rows and columns i with place[i] >= 0, ascending, < size.");
+}
+
+} // namespace abut

@@ -1,0 +1,113 @@
+"""A multigrid V-cycle in single precision: a preconditioner needs no more digits, and time is that of reading matrices.
+
+Smoothing is by Chebyshev polynomials in the matrix times the inverse of its diagonal (Adams, Brezina, Hu and Tuminaro 2003).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import block_product
+
+DEGREE = 2  # products with the matrix in each smoothing
+SMOOTHED = (0.05, 1.1)  # share of the spectrum's end that smoothing damps; its upper end is an estimate from below
+PROBES = 10  # Lanczos steps for that estimate
+
+Single = NDArray[np.float32]
+Blocks = tuple[NDArray[np.int32], NDArray[np.int32], Single]  # indptr, indices, blocks (n, r, c)
+
+
+@dataclass(frozen=True)
+class Level:
+    """matrix, diagonal and largest eigenvalue of diagonal^-1 matrix; interpolate from, restrict to the next level."""
+
+    matrix: Blocks
+    inverse_diagonal: Single
+    largest: float
+    interpolate: Blocks
+    restrict: Blocks
+
+
+@dataclass(frozen=True)
+class Levels:
+    """coarsest: inverse of the last matrix."""
+
+    levels: Sequence[Level]
+    coarsest: Single
+
+    def cycle(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """One symmetric V-cycle, (n,) -> (n,)."""
+        size = float(np.abs(residual).max(initial=0.0))
+        if not size > 0.0:
+            return np.zeros_like(residual)
+        return size * self._descend(0, (residual / size).astype(np.float32)).astype(np.float64)
+
+    def _descend(self, number: int, residual: Single) -> Single:
+        if number == len(self.levels):
+            return np.asarray(self.coarsest @ residual)
+        level = self.levels[number]
+        first, residual = _smooth(level, residual, with_residual=True)
+        below = self._descend(number + 1, block_product(*level.restrict, residual))
+        correction = block_product(*level.interpolate, below)
+        residual = residual - block_product(*level.matrix, correction)
+        last, _ = _smooth(level, residual, with_residual=False)
+        return np.asarray(first + correction + last)
+
+
+def single_precision(levels: Sequence[Any]) -> Levels:
+    """The levels of a PyAMG hierarchy with block sparse matrices, for cycles in single precision."""
+    matrix = levels[-1].A.toarray()
+    return Levels([_level(level) for level in levels[:-1]], np.linalg.pinv(matrix, hermitian=True).astype(np.float32))
+
+
+def _level(level: Any) -> Level:
+    matrix, diagonal = _blocks(level.A), level.A.diagonal()
+    inverse = (1.0 / diagonal).astype(np.float32)
+    return Level(matrix, inverse, _largest(matrix, inverse), _blocks(level.P), _blocks(level.R))
+
+
+def _blocks(matrix: Any) -> Blocks:
+    indptr, indices = (np.ascontiguousarray(a, dtype=np.int32) for a in (matrix.indptr, matrix.indices))
+    return indptr, indices, np.ascontiguousarray(matrix.data, dtype=np.float32)
+
+
+def _smooth(level: Level, residual: Single, with_residual: bool) -> tuple[Single, Single]:
+    """Chebyshev from zero: the correction, and what remains of the residual where that is asked for."""
+    low, high = (np.float32(level.largest * share) for share in SMOOTHED)
+    middle, half = (high + low) / 2, (high - low) / 2
+    ratio = half / middle
+    direction = level.inverse_diagonal * residual / middle
+    correction = direction.copy()
+    for _ in range(1, DEGREE):
+        residual = residual - block_product(*level.matrix, direction)
+        following = 1 / (2 * middle / half - ratio)
+        direction = following * ratio * direction + 2 * following / half * (level.inverse_diagonal * residual)
+        ratio = following
+        correction += direction
+    return correction, residual - block_product(*level.matrix, direction) if with_residual else residual
+
+
+def _largest(matrix: Blocks, inverse_diagonal: Single) -> float:
+    """Largest eigenvalue of diagonal^-1 matrix by a few steps of Lanczos."""
+    root = np.sqrt(inverse_diagonal)
+    vector = np.random.default_rng(0).standard_normal(len(root)).astype(np.float32)
+    vector /= np.linalg.norm(vector)
+    before, beta = np.zeros_like(vector), np.float32(0.0)
+    diagonal, beside = [], []
+    for _ in range(min(PROBES, len(root))):
+        image = root * block_product(*matrix, root * vector) - beta * before
+        alpha = image @ vector
+        image -= alpha * vector
+        beta = np.linalg.norm(image)
+        diagonal.append(alpha)
+        beside.append(beta)
+        if not beta > 0.0:
+            break
+        before, vector = vector, image / beta
+    tridiagonal = np.diag(diagonal) + np.diag(beside[:-1], 1) + np.diag(beside[:-1], -1)
+    return float(np.linalg.eigvalsh(tridiagonal).max())
