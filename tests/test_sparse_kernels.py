@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import block_product, principal_submatrix
-from abut.solvers.cycle import DEGREE, SMOOTHED, Levels, single_precision
+from abut.solvers.cycle import SMOOTHED, Levels, single_precision
 
 SHAPES = [(1, 1), (2, 2), (2, 3), (3, 3), (3, 6), (6, 3), (6, 6), (4, 5)]
 
@@ -76,7 +76,7 @@ def twin(levels: list, ours: Levels, residual: NDArray[np.float64], number: int 
     inverse = np.diag(1.0 / np.diag(matrix))
     low, high = (share * ours.levels[number].largest for share in SMOOTHED)
     # The error polynomial is T(middle - x) / T(middle) on the scaled interval; the smoother is (1 - error) / x.
-    nodes = np.polynomial.chebyshev.chebpts1(DEGREE) * (high - low) / 2 + (high + low) / 2
+    nodes = np.polynomial.chebyshev.chebpts1(ours.levels[number].degree) * (high - low) / 2 + (high + low) / 2
     error = np.eye(len(matrix))
     for root in nodes:
         error = error @ (np.eye(len(matrix)) - inverse @ matrix / root)

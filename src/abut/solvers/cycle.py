@@ -5,6 +5,7 @@ Smoothing is by Chebyshev polynomials in the matrix times the inverse of its dia
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 
 from abut._core import block_product
 
-DEGREE = 2  # products with the matrix in each smoothing
 SMOOTHED = (0.05, 1.1)  # share of the spectrum's end that smoothing damps; its upper end is an estimate from below
 PROBES = 10  # Lanczos steps for that estimate
 
@@ -24,13 +24,15 @@ Blocks = tuple[NDArray[np.int32], NDArray[np.int32], Single]  # indptr, indices,
 
 @dataclass(frozen=True)
 class Level:
-    """matrix, diagonal and largest eigenvalue of diagonal^-1 matrix; interpolate from, restrict to the next level."""
+    """matrix, diagonal and largest eigenvalue of diagonal^-1 matrix; interpolate from, restrict to the next level; degree
+    of the polynomial that smoothes."""
 
     matrix: Blocks
     inverse_diagonal: Single
     largest: float
     interpolate: Blocks
     restrict: Blocks
+    degree: int
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,11 @@ def single_precision(levels: Sequence[Any]) -> Levels:
 
 def _level(level: Any) -> Level:
     matrix, diagonal = _blocks(level.A), level.A.diagonal()
-    inverse = (1.0 / diagonal).astype(np.float32)
-    return Level(matrix, inverse, _largest(matrix, inverse), _blocks(level.P), _blocks(level.R))
+    small = np.finfo(np.float32).eps * diagonal.max()  # coarse functions that small aggregates cannot carry are zero
+    inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small).astype(np.float32)
+    largest = _largest(matrix, inverse)
+    degree = math.ceil(math.sqrt(largest))  # flat and stretched cells widen the spectrum, which takes longer polynomials
+    return Level(matrix, inverse, largest, _blocks(level.P), _blocks(level.R), degree)
 
 
 def _blocks(matrix: Any) -> Blocks:
@@ -83,7 +88,7 @@ def _smooth(level: Level, residual: Single, with_residual: bool) -> tuple[Single
     ratio = half / middle
     direction = level.inverse_diagonal * residual / middle
     correction = direction.copy()
-    for _ in range(1, DEGREE):
+    for _ in range(1, level.degree):
         residual = residual - block_product(*level.matrix, direction)
         following = 1 / (2 * middle / half - ratio)
         direction = following * ratio * direction + 2 * following / half * (level.inverse_diagonal * residual)

@@ -17,7 +17,7 @@ from abut.solvers.active_set import Rows, System
 from abut.solvers.multigrid import Hierarchy
 from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
 
-RESTART, CYCLES = 60, 4
+RESTART, CYCLES = 100, 3
 FAILED = "multigrid does not converge on this model"
 
 
