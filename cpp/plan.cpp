@@ -1,7 +1,10 @@
 // How many integration points and subdivisions each facet needs, from its own moments.
 #include "contactor.hpp"
+#include "parallel.hpp"
 
 namespace abut {
+
+constexpr std::size_t FEW_FACETS = 200; // not worth a thread
 
 namespace {
 
@@ -80,11 +83,60 @@ int subdivisions_needed(const Facet<double> &f) {
   return std::min(12, std::max(1, int(std::ceil(std::sqrt(sagitta / 0.03) - 1e-9))));
 }
 
+// int N_i N_j over the facet by a rule of many points; returns the area.
+double exact_moments(const Facet<double> &facet, const Rule &fine, bool axisymmetric, double (*exact)[9]) {
+  const bool triangle = facet.triangle(), line = facet.dim == 2;
+  double area = 0;
+  for (int p = 0; p < fine.n; ++p)
+    for (int q = 0; q < (line ? 1 : fine.n); ++q) {
+      double xi[2], weight, x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
+      if (line)
+        xi[0] = 2 * fine.t[p] - 1, weight = 2 * fine.wt[p];
+      else if (triangle)
+        xi[0] = fine.r[q] * (1 - fine.t[p]), xi[1] = fine.r[q] * fine.t[p], weight = fine.wt[p] * fine.wr[q];
+      else
+        xi[0] = 2 * fine.t[p] - 1, xi[1] = 2 * fine.t[q] - 1, weight = 4 * fine.wt[p] * fine.wt[q];
+      facet.at(xi, x, tangent);
+      facet.values(xi, n, d);
+      if (line) {
+        weight *= std::sqrt(dot(tangent[0], tangent[0], 2)) * (axisymmetric ? x[0] : 1.0);
+      } else {
+        cross(tangent[0], tangent[1], normal);
+        weight *= std::sqrt(dot(normal, normal, 3));
+      }
+      area += weight;
+      for (int i = 0; i < facet.nodes; ++i)
+        for (int j = 0; j < facet.nodes; ++j)
+          exact[i][j] += weight * n[i] * n[j];
+    }
+  return area;
+}
+
+// The fewest points whose own moments meet the tolerance.
+int points_needed(Facet<double> facet, int subdivisions, const RuleTable &rules, const Rule &fine, double tolerance,
+                  bool axisymmetric) {
+  double exact[9][9] = {{0}};
+  const double area = exact_moments(facet, fine, axisymmetric, exact);
+  const int last = int(rules.count);
+  int n = 1;
+  if (facet.dim == 2) {
+    while (n < last && !(moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance))
+      ++n;
+    return n;
+  }
+  for (int i = 0; i < facet.nodes; ++i)
+    for (int a = 0; a < 3; ++a)
+      facet.normals[i][a] = 0;
+  const Contactor3 own(facet, subdivisions);
+  while (n < last && !(moment_error(facet, own, rules.rule(n), exact, area) < tolerance))
+    ++n;
+  return n;
+}
+
 } // namespace
 
 void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
           bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
-  const int last = int(rules.count);
   const Rule fine = exact_rules.rule(int(exact_rules.count));
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   // One number of subdivisions for all facets with curves: were a common edge one chord here and two there, segments
@@ -92,57 +144,28 @@ void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &e
   int most = 1;
   for (std::size_t f = 0; f < surface.facets; ++f)
     most = std::max(most, subdivisions_needed(surface.facet(f)));
+  points.assign(surface.facets, 0);
+  subdivisions.assign(surface.facets, 1);
+  std::vector<std::size_t> others;
   for (std::size_t f = 0; f < surface.facets; ++f) {
-    Facet<double> facet = surface.facet(f);
-    const bool plain = facet.affine && !axisymmetric;
-    const int m = quadratic(facet.kind) ? most : 1;
-    subdivisions.push_back(m);
-    if (plain && affine_points[facet.kind]) {
-      points.push_back(affine_points[facet.kind]);
+    const Facet<double> facet = surface.facet(f);
+    if (quadratic(facet.kind))
+      subdivisions[f] = most;
+    if (!facet.affine || axisymmetric) {
+      others.push_back(f);
       continue;
     }
-    double exact[9][9] = {{0}}, area = 0;
-    const bool triangle = facet.triangle(), line = surface.dim == 2;
-    for (int p = 0; p < fine.n; ++p)
-      for (int q = 0; q < (line ? 1 : fine.n); ++q) {
-        double xi[2], weight, x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];
-        if (line)
-          xi[0] = 2 * fine.t[p] - 1, weight = 2 * fine.wt[p];
-        else if (triangle)
-          xi[0] = fine.r[q] * (1 - fine.t[p]), xi[1] = fine.r[q] * fine.t[p], weight = fine.wt[p] * fine.wr[q];
-        else
-          xi[0] = 2 * fine.t[p] - 1, xi[1] = 2 * fine.t[q] - 1, weight = 4 * fine.wt[p] * fine.wt[q];
-        facet.at(xi, x, tangent);
-        facet.values(xi, n, d);
-        if (line) {
-          weight *= std::sqrt(dot(tangent[0], tangent[0], 2)) * (axisymmetric ? x[0] : 1.0);
-        } else {
-          cross(tangent[0], tangent[1], normal);
-          weight *= std::sqrt(dot(normal, normal, 3));
-        }
-        area += weight;
-        for (int i = 0; i < facet.nodes; ++i)
-          for (int j = 0; j < facet.nodes; ++j)
-            exact[i][j] += weight * n[i] * n[j];
-      }
-    int n = 1;
-    if (line) {
-      for (; n < last; ++n)
-        if (moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance)
-          break;
-    } else {
-      for (int i = 0; i < facet.nodes; ++i)
-        for (int a = 0; a < 3; ++a)
-          facet.normals[i][a] = 0;
-      const Contactor3 own(facet, m);
-      for (; n < last; ++n)
-        if (moment_error(facet, own, rules.rule(n), exact, area) < tolerance)
-          break;
-    }
-    if (plain)
-      affine_points[facet.kind] = n;
-    points.push_back(n);
+    int &known = affine_points[facet.kind];
+    if (!known)
+      known = points_needed(facet, subdivisions[f], rules, fine, tolerance, axisymmetric);
+    points[f] = known;
   }
+  const std::size_t parts = others.size() < FEW_FACETS ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    for (std::size_t i = part; i < others.size(); i += parts)
+      points[others[i]] =
+          points_needed(surface.facet(others[i]), subdivisions[others[i]], rules, fine, tolerance, axisymmetric);
+  });
 }
 
 } // namespace abut
