@@ -107,9 +107,7 @@ def test_levels_and_rate(capsys: pytest.CaptureFixture[str]) -> None:
     assert own["values"] == pytest.approx(errors, rel=1e-2)
 
 
-def test_rate_without_a_reference_rate(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rate_without_a_reference_rate(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Of any benchmark with two levels: errors 1/2, 1/8, 1/32 fall with h^2; those of rounding have no rate."""
     falling = record(lambda level: 2.0 + 0.25**level, Reference(2.0, 0.2, "a book", "none"))
     exact = record(lambda level: 2.0, Reference(2.0, 0.2, "a book", "none"))
