@@ -31,8 +31,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
                 residual: float) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
-    values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction; nodal: (n_facets, 9)
-    pressure at the facets' nodes; penetration: largest, a length; residual: of the contact law, relative to the largest pressure.
+    values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
+    nodal: (n_facets, 9) pressure at the facets' nodes; penetration: largest, a length;
+    residual: of the contact law, relative to the largest pressure.
     """
     name = pair.contact.name
     largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), 1e-300)
