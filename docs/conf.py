@@ -22,12 +22,9 @@ nitpicky = False  # annotations name NumPy's types, which have no pages here
 myst_enable_extensions = ["dollarmath", "deflist", "fieldlist"]
 myst_heading_anchors = 4  # as GitHub makes them
 myst_links_external_new_tab = False
-suppress_warnings = ["myst.header"]  # pages may begin as GitHub shows them best
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
-autodoc_typehints_format = "short"
-python_use_unqualified_type_names = True
+autodoc_typehints = "none"  # signatures are written by reference.py, as they stand in the code
 add_module_names = False
 maximum_signature_line_length = 88
 

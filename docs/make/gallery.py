@@ -24,23 +24,28 @@ def fields(solution: abut.Solution) -> tuple[pv.UnstructuredGrid, pv.Unstructure
         return pv.read(sorted(results.glob("fields_*.vtu"))[-1]), pv.read(sorted(results.glob("contact_*.vtu"))[-1])
 
 
-def solid_picture(solution: abut.Solution, name: str, title: str, view: list[tuple[float, ...]], hide: int) -> None:
-    """One body whole, the other (``hide``) as its edges, and the contactor coloured by its pressure."""
+def solid_picture(
+    solution: abut.Solution, name: str, title: str, view: list[tuple[float, ...]], angle: float, whole: int
+) -> None:
+    """Body ``whole`` with its cells, the outline of the other, and the contactor's pressure where it is in contact."""
     body, contact = fields(solution)
-    plot = pv.Plotter(off_screen=True, window_size=(1100, 760))
+    plot = pv.Plotter(off_screen=True, window_size=(1100, 720))
     for number in (0, 1):
         own = body.extract_cells(body["body"] == number)
-        if number == hide:
-            plot.add_mesh(own.extract_surface(nonlinear_subdivision=0, algorithm="dataset_surface").extract_all_edges(),
-                          color="#9aa5b1", line_width=1)  # fmt: skip
+        skin = own.extract_surface(nonlinear_subdivision=0, algorithm="dataset_surface")
+        if number == whole:
+            plot.add_mesh(skin, color="#dfe3e8", show_edges=True, edge_color="#8a95a1", ambient=0.45)
         else:
-            plot.add_mesh(own.separate_cells().extract_surface(nonlinear_subdivision=0, algorithm="dataset_surface"),
-                          color="#dfe3e8", show_edges=True, edge_color="#9aa5b1")  # fmt: skip
+            plot.add_mesh(skin.extract_feature_edges(35), color="#5f7fa6", line_width=2)
     side = contact.extract_cells(contact["side"] == 0)
     side = side.extract_surface(nonlinear_subdivision=3, algorithm="dataset_surface")
+    side = side.threshold(0.01 * side["pressure"].max(), scalars="pressure")
+    look = np.subtract(view[0], view[1])
+    side.points += 0.01 * side.length * look / np.linalg.norm(look)  # just in front of the body's own surface
     bar = {"title": title, "vertical": True, "position_x": 0.86, "position_y": 0.2, "height": 0.6, "color": "black"}
     plot.add_mesh(side, scalars="pressure", cmap="inferno", lighting=False, scalar_bar_args=bar)
     plot.camera_position = view
+    plot.camera.view_angle = angle
     plot.background_color = "white"
     plot.enable_anti_aliasing("ssaa")
     plot.screenshot(DOCS / "pictures" / name)
@@ -65,10 +70,10 @@ def line_picture() -> None:
 
 def main() -> None:
     blocks = abut.solve(load_job(EXAMPLES / "two-blocks" / "job.toml").model)
-    solid_picture(blocks, "two-blocks.png", "pressure [MPa]", [(26, -30, -2), (5, 5, 9), (0, 0, 1)], hide=0)
+    solid_picture(blocks, "two-blocks.png", "pressure [MPa]", [(20, -24, -6), (5.7, 5, 8.4), (0, 0, 1)], 24, whole=1)
     line_picture()
     ball = abut.solve(load_job(EXAMPLES / "hertz-sphere" / "job.toml").model)
-    solid_picture(ball, "hertz-sphere.png", "pressure", [(-1.2, -2.2, -3.2), (0.5, 0.5, 0.4), (0, 0, 1)], hide=1)
+    solid_picture(ball, "hertz-sphere.png", "pressure", [(-2.6, -4.4, -2.2), (0.75, 0.6, 0.35), (0, 0, 1)], 30, whole=0)
 
 
 if __name__ == "__main__":

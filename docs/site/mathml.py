@@ -14,11 +14,12 @@ from sphinx.util import logging
 TAG = re.compile(r"\\tag\{([^}]*)\}")
 SPELLINGS = {r"\lt": "<", r"\gt": ">", r"\dots": r"\ldots", r"\cr": r"\\", r"\Big": ""}  # GitHub's, to docutils'
 WORD = re.compile(r"\\[a-zA-Z]+")
+DIGITS = re.compile(r"\\frac(\d)(\d)")  # docutils would read one number
 
 
 def convert(formula: str, place: nodes.Node, block: bool) -> str:
     """LaTeX to MathML; what cannot be converted is a warning, which stops a strict build."""
-    plain = WORD.sub(lambda m: SPELLINGS.get(m[0], m[0]), formula)
+    plain = WORD.sub(lambda m: SPELLINGS.get(m[0], m[0]), DIGITS.sub(r"\\frac{\1}{\2}", formula))
     try:
         return str(tex2mathml(plain, as_block=block))
     except MathError as error:

@@ -145,17 +145,21 @@ class Exports(SphinxDirective):
     shown: ClassVar[set[str]] = set()
 
     def run(self) -> list[nodes.Node]:
-        lines = []
-        for name in abut.__all__:
-            item = getattr(abut, name)
-            if item.__module__ not in self.arguments[0].split():
-                continue
+        modules, lines = self.arguments[0].split(), []
+        items = {name: getattr(abut, name) for name in abut.__all__}
+        own = [name for name, item in items.items() if item.__module__ in modules]
+        for name in sorted(own, key=lambda n: (modules.index(items[n].__module__), _line(items[n]))):
+            item = items[name]
             self.shown.add(name)
             what = "autoexception" if inspect.isclass(item) and issubclass(item, Exception) else (
                 "autoclass" if inspect.isclass(item) else "autofunction")  # fmt: skip
             lines += ["```{eval-rst}", f".. {what}:: abut.{name}"]
             lines += ["   :members:", "```", ""] if what == "autoclass" else ["```", ""]
         return self.parse_text_to_nodes("\n".join(lines))
+
+
+def _line(item: Any) -> int:
+    return inspect.getsourcelines(item)[1]
 
 
 def check_exports(app: Sphinx, env: Any) -> None:
@@ -183,10 +187,35 @@ def as_fields(app: Any, what: str, name: str, item: Any, options: Any, lines: li
     lines[:] = result
 
 
+def as_written(app: Any, what: str, name: str, item: Any, *_: Any) -> tuple[str, str] | None:
+    """Signatures with their annotations as the code has them; arrays are just arrays, their shapes are in the text."""
+    if what not in ("class", "function", "method"):
+        return None
+    signature = inspect.signature(item)
+    parameters = []
+    for parameter in signature.parameters.values():
+        annotation, default = parameter.annotation, parameter.default
+        text = parameter.name
+        if isinstance(annotation, str):
+            text += f": {_plain_type(annotation)}"
+        if default is not parameter.empty:
+            text += " = ..." if repr(default) == "<factory>" else f" = {default!r}"
+        star = parameter.kind is parameter.KEYWORD_ONLY and not any(p.startswith("*") for p in parameters)
+        parameters += ["*", text] if star else [text]
+    returned = signature.return_annotation
+    shown = _plain_type(returned) if isinstance(returned, str) and what != "class" else ""
+    return f"({', '.join(parameters)})", shown
+
+
+def _plain_type(annotation: str) -> str:
+    return re.sub(r"NDArray\[[\w.]+\]", "array", annotation).strip("'\"")
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("job-keys", JobKeys)
     app.add_directive("generators", Generators)
     app.add_directive("exports", Exports)
     app.connect("autodoc-process-docstring", as_fields)
+    app.connect("autodoc-process-signature", as_written)
     app.connect("env-check-consistency", check_exports)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

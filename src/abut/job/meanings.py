@@ -1,6 +1,6 @@
 """What every key of a job file means, for the JSON Schema (editors show it) and the reference page.
 
-A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own, any consistent set.
+A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "file": "mesh file beside the job file (.msh, .vtu)",
         "bodies": "bodies that abut meshes itself, by name",
     },
-    "BodyTable": {"kind": "the generator; its further keys are listed below"},
+    "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {"plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)"},
     "MaterialTable": {
         "kind": "the material law",
