@@ -34,12 +34,12 @@ def solid_picture(
         own = body.extract_cells(body["body"] == number)
         skin = own.extract_surface(nonlinear_subdivision=0, algorithm="dataset_surface")
         if number == whole:
-            plot.add_mesh(skin, color="#dfe3e8", show_edges=True, edge_color="#8a95a1", ambient=0.45)
+            plot.add_mesh(skin, color="#dfe3e8", show_edges=True, edge_color="#8a95a1", ambient=0.25)
         else:
             plot.add_mesh(skin.extract_feature_edges(35), color="#5f7fa6", line_width=2)
     side = contact.extract_cells(contact["side"] == 0)
     side = side.extract_surface(nonlinear_subdivision=3, algorithm="dataset_surface")
-    side = side.threshold(0.01 * side["pressure"].max(), scalars="pressure")
+    side = side.threshold(0.01 * side["pressure"].max(), scalars="pressure", all_scalars=True)
     look = np.subtract(view[0], view[1])
     side.points += 0.01 * side.length * look / np.linalg.norm(look)  # just in front of the body's own surface
     bar = {"title": title, "vertical": True, "position_x": 0.86, "position_y": 0.2, "height": 0.6, "color": "black"}
@@ -70,10 +70,12 @@ def line_picture() -> None:
 
 def main() -> None:
     blocks = abut.solve(load_job(EXAMPLES / "two-blocks" / "job.toml").model)
-    solid_picture(blocks, "two-blocks.png", "pressure [MPa]", [(20, -24, -6), (5.7, 5, 8.4), (0, 0, 1)], 24, whole=1)
+    solid_picture(blocks, "two-blocks.png", "pressure [MPa]", [(22, -26, -4), (5, 5, 7.4), (0, 0, 1)], 27, whole=1)
     line_picture()
     ball = abut.solve(load_job(EXAMPLES / "hertz-sphere" / "job.toml").model)
-    solid_picture(ball, "hertz-sphere.png", "pressure", [(-2.6, -4.4, -2.2), (0.75, 0.6, 0.35), (0, 0, 1)], 30, whole=0)
+    solid_picture(
+        ball, "hertz-sphere.png", "pressure", [(-1.5, -2.6, -3.6), (0.75, 0.55, 0.25), (0, 0, 1)], 28, whole=0
+    )
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ SECTIONS = {  # how a top-level key appears in a file, by what it holds
     "object": "[{}]", "map": "[{}.NAME]", "array": "[[{}]]",
 }  # fmt: skip
 UNIT = re.compile(r"(.*) \[([^\]]+)\]$")
-ARGUMENT = re.compile(r"^((?:\w+, )*\w+):\s+(.*)$")
+ARGUMENT = re.compile(r"^((?:[a-z_]\w*, )*[a-z_]\w*):\s+(.*)$")
 
 
 class JobKeys(SphinxDirective):
