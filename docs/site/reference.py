@@ -29,6 +29,9 @@ SECTIONS = {  # how a top-level key appears in a file, by what it holds
 UNIT = re.compile(r"(.*) \[([^\]]+)\]$")
 ARGUMENT = re.compile(r"^((?:[a-z_]\w*, )*[a-z_]\w*):\s+(.*)$")
 
+BETWEEN = re.compile(r"; (?=(?:[a-z_]\w*, )*[a-z_]\w*: )")
+PROSE = ("Raises", "Surfaces", "For ", "Integrals", "The ", "Function")  # what follows the arguments
+
 
 class JobKeys(SphinxDirective):
     """Tables of all keys of a job file with type, default, unit and meaning, from the JSON Schema."""
@@ -170,20 +173,27 @@ def check_exports(app: Sphinx, env: Any) -> None:
             LOG.warning("abut.%s (%s) is on no page: add its module to docs/api.md", name, home)
 
 
-def as_fields(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
-    """Docstrings are plain text: lines "young: Young's modulus" become a list of fields, "Raises" a paragraph."""
+def as_list(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
+    """Docstrings are plain text: "young: Young's modulus; poisson: ..." become a list of names and meanings."""
     result: list[str] = []
-    within = False
+    text: list[str] = []  # of the arguments being read
+
+    def close() -> None:
+        for part in BETWEEN.split(" ".join(text)) if text else ():
+            names, _, meaning = part.partition(":")
+            result.extend([", ".join(f"``{n}``" for n in names.split(", ")), f"    {meaning.strip().rstrip(';')}", ""])
+        text.clear()
+
     for line in lines:
-        match = ARGUMENT.match(line)
-        if match and not line.startswith(("Raises", "Source")):
-            result += ([] if within else [""]) + [f":{match[1]}: {match[2]}"]
-            within = True
-        elif within and line.strip() and not line.startswith(("Raises", "Surfaces", "For ")):
-            result.append(f"   {line.strip()}")
+        if ARGUMENT.match(line):
+            result += [] if text else [""]
+            text.append(line.rstrip().rstrip(";") + ";")
+        elif text and line.strip() and not line.startswith(PROSE):
+            text[-1] = f"{text[-1].rstrip(';')} {line.strip().rstrip(';')};"
         else:
-            result += ([""] if within and line.strip() else []) + [line]
-            within = False
+            close()
+            result.append(line)
+    close()
     lines[:] = result
 
 
@@ -199,7 +209,7 @@ def as_written(app: Any, what: str, name: str, item: Any, *_: Any) -> tuple[str,
         if isinstance(annotation, str):
             text += f": {_plain_type(annotation)}"
         if default is not parameter.empty:
-            text += " = ..." if repr(default) == "<factory>" else f" = {default!r}"
+            text += " = ..." if repr(default).startswith("<") else f" = {default!r}"
         star = parameter.kind is parameter.KEYWORD_ONLY and not any(p.startswith("*") for p in parameters)
         parameters += ["*", text] if star else [text]
     returned = signature.return_annotation
@@ -211,11 +221,19 @@ def _plain_type(annotation: str) -> str:
     return re.sub(r"NDArray\[[\w.]+\]", "array", annotation).strip("'\"")
 
 
+def keep_short_cells(app: Sphinx, doctree: nodes.document) -> None:
+    """Numbers such as 1e-10 must not be broken at the hyphen."""
+    for entry in doctree.findall(nodes.entry):
+        if len(entry.astext()) < 10:
+            entry["classes"].append("short")
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("job-keys", JobKeys)
     app.add_directive("generators", Generators)
     app.add_directive("exports", Exports)
-    app.connect("autodoc-process-docstring", as_fields)
+    app.connect("autodoc-process-docstring", as_list)
     app.connect("autodoc-process-signature", as_written)
+    app.connect("doctree-read", keep_short_cells)
     app.connect("env-check-consistency", check_exports)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
