@@ -14,7 +14,7 @@ author = "The abut developers"
 project_copyright = "The abut developers, BSD-3-Clause"
 version = release = abut.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "reference"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "equations", "reference"]
 exclude_patterns = ["make", "site"]
 source_suffix = {".md": "markdown"}
 nitpicky = False  # annotations name NumPy's types, which have no pages here
