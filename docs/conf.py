@@ -28,6 +28,8 @@ autodoc_typehints = "none"  # signatures are written by reference.py, as they st
 add_module_names = False
 maximum_signature_line_length = 88
 
+highlight_language = "text"
+
 html_theme = "furo"
 html_title = f"abut {version}"
 html_static_path = ["site/static"]
