@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import abut
 from abut.cli import main
+from abut.job import load_job
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
@@ -119,3 +122,12 @@ def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.Capture
         assert main(["infsup", str(path), "--levels", "2"]) == (name == "p0")
         for line in capsys.readouterr().out.splitlines():
             assert line in tour
+
+
+def test_the_checkerboard_of_the_tour() -> None:
+    """P0 on linear cells: what the tour shows, facet by facet."""
+    model = load_job(ROOT / "examples" / "two-blocks" / "job.toml").model
+    result = abut.solve(replace(model, contacts=[replace(model.contacts[0], pressure="P0")])).contacts[0]
+    x = np.array([result.contactor.points[own[own >= 0]].mean(axis=0) for own in result.contactor.nodes])
+    rows = result.pressure[np.lexsort((x[:, 0], x[:, 1])), 0].reshape(5, 5)
+    assert "\n".join(" ".join(f"{p:3.0f}" for p in row) for row in rows) in (ROOT / "docs" / "tour.md").read_text()

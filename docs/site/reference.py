@@ -51,6 +51,8 @@ def _section(header: str, table: Mapping[str, Any], meaning: str, schema: Mappin
     """One table of the file and those within it."""
     inner = [(key, entry) for key, entry in table["properties"].items() if _tables(entry, schema)]
     keys = {k: e for k, e in table["properties"].items() if k not in dict(inner) or "default" in e}
+    kind = table["properties"].get("kind", {})
+    meaning = kind["description"] if "kind = " in header else meaning  # of one load, not of all
     yield from (f"### `{header}`", "", f"{meaning[:1].upper()}{meaning[1:]}.", "")
     yield from (*_table(keys, schema, table.get("required", ())), "")
     for key, entry in inner:
@@ -109,7 +111,7 @@ def _value(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
     if options:
         return " or ".join(dict.fromkeys(_value(o, schema) for o in options if o.get("type") != "null"))
     if entry.get("type") == "array":
-        return f"list of {_value(entry['items'], schema)}" if isinstance(entry.get("items"), dict) else "list"
+        return f"list of {_value(entry['items'], schema)}s" if isinstance(entry.get("items"), dict) else "list"
     names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true, false"}
     return names.get(entry.get("type", ""), "table")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 ANYWHERE = {  # keys that mean the same in every table
-    "on": "name of the surface (supports: also a node set)",
+    "on": "name of the surface",
     "amplitude": "pairs of time and factor; linear between them, constant outside; left out: the load step's time, 0 to 1",
     "name": "your own name for it, used in messages and results",
     "x": "displacement along x; left out: free [length]",
@@ -50,7 +50,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         "temperature": "uniform change of temperature that strains the body [temperature]",
         "integration": "how elements integrate their stiffness",
     },
-    "SupportTable": {"normal": "displacement along the surface's own outward normal, instead of x, y, z [length]"},
+    "SupportTable": {
+        "on": "name of the surface or node set",
+        "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
+    },
     "PressureTable": {"kind": "pressure on a surface", "value": "positive into the body [force/length^2]"},
     "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
     "ForceTable": {
