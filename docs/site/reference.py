@@ -50,11 +50,10 @@ class JobKeys(SphinxDirective):
 def _section(header: str, table: Mapping[str, Any], meaning: str, schema: Mapping[str, Any]) -> Iterable[str]:
     """One table of the file and those within it."""
     inner = [(key, entry) for key, entry in table["properties"].items() if _tables(entry, schema)]
-    keys = {k: e for k, e in table["properties"].items() if k not in dict(inner) or "default" in e}
     kind = table["properties"].get("kind", {})
     meaning = kind["description"] if "kind = " in header else meaning  # of one load, not of all
     yield from (f"### `{header}`", "", f"{meaning[:1].upper()}{meaning[1:]}.", "")
-    yield from (*_table(keys, schema, table.get("required", ())), "")
+    yield from (*_table(table["properties"], schema, table.get("required", ())), "")
     for key, entry in inner:
         name = header.strip("[]")
         for _, nested in _tables(entry, schema):
@@ -68,8 +67,15 @@ def _resolve(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str
     return entry
 
 
+def _given(entry: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What an entry is where it is given: "or nothing" left out."""
+    options = [option for option in entry.get("anyOf", ()) if option.get("type") != "null"]
+    return options[0] if len(options) == 1 else entry
+
+
 def _tables(entry: Mapping[str, Any], schema: Mapping[str, Any], key: str = "") -> list[tuple[str, Mapping[str, Any]]]:
     """The tables that an entry holds, each with the header that opens it in a file."""
+    entry = _given(entry)
     style = "array" if "items" in entry else "map" if isinstance(entry.get("additionalProperties"), dict) else "object"
     held = entry.get("items") or entry.get("additionalProperties") or entry
     options = held.get("oneOf", [held]) if isinstance(held, dict) else []
