@@ -156,10 +156,15 @@ class Exports(SphinxDirective):
     shown: ClassVar[set[str]] = set()
 
     def run(self) -> list[nodes.Node]:
-        modules, lines = self.arguments[0].split(), []
+        lines: list[str] = []
         items = {name: getattr(abut, name) for name in abut.__all__}
-        own = [name for name, item in items.items() if item.__module__ in modules]
-        for name in sorted(own, key=lambda n: (modules.index(items[n].__module__), _line(items[n]))):
+        places = {
+            name: (place, item.__module__, _line(item))
+            for name, item in items.items()
+            for place, module in enumerate(self.arguments[0].split())
+            if f"{item.__module__}.".startswith(f"{module}.")
+        }
+        for name in sorted(places, key=lambda n: places[n]):
             item = items[name]
             self.shown.add(name)
             what = "autoexception" if inspect.isclass(item) and issubclass(item, Exception) else (

@@ -80,7 +80,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "value": "what the sum of coefficient times displacement equals [length]",
     },
     "TermTable": {
-        "on": "node set with one node",
+        "on": "node set of one node, or a point's number",
         "component": "axis of the displacement",
         "coefficient": "its factor in the sum",
     },
@@ -105,6 +105,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "method": "node-to-segment methods are there for comparison only",
         "integration": "quadrature on segments",
         "offset": "added to the gap; negative: interference [length]",
+        "auto": "find the pairs: bodies whose facets face each other",
+        "bodies": "with auto: look at these bodies only; left out: all of them",
+        "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
     "IntegrationTable": {
