@@ -1,4 +1,4 @@
-# make demo | make test | make lint | make bench; `make build` puts the compiled core into src/ for work on the code.
+# make demo | make test | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -21,11 +21,15 @@ lint: .venv/installed-lint
 	$(BIN)/lint-imports
 	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp
 
+docs: .venv/installed-docs
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs build/docs
+	@echo "open build/docs/index.html"
+
 build:
 	$(BIN)/cmake -S . -B build/dev -DPython_EXECUTABLE=$(abspath $(BIN)/python) -DCMAKE_LIBRARY_OUTPUT_DIRECTORY=$(CURDIR)/src/abut/_core
 	$(BIN)/cmake --build build/dev
 
-.PHONY: demo test lint build bench
+.PHONY: demo test lint docs build bench
 
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py

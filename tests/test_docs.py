@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import abut
+from abut.cli import main
+from abut.job import load_job
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
@@ -89,3 +95,39 @@ def test_links_lead_somewhere(document: Path) -> None:
         target = document.parent / path if path else document
         assert target.exists(), link
         assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.parametrize("page", ["api.md"])
+def test_python_on_pages_runs(page: str) -> None:
+    """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    scope: dict = {}
+    exec(code, scope)
+    assert scope["operator"].shape == (4, 3 * 8)
+    assert np.abs(scope["operator"] @ np.tile([0.3, -0.2, 0.7], 8)).max() < 1e-14
+    assert np.abs(scope["gap"]).max() < 1e-14
+
+
+def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its job, with P1 and with P0: contact forces, and the verdicts on stability."""
+    tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")
+    job = (ROOT / "examples" / "two-blocks" / "job.toml").read_text(encoding="utf-8")
+    for name, text in (("p1", job), ("p0", job.rstrip() + '\npressure = "P0"\n')):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(text)
+        assert main(["run", str(path)]) == 0
+        (force,) = (line for line in capsys.readouterr().out.splitlines() if "force on the contactor" in line)
+        assert force.partition(", largest penetration")[0] in tour
+        assert main(["infsup", str(path), "--levels", "2"]) == (name == "p0")
+        for line in capsys.readouterr().out.splitlines():
+            assert line in tour
+
+
+def test_the_checkerboard_of_the_tour() -> None:
+    """P0 on linear cells: what the tour shows, facet by facet."""
+    model = load_job(ROOT / "examples" / "two-blocks" / "job.toml").model
+    result = abut.solve(replace(model, contacts=[replace(model.contacts[0], pressure="P0")])).contacts[0]
+    x = np.array([result.contactor.points[own[own >= 0]].mean(axis=0) for own in result.contactor.nodes])
+    rows = result.pressure[np.lexsort((x[:, 0], x[:, 1])), 0].reshape(5, 5)
+    assert "\n".join(" ".join(f"{p:3.0f}" for p in row) for row in rows) in (ROOT / "docs" / "tour.md").read_text()

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from abut.cli import main
+from abut.job import json_schema
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "two-blocks" / "job.toml"
 TEXT = EXAMPLE.read_text()
@@ -108,8 +109,6 @@ def test_no_convergence_writes_the_last_state_and_names_facets(
 
 def test_committed_schema_is_current() -> None:
     """docs/job.schema.json is what editors point to: renew it with `abut schema --output docs/job.schema.json`."""
-    from abut.job import json_schema
-
     committed = json.loads((EXAMPLE.parents[2] / "docs" / "job.schema.json").read_text())
     assert committed == json_schema()
 
@@ -166,6 +165,14 @@ def test_output_directory_in_the_way(tmp_path: Path, capsys: pytest.CaptureFixtu
     status, error = run(tmp_path, TEXT, capsys)
     assert status == 2
     assert "cannot create the output directory" in error
+
+
+def test_every_key_has_a_meaning() -> None:
+    """The reference page and editors show it: a new key comes with a line in abut/job/meanings.py."""
+    schema = json_schema()
+    tables = {"JobFile": schema, **schema["$defs"]}
+    entries = {(name, key): entry for name, table in tables.items() for key, entry in table["properties"].items()}
+    assert [place for place, entry in entries.items() if len(entry.get("description", "")) < 10] == []
 
 
 def test_schema_lists_all_tables(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,7 @@ import abut
 from abut.discretization.pairs import pairs
 from abut.discretization.supports import supports
 from abut.mesh.make import box, join
+from abut.solvers import iterative
 from abut.solvers.fractional import inverse_root
 from abut.solvers.schur import interfaces, schur_inverse
 
@@ -131,6 +132,17 @@ def test_units_beyond_single_precision() -> None:
     assert "multigrid" in found.solver
     expected = abut.solve(model).contacts[0].max_pressure * 1e50 / STEEL.young
     assert found.contacts[0].max_pressure == pytest.approx(expected, rel=AGREE)
+
+
+def test_falls_back_on_the_direct_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One iteration meets no tolerance here: the direct solver takes over, with its answer and a note that says so."""
+    monkeypatch.setattr(iterative, "RESTART", 1)
+    monkeypatch.setattr(iterative, "CYCLES", 1)
+    fallen, direct = both(blocks(6))
+    assert fallen.solver == direct.solver
+    (note,) = (note for note in fallen.notes if iterative.FAILED in note)
+    assert note == f"step 1: {iterative.FAILED}: going on with the direct solver"
+    assert fallen.contacts[0].pressure == pytest.approx(direct.contacts[0].pressure, rel=1e-12, nan_ok=True)
 
 
 def test_constraint_function_is_refused() -> None:

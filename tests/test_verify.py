@@ -107,6 +107,19 @@ def test_levels_and_rate(capsys: pytest.CaptureFixture[str]) -> None:
     assert own["values"] == pytest.approx(errors, rel=1e-2)
 
 
+def test_rate_without_a_reference_rate(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of any benchmark with two levels: errors 1/2, 1/8, 1/32 fall with h^2; those of rounding have no rate."""
+    falling = record(lambda level: 2.0 + 0.25**level, Reference(2.0, 0.2, "a book", "none"))
+    exact = record(lambda level: 2.0, Reference(2.0, 0.2, "a book", "none"))
+    for benchmark, last in ((falling, "2.00"), (exact, "-")):
+        monkeypatch.setitem(BENCHMARKS, "told", benchmark)
+        status, out, _ = command(capsys, "verify", "told", "--levels", 3)
+        assert status == 0
+        (line,) = [row for row in out.splitlines() if row.startswith("pass")]
+        assert line.split()[-1] == last
+    assert command(capsys, "verify", "told", "--levels", 1)[1].splitlines()[1].split()[-1] == "2.0e-01"
+
+
 def test_plot_needs_matplotlib(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -138,7 +151,17 @@ def test_outcomes() -> None:
     (outcome,) = run(record(lambda level: 2.0 + 0.5**level, Reference(2.0, 0.2, "s", "r")))
     assert outcome.error == pytest.approx(0.125)
     assert outcome.passed
-    assert outcome.rate is None
+    assert outcome.errors == pytest.approx((0.5, 0.25, 0.125))
+    assert outcome.rate == pytest.approx(1.0)  # fitted without a reference rate, too, which it then cannot fail
+    (slow,) = run(record(lambda level: 2.1, Reference(2.0, 0.2, "s", "r")))
+    assert slow.rate == pytest.approx(0.0, abs=1e-12)
+    assert slow.passed
+    for rate in (None, 2.0):  # errors of rounding follow no power, and are no reason to fail
+        (exact,) = run(record(lambda level: 2.0 + 1e-11 * level, Reference(2.0, 0.2, "s", "r", rate)))
+        assert exact.rate is None
+        assert exact.passed
+    (gap,) = run(record(lambda level: [0.1, float("nan"), 0.01][level], Reference(0.0, 1.0, "s", "r", 1.0)))
+    assert not gap.passed
     assert not run(record(lambda level: 2.5, Reference(2.0, 0.2, "s", "r")))[0].passed
     assert not run(record(lambda level: float("nan"), Reference(2.0, 0.2, "s", "r")))[0].passed
     for order, passed in ((2.0, True), (1.95, True), (1.8, False), (3.0, True)):

@@ -11,7 +11,7 @@ PAGE = DOCS / "verification" / "benchmarks.md"
 def row(outcome: Outcome) -> list[str]:
     """One quantity in the columns of the page."""
     reference, title = outcome.reference, BENCHMARKS[outcome.benchmark].title
-    rate = "" if outcome.rate is None else f"{outcome.rate:.2f} ({reference.rate:g})"
+    rate = "" if outcome.rate is None or reference.rate is None else f"{outcome.rate:.2f} ({reference.rate:g})"
     value = f"{outcome.values[-1]:.6g}" if reference.value else ""
     wanted = f"{reference.value:.6g}" if reference.value else "0"
     return [

@@ -223,6 +223,7 @@ class Model:
 
     @property
     def dim(self) -> int:
+        """2 or 3, the mesh's."""
         return int(self.mesh.points.shape[1])
 
     def _check_plane(self) -> None:

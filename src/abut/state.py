@@ -46,6 +46,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
+        """Whether the value is within its limit; what is no number is not."""
         return self.value <= self.limit
 
 
@@ -124,6 +125,7 @@ class Solution:
 
     @property
     def converged(self) -> bool:
+        """Whether every step met its tolerances."""
         return all(step.converged for step in self.steps)
 
     @property

@@ -31,8 +31,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
                 residual: float) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
-    values: (9 n_facets,) facet-wise pressure coefficients; nodal: (n_facets, 9) pressure at the facets' nodes;
-    penetration: largest, a length; residual: of the contact law, relative to the largest pressure.
+    values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
+    nodal: (n_facets, 9) pressure at the facets' nodes; penetration: largest, a length;
+    residual: of the contact law, relative to the largest pressure.
     """
     name = pair.contact.name
     largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), 1e-300)
@@ -41,9 +42,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     def add(what: str, value: float, limit: float, meaning: str) -> None:
         checks.append(Check(name, what, float(value), limit, meaning))
 
+    force, moment = balance(pair, values)
+    add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
     if not pair.tied:
-        force, moment = balance(pair, values)
-        add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
         add("moment balance", moment, BALANCE, "the same of moments, over force times extent")
         add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
@@ -68,8 +69,10 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
 
 
 def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
-    """Relative errors of force and moment between the two sides, from their nodal forces under the facet-wise pressure
-    coefficients ``values`` (9 n_facets,)."""
+    """Relative errors of force and moment between the two sides, from their nodal forces under the facet-wise coefficients
+    ``values`` of the pressure (9 n_facets,) or of a tie's traction (9 n_facets, dim).
+
+    Moments of ties on curved surfaces do not balance: tangential traction acts at two distances from the axis."""
     dim, axisymmetric = pair.contactor.dim, pair.contactor.axisymmetric
     sides = []
     for surface, part in ((pair.contactor, pair.coupling.contactor_part), (pair.target, pair.coupling.target_part)):

@@ -82,18 +82,19 @@ def _contact(
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
-    force = _contactor_force(pair, pressure)
+    values = _traction(pair, pressure) if pair.tied else pair.space.transfer @ pressure
+    force = np.asarray(coupling.contactor_part.T @ values)
     weight = pair.scale * pair.stiffness
     if pair.tied:
-        values = _normal_traction(pair, pressure)
-        gaps = np.zeros_like(values)
+        normal = _compression(pair, values)
+        gaps = np.zeros_like(normal)
         area, depth = float(coupling.covered.sum()), 0.0
     else:
-        values = pair.space.transfer @ pressure
+        normal = values
         gaps = pair.space.transfer @ (gap / weight)
         area, depth = float(weight[active].sum()), float((-gap / weight).max(initial=0.0))
     covered = coupling.segments > 0
-    nodal = facet_node_values(pair.contactor, degree, values)
+    nodal = facet_node_values(pair.contactor, degree, normal)
     return ContactResult(
         name=pair.contact.name,
         contactor=pair.contactor,
@@ -110,28 +111,21 @@ def _contact(
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, values),
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, normal),
         checks=certificate(pair, values, nodal, max(depth, 0.0), residual),
     )
 
 
-def _contactor_force(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Nodal forces on the contactor alone, (dim n_points,)."""
-    dim = pair.contactor.dim
-    if not pair.tied:
-        return np.asarray(pair.coupling.contactor_part.T @ (pair.space.transfer @ pressure))
-    force = np.zeros(pair.contactor.points.shape)
-    for a in range(dim):
-        own = pair.space.node == a
-        force[:, a] = pair.coupling.contactor_part.T @ (pair.space.transfer[:, own] @ pressure[own])
-    return force.ravel()
-
-
-def _normal_traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Normal part of the tie traction, facet-wise coefficients, compression positive."""
-    normals = nodal_normals(pair.contactor).reshape(-1, pair.contactor.dim)
-    total = np.zeros(len(normals))
+def _traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Traction of a tie on the contactor by components, facet-wise coefficients (9 n_facets, dim)."""
+    traction = np.zeros((pair.space.transfer.shape[0], pair.contactor.dim))
     for a in range(pair.contactor.dim):
         own = pair.space.node == a
-        total -= normals[:, a] * (pair.space.transfer[:, own] @ pressure[own])
-    return total
+        traction[:, a] = pair.space.transfer[:, own] @ pressure[own]
+    return traction
+
+
+def _compression(pair: Pair, traction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normal part of the tie traction, facet-wise coefficients, compression positive."""
+    normals = nodal_normals(pair.contactor).reshape(traction.shape)
+    return np.asarray(-np.einsum("ka,ka->k", normals, traction))

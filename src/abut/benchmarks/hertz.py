@@ -1,4 +1,10 @@
-"""Hertz's contacts: a cylinder on a block, a ball on a rigid plane (axisymmetric, and an octant in 3D)."""
+"""Hertz's contacts: a cylinder on a block, a ball on a rigid plane (axisymmetric, and an octant in 3D).
+
+NAFEMS R0094 also prints u_y = -1.3069 at the top of the cylinder, for linear elements. That is no record here: its load is
+a point load at the top of the whole cylinder (17.5 kN on the half model), under which u_y is singular: it grows with the
+logarithm of 1 / h, and what was printed belongs to one mesh. With a full disc: -1.85 at the top with the load spread over
+5 mm, -1.75 over 15 mm, -1.56 at the centre; at the contact point -1.276 (linear elements) and -1.280 (quadratic ones).
+"""
 
 from __future__ import annotations
 

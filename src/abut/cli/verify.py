@@ -105,7 +105,7 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 
 def _print_outcome(outcome: Outcome, width: int) -> None:
-    rate = "" if outcome.rate is None else f"{outcome.rate:.2f}"
+    rate = "" if len(outcome.values) < 2 else "-" if outcome.rate is None else f"{outcome.rate:.2f}"
     if outcome.rate is not None and outcome.reference.rate is not None:
         rate += f" (theory {outcome.reference.rate:g})"
     print(
@@ -132,16 +132,11 @@ def _plain(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _errors(outcome: Outcome) -> list[float]:
-    exact = outcome.reference.value
-    return [abs(value - exact) / (abs(exact) or 1.0) for value in outcome.values]
-
-
 def _text_plot(outcome: Outcome, columns: int = 60) -> None:
     """Errors by level as bars on a logarithmic scale."""
     import math
 
-    errors = _errors(outcome)
+    errors = outcome.errors
     exponents = [math.log10(max(error, 1e-17)) for error in errors]
     low, high = math.floor(min(exponents)), math.ceil(max(exponents))
     print(f"{outcome.benchmark} {outcome.quantity}: error by level, 1e{low} .. 1e{high}")
@@ -169,7 +164,7 @@ def _plot(outcomes: Sequence[Outcome], path: Path) -> None:
     for outcome in outcomes:
         sizes = [BENCHMARKS[outcome.benchmark].size(level) for level in range(len(outcome.values))]
         rate = "" if outcome.rate is None else f", rate {outcome.rate:.2f}"
-        axes.loglog(sizes, _errors(outcome), "o-", label=f"{outcome.benchmark} {outcome.quantity}{rate}")
+        axes.loglog(sizes, outcome.errors, "o-", label=f"{outcome.benchmark} {outcome.quantity}{rate}")
     axes.set_xlabel("mesh size")
     axes.set_ylabel("error")
     axes.grid(True, which="both", alpha=0.3)

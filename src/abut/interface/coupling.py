@@ -1,7 +1,7 @@
 """Coupling of a contact pair: int H_k N_j on contactor and target and the weighted gap, integrated on segments.
 
 The pressure functions here are facet by facet (discontinuous): row 9 f + k is function k of contactor facet f. The
-pressure spaces of ``abut.interface.pressure`` are combinations of these rows.
+pressure spaces of ``abut.interface.pressure`` are combinations of these rows. "The paper" is El-Abbasi and Bathe 2001.
 """
 
 from __future__ import annotations
@@ -55,6 +55,9 @@ class Coupling:
     contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
     gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
     covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
+    points: the integration points where they were asked for.
+    Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the whole turn), ``gap`` times
+    a length.
     """
 
     degree: int
@@ -70,7 +73,8 @@ class Coupling:
 
 
 def default_reach(contactor: Surface, target: Surface) -> float:
-    """How far apart two surfaces may lie and still be paired: two of the larger facets, or a tenth of the contactor."""
+    """How far apart two surfaces may lie and still be paired, a length: two of the larger facets, or a tenth of the
+    contactor."""
     extent = np.ptp(contactor.points[contactor.node_ids], axis=0)
     facet = max(facet_sizes(contactor).max(), facet_sizes(target).max())
     return float(max(2.0 * facet, 0.1 * np.linalg.norm(extent)))
@@ -90,9 +94,11 @@ def couple(
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
 
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
+    rule:   "gauss" or "newton-cotes".
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
+    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
     if contactor.dim != target.dim:

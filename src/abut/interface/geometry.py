@@ -34,7 +34,7 @@ def node_coordinates(kind: str) -> NDArray[np.float64]:
 
 
 def by_kind(surface: Surface) -> list[tuple[str, NDArray[np.int64]]]:
-    """The facet types present, each with its facet numbers."""
+    """The facet types present, each with its facet numbers (m,)."""
     return [(BY_CODE[code].name, np.flatnonzero(surface.kinds == code)) for code in np.unique(surface.kinds)]
 
 
@@ -55,7 +55,7 @@ def _nodes(surface: Surface, kind: str, facets: NDArray[np.int64]) -> NDArray[np
 
 
 def facet_sizes(surface: Surface) -> NDArray[np.float64]:
-    """Length of each facet: largest extent of its bounding box, (n_facets,)."""
+    """Length of each facet: largest extent of its bounding box, (n_facets,), in the unit of the coordinates."""
     x = surface.points[np.maximum(surface.nodes, 0)]
     padded = (surface.nodes < 0)[..., None]
     return (np.where(padded, -np.inf, x).max(axis=1) - np.where(padded, np.inf, x).min(axis=1)).max(axis=1)
@@ -119,7 +119,7 @@ def facet_measure(
 
 
 def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
-    """int H_k over the whole of each facet, (n_facets, 9), zero where padded."""
+    """int H_k over the whole of each facet, an area (2D: a length), (n_facets, 9), zero where padded."""
     moments = np.zeros((len(surface), MAX_FACET_NODES))
     for kind, facets in by_kind(surface):
         xi, weights = gauss_rule(kind, 6)

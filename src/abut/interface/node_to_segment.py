@@ -28,7 +28,8 @@ def node_to_segment(contactor: Surface, target: Surface, reach: float | None = N
     """Couple every contactor node with the point of the target that its normal meets.
 
     Returns the coupling (entries of a node stand in the row of one of its facets) and the space of nodal pressures; nodes
-    that see no target within ``reach`` (a length) have no multiplier.
+    that see no target within ``reach`` (a length) have no multiplier. Shapes and units are those of ``couple``. It fails the
+    patch test wherever the meshes differ, and is here for comparison.
     """
     degree = surface_degree(contactor)
     row, node = facet_functions(contactor, degree)
@@ -83,7 +84,8 @@ def _rows(
 def feet(
     points: NDArray[np.float64], normals: NDArray[np.float64], target: Surface, reach: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """For each point the target facet met along its normal (-1: none), shape functions there (n, 9), and the gap."""
+    """For each point (n, dim) the target facet met along its normal (n, dim), -1 for none; shape functions there (n, 9); and
+    the gap (n,), a length. Facets farther than ``reach`` are not met."""
     sizes = facet_sizes(target)
     x = np.where((target.nodes >= 0)[..., None], target.points[np.maximum(target.nodes, 0)], np.nan)
     tree = cKDTree(np.nanmean(x, axis=1))

@@ -50,7 +50,11 @@ class PressureSpace:
 
 
 def resolve(name: str, contactor: Surface) -> tuple[str, int]:
-    """The space's name with "auto" resolved (continuous, of the displacement's order), and its degree."""
+    """The space's name with "auto" resolved (continuous, of the displacement's order), and its degree.
+
+    name: "auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous" or "dual".
+    Raises InputError for quadratic pressure on linear facets.
+    """
     highest = surface_degree(contactor)
     if name == "auto":
         name = f"P{highest}"
@@ -63,7 +67,11 @@ def resolve(name: str, contactor: Surface) -> tuple[str, int]:
 
 
 def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> PressureSpace:
-    """Build the space ``name`` (as from ``resolve``) on the covered part of the contactor."""
+    """Build the space ``name`` on the covered part of the contactor.
+
+    name: as from ``resolve``; coupling: of that contactor, with the degree from ``resolve``. Multipliers with hardly any
+    of their support covered follow a neighbour, theory (P5), (P6); those with none vanish.
+    """
     row, node = facet_functions(contactor, coupling.degree)
     rows = 9 * len(contactor)
     if name in ("P1", "P2", "dual"):
@@ -88,7 +96,10 @@ def reduce(
     space: PressureSpace, coupling: Coupling, keep: NDArray[np.bool_], exists: NDArray[np.bool_] | None = None
 ) -> PressureSpace:
     """Take multipliers out. One that shares a facet with a kept one follows the best supported of these (so that a
-    constant pressure stays in the space), theory (P6); the others vanish."""
+    constant pressure stays in the space), theory (P6); the others vanish.
+
+    keep: (n,) bool; exists: (n,) bool, which of those that go may follow a neighbour (left out: as ``space.merges``).
+    """
     n = len(space)
     if keep.all():
         return space
@@ -122,7 +133,7 @@ def reduce(
 
 
 def facet_functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Row and node of every facet-wise pressure function."""
+    """Row (9 facet + function) and point of every facet-wise pressure function, each (n_functions,)."""
     count = np.zeros(len(contactor), dtype=np.int64)
     for kind, facets in by_kind(contactor):
         count[facets] = function_count(kind, degree)

@@ -32,7 +32,9 @@ def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
 
 
 def rule_tables(rule: str) -> NDArray[np.float64]:
-    """Tables (4, count, width) of t, w_t, r, w_r for 1..count points; ``rule`` is "gauss" or "newton-cotes"."""
+    """Tables (4, count, width) of t, w_t, r, w_r on [0, 1] for 1..count points; ``rule`` is "gauss" or "newton-cotes".
+
+    w_r holds the factor r of the map that collapses a square into a triangle, theory (Q1), (Q2)."""
     make, count = (_newton_cotes, 9) if rule == "newton-cotes" else (_gauss, MAX_POINTS)
     tables = np.zeros((4, count, count))
     for n in range(1, count + 1):

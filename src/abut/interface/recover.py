@@ -14,7 +14,8 @@ from abut.mesh.surface import Surface
 
 
 def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Facet-wise coefficients (9 n_facets,) evaluated at every node of each facet, (n_facets, 9), NaN where padded."""
+    """Facet-wise coefficients (9 n_facets,) evaluated at every node of each facet, (n_facets, 9), NaN where padded; in the
+    unit of the coefficients."""
     table = values.reshape(-1, 9)
     result = np.full(table.shape, np.nan)
     for kind, facets in by_kind(contactor):

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from abut.job.meanings import describe
 from abut.model import SolveOptions
 
 
@@ -127,5 +128,5 @@ class JobFile(Table):
 
 
 def json_schema() -> dict[str, Any]:
-    """The JSON Schema of a job file, for editors."""
-    return JobFile.model_json_schema(by_alias=True)
+    """The JSON Schema of a job file, for editors and the reference page, with the meaning of every key."""
+    return describe(JobFile.model_json_schema(by_alias=True), JobFile.__name__)

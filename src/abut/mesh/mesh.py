@@ -53,10 +53,12 @@ class Mesh:
 
     @property
     def dim(self) -> int:
+        """2 or 3, the length of a point."""
         return int(self.points.shape[1])
 
     @property
     def n_cells(self) -> int:
+        """Number of cells in all blocks."""
         return sum(len(block.nodes) for block in self.blocks)
 
     @property

@@ -30,6 +30,7 @@ class Surface:
 
     @property
     def dim(self) -> int:
+        """2 or 3, the length of a point; facets have one dimension less."""
         return int(self.points.shape[1])
 
     def around(self, points: NDArray[np.float64]) -> NDArray[np.float64]:

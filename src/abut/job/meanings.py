@@ -1,0 +1,138 @@
+"""What every key of a job file means, for the JSON Schema (editors show it) and the reference page.
+
+A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+ANYWHERE = {  # keys that mean the same in every table
+    "on": "name of the surface",
+    "amplitude": "pairs of time and factor; linear between them, constant outside; left out: the load step's time, 0 to 1",
+    "name": "your own name for it, used in messages and results",
+    "x": "displacement along x; left out: free [length]",
+    "y": "displacement along y; left out: free [length]",
+    "z": "displacement along z (3D only); left out: free [length]",
+}
+
+MEANINGS: dict[str, dict[str, str]] = {
+    "JobFile": {
+        "schema": "version of this format, always 1",
+        "mesh": "where the mesh comes from: a file, or bodies made by abut",
+        "model": "what kind of model it is",
+        "materials": "materials by name",
+        "solids": "which body is made of what",
+        "supports": "prescribed displacements",
+        "loads": "pressures, tractions, forces and the like; each has a kind",
+        "contacts": "pairs of surfaces that may touch, or are tied",
+        "equations": "linear equations between displacements",
+        "rigid": "bodies that move as a whole",
+        "solve": "load steps, linear solver, iterations",
+        "output": "where the results go",
+    },
+    "MeshTable": {
+        "file": "mesh file beside the job file (.msh, .vtu)",
+        "bodies": "bodies that abut meshes itself, by name",
+    },
+    "BodyTable": {"kind": "the generator; the further keys are its arguments"},
+    "ModelTable": {"plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)"},
+    "MaterialTable": {
+        "kind": "the material law",
+        "young": "Young's modulus, > 0 [force/length^2]",
+        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "density": "mass per volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "SolidTable": {
+        "body": "name of the body in the mesh",
+        "material": "name of the material",
+        "temperature": "uniform change of temperature that strains the body [temperature]",
+        "integration": "how elements integrate their stiffness",
+    },
+    "SupportTable": {
+        "on": "name of the surface or node set",
+        "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
+    },
+    "PressureTable": {"kind": "pressure on a surface", "value": "positive into the body [force/length^2]"},
+    "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
+    "ForceTable": {
+        "kind": "total force, spread evenly over a surface",
+        "value": "vector; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+    },
+    "GravityTable": {
+        "kind": "acceleration that acts on the density",
+        "value": "vector [length/time^2]",
+        "on": "name of the body; left out: all bodies",
+    },
+    "NodalForceTable": {
+        "kind": "the same force at each node of a set",
+        "on": "name of the node set or surface",
+        "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+    },
+    "TemperatureTable": {
+        "kind": "change of temperature, which strains bodies by their expansion",
+        "on": "name of the node set or body",
+        "value": "change at the nodes, adds to that of the solid [temperature]",
+    },
+    "EquationTable": {
+        "terms": "terms of the sum that is prescribed",
+        "value": "what the sum of coefficient times displacement equals [length]",
+    },
+    "TermTable": {
+        "on": "node set of one node, or a point's number",
+        "component": "axis of the displacement",
+        "coefficient": "its factor in the sum",
+    },
+    "RigidTable": {
+        "body": "name of the body in the mesh; it needs no solid",
+        "reference": "point that translations and moments refer to; left out: the body's centre [length]",
+        "x": "translation of the reference point along x; left out: free [length]",
+        "y": "translation of the reference point along y; left out: free [length]",
+        "z": "translation of the reference point along z; left out: free [length]",
+        "rx": "small rotation about x; left out: free [radian]",
+        "ry": "small rotation about y; left out: free [radian]",
+        "rz": "small rotation about z (in 2D the only one); left out: free [radian]",
+    },
+    "ContactTable": {
+        "name": "your own name for it; left out: CONTACTOR-TARGET",
+        "contactor": "surface that carries the pressure; better the softer one, and not the finer one",
+        "target": "the surface opposite",
+        "kind": "contact without friction, or tied in all directions",
+        "pressure": "pressure space; auto is continuous of the displacement's order, which is stable",
+        "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
+        "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
+        "method": "node-to-segment methods are there for comparison only",
+        "integration": "quadrature on segments",
+        "offset": "added to the gap; negative: interference [length]",
+        "auto": "find the pairs: bodies whose facets face each other",
+        "bodies": "with auto: look at these bodies only; left out: all of them",
+        "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
+        "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
+    },
+    "IntegrationTable": {
+        "rule": "Gauss points, or Newton-Cotes points as in the paper",
+        "points": "points for each direction of a segment; auto: as many as make it exact",
+    },
+    "SolveTable": {
+        "steps": "load steps, equal parts of a linear ramp",
+        "times": "ends of the load steps, rising to 1, where they are unequal",
+        "linear": "linear solver; auto takes multigrid (amg) for large 3D models",
+        "max_iterations": "iterations allowed in a load step",
+    },
+    "OutputTable": {"directory": "folder of the results, beside the job file"},
+}
+
+
+def meaning(table: str, key: str) -> str:
+    """What ``key`` of ``table`` (the name of its record in ``abut.job.schema``) means; empty where nobody said."""
+    return MEANINGS.get(table, {}).get(key) or ANYWHERE.get(key, "")
+
+
+def describe(schema: dict[str, Any], root: str) -> dict[str, Any]:
+    """The JSON Schema with the meaning of every key as its description, in place; ``root``: name of the whole record."""
+    for name, table in {root: schema, **schema["$defs"]}.items():
+        for key, entry in table.get("properties", {}).items():
+            if text := meaning(name, key):
+                entry["description"] = text
+    return schema
