@@ -13,6 +13,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
 
 
 @dataclass(frozen=True)
@@ -101,14 +102,24 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+    spring: float | None = None  # largest force that holds motions without resistance; None where there are none
+    internal: float = 0.0  # largest nodal force of stresses
 
     @property
     def balance_error(self) -> float:
         """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self._largest_force)
+
+    @property
+    def regularisation(self) -> float | None:
+        """Force that holds motions without resistance over the largest force, nodal ones among them (loads may cancel)."""
+        return None if self.spring is None else self.spring / max(self._largest_force, self.internal)
+
+    @property
+    def _largest_force(self) -> float:
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
-        size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / size)
+        return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
 
 
 @dataclass(frozen=True)
@@ -139,7 +150,11 @@ class Solution:
             balance = Check(
                 "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the largest force"
             )
-            for check in (balance, *(c for contact in step.contacts for c in contact.checks)):
+            model = [balance]
+            if step.regularisation is not None:
+                model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
+                                   "force that holds motions without resistance, over the largest force"))  # fmt: skip
+            for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
                 if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
                     worst[key] = check

@@ -37,7 +37,8 @@ def step_result(
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    reaction = stiffness @ displacement - factor * load - contact_force
+    internal = stiffness @ displacement
+    reaction = internal - factor * load - contact_force
     nodal = displacement.reshape(-1, dim)
     temperatures = {solid.body: factor * solid.temperature for solid in model.solids}
     materials = {solid.body: solid.material for solid in model.solids}
@@ -70,6 +71,7 @@ def step_result(
         ),
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
+        internal=float(np.abs(internal).max(initial=0.0)),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import applied_load, strain_load
+from abut.analysis.regularisation import regularise
 from abut.analysis.results import step_result
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
@@ -57,8 +59,11 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     _describe(every, note)
     clock.mark("interface")
     held_by: Holding = holding(model.mesh, held, every)
-    held_by.check()
     reduced = held.reduce(full_stiffness)
+    loose = regularise(held_by.rigid, held_by.everything, held.free, reduced, [load])
+    for text in loose.notes:
+        note(text)
+    held_by, reduced = held_by.helped_by(loose.gram), loose.added_to(reduced)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
     system = System(
@@ -95,9 +100,12 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         state = outcome.unknowns
         outcome = solver.finish(outcome, factor)
         displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
+        spring = loose.force(outcome.unknowns.displacement) if len(loose) else None
+        displacement = loose.without_motions(displacement)
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor))
+        result = step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor)
+        steps.append(replace(result, spring=spring))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")

@@ -91,20 +91,34 @@ def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
 def describe(rigid: RigidModes, motions: NDArray[np.float64]) -> str:
     """Say which body moves and how, from the free motions (n_modes, n_free): a shift or turn along an axis if one of
     them is, else the first."""
-    size = np.linalg.norm(motions, axis=1)  # of each single mode's share in the free motions
-    pure = np.flatnonzero(size > 0.999)
-    motion = np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0]
+    pure = _pure(motions)
+    return _in_words(rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0])
+
+
+def each_motion(rigid: RigidModes, motions: NDArray[np.float64]) -> list[str]:
+    """The same of every one of the free motions: shifts and turns along axes first, then what is left of them."""
+    pure = np.eye(len(motions))[:, _pure(motions)]
+    rest, size, _ = np.linalg.svd(motions - pure @ (pure.T @ motions), full_matrices=False)
+    return [_in_words(rigid, motion) for motion in [*pure.T, *rest[:, size > 0.5].T]]
+
+
+def _pure(motions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Numbers of the single modes that are free."""
+    return np.flatnonzero(np.linalg.norm(motions, axis=1) > 0.999)
+
+
+def _in_words(rigid: RigidModes, motion: NDArray[np.float64]) -> str:
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
     own = parts[group]
+    bodies = "body " + " + ".join(f"'{name}'" for name in rigid.groups[group])
     if rigid.per_group == 1:
-        return "body " + " + ".join(f"'{name}'" for name in rigid.groups[group]) + " can shift along the axis y"
+        return f"{bodies} can shift along the axis y"
     dim = 2 if rigid.per_group == 3 else 3
     shift, turn = own[:dim], own[dim:]
-    bodies = " + ".join(f"'{name}'" for name in rigid.groups[group])
     if np.abs(shift).max() >= np.abs(turn).max():
-        return f"body {bodies} can shift along {_axis(shift)}"
-    return f"body {bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
+        return f"{bodies} can shift along {_axis(shift)}"
+    return f"{bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
 
 
 def _axis(vector: NDArray[np.float64]) -> str:
