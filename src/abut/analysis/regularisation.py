@@ -1,4 +1,4 @@
-"""Rigid motions that neither supports nor contact resist: held without a force where loads do no work on them, theory (V13)."""
+"""Rigid motions that nothing resists: held without a force where loads do no work on them, theory (V13)."""
 
 from __future__ import annotations
 
@@ -72,13 +72,13 @@ def regularise(
         size, worst = _work(rigid, groups, own, loads)
         if worst is not None:
             raise SingularModelError(
-                f"{describe(rigid, worst)} without resistance{_others(own)}: the loads push it that way, and neither supports "
-                f"nor contact hold it; {CURE}"
+                f"{describe(rigid, worst)} without resistance{_others(own)}: the loads push it that way, and "
+                f"neither supports nor contact hold it; {CURE}"
             )
         if size == 0.0 and len(groups) == 1 and own.shape[1] == rigid.per_group:
             raise SingularModelError(
-                f"{describe(rigid, own)} without resistance{_others(own)}: neither supports nor contact hold it, and nothing "
-                f"loads it; {CURE}"
+                f"{describe(rigid, own)} without resistance{_others(own)}: neither supports nor contact hold it, and "
+                f"nothing loads it; {CURE}"
             )
         notes += [
             f"{text}, on which the loads do no work: held at rest in the mean, without a force (regularisation)"
@@ -100,7 +100,7 @@ def _springs(
     columns = np.sort(scipy.linalg.qr(moved.T, mode="r", pivoting=True)[1][:m]).astype(np.int64)
     resisted = free.tocsc()[:, columns].T @ rigid.modes
     return Regularisation(
-        motions=scipy.linalg.qr(whole, mode="economic")[0],
+        motions=np.asarray(scipy.linalg.qr(whole, mode="economic")[0], dtype=np.float64),
         columns=columns,
         stiffness=np.asarray(stiffness.diagonal()[columns]),
         gram=np.asarray(resisted.T @ resisted) / m,
