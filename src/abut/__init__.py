@@ -8,6 +8,7 @@ from abut.errors import AbutError, ConvergenceError, InputError, SingularModelEr
 
 if TYPE_CHECKING:
     from abut.analysis import solve
+    from abut.facing import FoundContact, add_surfaces, find_contacts
     from abut.io.results import write
     from abut.mesh.mesh import Mesh
     from abut.model import (
@@ -30,7 +31,8 @@ __version__ = "0.1.0"
 
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
-    "LinearElastic": "abut.solids.materials", **dict.fromkeys(
+    "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
+    "find_contacts": "abut.facing", **dict.fromkeys(
         ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
          "Support", "Traction"),
         "abut.model",
@@ -38,9 +40,9 @@ _HOME = {
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration",
-    "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support",
-    "Traction", "solve", "write",
+    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "FoundContact", "Gravity", "InputError",
+    "Integration", "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution",
+    "SolveOptions", "Support", "Traction", "add_surfaces", "find_contacts", "solve", "write",
 ]  # fmt: skip
 
 

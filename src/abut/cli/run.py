@@ -39,6 +39,8 @@ def _run(arguments: argparse.Namespace) -> int:
     job = load_job(arguments.job)
     silent = arguments.quiet or arguments.json
     directory = arguments.output or job.directory
+    if not silent:
+        print(*job.notes, sep="\n", end="\n" if job.notes else "")
     solution = solve(job.model, None if silent else _Table())
     write(solution, directory)
     if arguments.json:

@@ -29,13 +29,14 @@ ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it
 class IntegrationPoints:
     """The integration points of all segments of a pair (n of them).
 
-    facet: (n,) contactor facet; weight: (n,) area; gap: (n,) geometric gap, length;
+    facet, target_facet: (n,) of contactor and target; weight: (n,) area; gap: (n,) geometric gap, length;
     normal: (n, dim) unit, from target to contactor: theory (F1);
     pressure: (n, 9 n_facets) values of the facet-wise pressure functions;
     gap_operator: (n, dim n_points), change of the gap by a displacement.
     """
 
     facet: NDArray[np.int64]
+    target_facet: NDArray[np.int64]
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     normal: NDArray[np.float64]
@@ -190,7 +191,10 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
         (raw["point_pressure"].ravel(), (np.repeat(np.arange(n), 9), columns.ravel())), shape=(n, 9 * len(contactor))
     )
     pressure.eliminate_zeros()
-    return IntegrationPoints(facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator)
+    target_facet = raw["point_target_facet"].astype(np.int64)
+    return IntegrationPoints(
+        facet, target_facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator
+    )
 
 
 def surface_degree(surface: Surface) -> int:

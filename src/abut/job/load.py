@@ -12,15 +12,14 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from abut.errors import InputError, nearest
+from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.schema import JobFile, MaterialTable, MeshTable
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
-    Contact,
     Force,
     Gravity,
-    Integration,
     Load,
     Model,
     Pressure,
@@ -43,12 +42,14 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 
 @dataclass(frozen=True)
 class Job:
-    """A loaded job: the model, where its results go, the file and its text."""
+    """A loaded job: the model, where its results go, the file and its text; what was found and chosen, in words."""
 
     model: Model
     directory: Path
     path: Path
     text: str
+    notes: tuple[str, ...] = ()
+    entries: tuple[int, ...] = ()  # which [[contacts]] each contact of the model comes from
 
 
 def load_job(path: str | Path, refine: int = 0) -> Job:
@@ -74,34 +75,30 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
     try:
-        model = _model(file, path.parent, refine)
+        model, resolved = _model(file, path.parent, refine)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    return Job(model, path.parent / file.output.directory, path, text)
+    return Job(model, path.parent / file.output.directory, path, text, resolved.notes, resolved.entries)
 
 
-def _model(file: JobFile, folder: Path, refine: int) -> Model:
+def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
         solids.append(Solid(s.body, materials[s.material], s.temperature))
-    return Model(
-        mesh=_mesh(file.mesh, folder, refine),
+    resolved = resolve_contacts(file.contacts, _mesh(file.mesh, folder, refine), solids)
+    model = Model(
+        mesh=resolved.mesh,
         plane=file.model.plane,
         solids=solids,
         supports=[Support(**s.model_dump()) for s in file.supports],
         loads=[_load(load) for load in file.loads],
-        contacts=[
-            Contact(
-                **{k: v for k, v in c.model_dump().items() if k != "integration"},
-                integration=Integration(**c.integration.model_dump()),
-            )
-            for c in file.contacts
-        ],
+        contacts=resolved.contacts,
         solve=SolveOptions(**file.solve.model_dump()),
     )
+    return model, resolved
 
 
 def _material(name: str, table: MaterialTable) -> LinearElastic:

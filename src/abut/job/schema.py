@@ -90,8 +90,11 @@ class IntegrationTable(Table):
 
 class ContactTable(Table):
     name: str = ""
-    contactor: str
-    target: str
+    contactor: str = ""
+    target: str = ""
+    auto: bool = False
+    bodies: list[str] | None = None
+    reach: Number | None = None
     kind: Literal["contact", "tied"] = "contact"
     pressure: Literal["auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual"] = "auto"
     law: Literal["complementarity", "constraint-function"] = "complementarity"

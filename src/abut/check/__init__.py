@@ -1,0 +1,1 @@
+"""abut check: what is wrong with a model, and the cure, before it is solved."""
