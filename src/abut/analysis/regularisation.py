@@ -82,7 +82,7 @@ def regularise(
             )
         notes += [
             f"{text}, on which the loads do no work: held at rest in the mean, without a force (regularisation)"
-            for text in each_motion(rigid, own)
+            for text, _ in each_motion(rigid, own)
         ]
     return _springs(rigid, motions, free, stiffness, tuple(notes))
 

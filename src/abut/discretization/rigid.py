@@ -95,11 +95,11 @@ def describe(rigid: RigidModes, motions: NDArray[np.float64]) -> str:
     return _in_words(rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0])
 
 
-def each_motion(rigid: RigidModes, motions: NDArray[np.float64]) -> list[str]:
-    """The same of every one of the free motions: shifts and turns along axes first, then what is left of them."""
+def each_motion(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
+    """Every one of the free motions in words, and itself (n_modes,): shifts and turns along axes first, then the rest."""
     pure = np.eye(len(motions))[:, _pure(motions)]
     rest, size, _ = np.linalg.svd(motions - pure @ (pure.T @ motions), full_matrices=False)
-    return [_in_words(rigid, motion) for motion in [*pure.T, *rest[:, size > 0.5].T]]
+    return [(_in_words(rigid, motion), motion) for motion in [*pure.T, *rest[:, size > 0.5].T]]
 
 
 def _pure(motions: NDArray[np.float64]) -> NDArray[np.int64]:

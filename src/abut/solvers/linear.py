@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.discretization.pairs import Pair
 from abut.mesh.mesh import Mesh
 from abut.solvers.active_set import Outcome, System
 from abut.solvers.condensed import condense
@@ -35,11 +36,16 @@ class Prepared:
 
 def choose(linear: str, system: System, mesh: Mesh) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do."""
+    return chosen(linear, len(system.load), system.pairs, mesh)
+
+
+def chosen(linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh) -> str:
+    """The same from the number of free displacements and the contact pairs."""
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
-    large = mesh.dim == 3 and len(system.load) >= LARGE[degree]
-    able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in system.pairs)
+    large = mesh.dim == 3 and n_free >= LARGE[degree]
+    able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 
