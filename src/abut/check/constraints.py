@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from abut.check.finding import Finding
 from abut.discretization.pairs import HELD, Pair
 from abut.discretization.supports import Supports
+from abut.errors import SingularModelError
 from abut.interface.geometry import nodal_normals
 from abut.model import Model
 
-MOST = 0.5  # share of the contactor's nodes: a symmetry plane across a contact holds fewer
+MOST, ALL = 0.5, 1.0 - 1e-9  # share of the contactor's nodes: a symmetry plane across a contact holds fewer
 
 
 def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
@@ -24,21 +25,21 @@ def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
         shares = [held.held_share(nodes, np.tile(axis, (len(nodes), 1))) > HELD for axis in np.eye(surface.dim)]
         part = max(float(share.mean()) for share in shares)
         taken = np.any(shares, axis=0)
-        does, cure = "the tie", "hold or tie these nodes, not both"
     else:
         taken = held.held_share(nodes, _normals(pair)[nodes]) > HELD
         part = float(taken.mean())
-        does, cure = "the contact", "take the contactor's nodes out of the support"
     if part <= MOST:
         return []
-    names = _holding(model, nodes[taken])
+    names, does = _holding(model, nodes[taken]), "the tie" if pair.tied else "the contact"
+    cure = f"remove {names}, or the tie" if pair.tied else f"remove {names}, or make the other side the contactor"
     return [
         Finding(
-            "warning",
+            "error" if pair.tied and part > ALL else "warning",
             where,
-            f"over-constrained: {names} and {does} hold the same {int(taken.sum())} of {len(nodes)} nodes of contactor "
-            f"'{pair.contact.contactor}', where the support wins and {does} acts on the target alone",
-            f"{cure}: take '{pair.contact.contactor}' out of {names}, or remove the {pair.contact.kind} pair",
+            f"over-constrained: {names} and {does} hold the same nodes, {int(taken.sum())} of {len(nodes)} of contactor "
+            f"'{pair.contact.contactor}', so that {does} acts on the target alone",
+            cure,
+            status=SingularModelError.exit_status,
         )
     ]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abut.check.constraints import constraints
 from abut.check.cost import cost
 from abut.check.finding import Finding, Motion, Report, from_error, in_order
-from abut.check.interface import interface, not_facing
+from abut.check.interface import MIXED, interface, not_facing
 from abut.check.motions import motions
 from abut.check.quality import quality
 from abut.check.sides import sides
@@ -18,13 +18,13 @@ from abut.model import Model
 
 def check(model: Model) -> Report:
     """Examine a model without solving it. What depends on something that is itself in error is left out."""
-    findings = [*quality(model.mesh), *units(model)]
+    findings, doubts = quality(model.mesh), units(model)
     shown: list[Motion] = []
     try:
         held = supports(model)
     except AbutError as error:
         findings.append(from_error(error, "supports"))
-        return Report(in_order(findings))
+        return Report(in_order([*findings, *doubts]))
     built, about = _pairs(model, held)
     findings += about
     try:
@@ -34,7 +34,9 @@ def check(model: Model) -> Report:
         findings.append(from_error(error, "loads"))
     if len(built) == len(model.contacts):
         findings += cost(model, held, built)
-    return Report(in_order(_once(findings)), tuple(shown))
+    if not any(MIXED in f.what for f in findings):  # one mistake, said once
+        findings += doubts
+    return Report(in_order(findings), tuple(shown))
 
 
 def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
@@ -50,17 +52,3 @@ def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
         built.append(own)
         findings += [*interface(model, own), *sides(model, own), *constraints(model, own, held)]
     return built, findings
-
-
-def _once(findings: list[Finding]) -> list[Finding]:
-    """Bodies of unlike size that do not meet are an error already; the warning of their sizes adds nothing."""
-    errors = [f.what for f in findings if f.severity == "error"]
-    return [
-        f
-        for f in findings
-        if not (
-            f.severity == "warning"
-            and any("meshed in metres" in what for what in errors)
-            and "meshed in metres" in f.what
-        )
-    ]

@@ -23,6 +23,7 @@ DEEP = 0.5  # overlap over facet size that is hardly meant
 FLAT = 1e-9  # spread of gaps over the facet size below which there is one
 MISSING = 0.02  # share of the contactor that sees the target's body, but not the target
 LITTLE = 0.5  # covered share of the contactor that is worth a word
+MIXED = "one seems to be meshed in metres, the other in millimetres"
 SAME_WAY, ACROSS = 0.5, -0.2  # cosine of the mean normals
 
 
@@ -39,7 +40,7 @@ def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
             "error",
             where,
             f"body '{small}' is {min(sizes):.3g} in size, '{large}' {max(sizes):.3g}, and they lie {distance:.3g} apart: "
-            "one seems to be meshed in metres, the other in millimetres",
+            + MIXED,
             f"scale the coordinates of '{small}' by 1000 (or those of '{large}' by 0.001)",
         )
     cosine = float(_mean_normal(contactor) @ _mean_normal(target))
@@ -86,10 +87,10 @@ def _right_side(model: Model, contact: Contact, found: list[FoundContact]) -> st
 
 def interface(model: Model, pair: Pair) -> list[Finding]:
     """Gaps as a histogram, deep overlaps, and what the contactor does not find opposite."""
-    return [*_gaps(pair), *_cover(model, pair)]
+    return [*_gaps(model, pair), *_cover(model, pair)]
 
 
-def _gaps(pair: Pair) -> list[Finding]:
+def _gaps(model: Model, pair: Pair) -> list[Finding]:
     contact = pair.contact
     where = f"contact '{contact.name}'"
     reach = default_reach(pair.contactor, pair.target)
@@ -110,6 +111,16 @@ def _gaps(pair: Pair) -> list[Finding]:
     ]
     if contact.kind == "tied":
         return findings
+    moved = _prescribed(model)
+    if moved is not None and least > moved:
+        findings.append(
+            Finding(
+                "warning",
+                where,
+                f"nothing closes the gap of {least:.3g}: there are no loads, and supports move by {moved:.3g} at most",
+                "check the unit of lengths, or move the bodies together",
+            )
+        )
     if -least > DEEP * pair.size:
         share = float(at.weight[gap < -DEEP * pair.size].sum() / at.weight.sum())
         findings.append(
@@ -122,6 +133,14 @@ def _gaps(pair: Pair) -> list[Finding]:
             )
         )
     return findings
+
+
+def _prescribed(model: Model) -> float | None:
+    """Largest prescribed displacement; None where something else may move the bodies too."""
+    values = [getattr(support, name) for support in model.supports for name in ("x", "y", "z", "normal")]
+    if model.loads or any(solid.temperature for solid in model.solids) or any(callable(v) for v in values):
+        return None
+    return max((abs(float(v)) for v in values if v is not None), default=0.0)
 
 
 def _bars(gap: NDArray[np.float64], area: NDArray[np.float64], flat: float) -> tuple[str, ...]:
@@ -155,7 +174,8 @@ def _cover(model: Model, pair: Pair) -> list[Finding]:
                 "warning",
                 where,
                 f"target '{pair.contact.target}' is too small: {possible - share:.0%} of contactor "
-                f"'{pair.contact.contactor}' lies opposite facets of body '{bodies[0]}' that do not belong to it, and would sink into them",
+                f"'{pair.contact.contactor}' lies opposite facets of body '{bodies[0]}' that do not "
+                "belong to it, and would sink into them",
                 f"add these facets to '{pair.contact.target}', or let auto = true find the pair",
                 status=DOUBTFUL,
             )

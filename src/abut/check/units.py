@@ -12,7 +12,7 @@ from abut.model import Force, Gravity, Model, Pressure, Traction
 
 UNLIKE = 300.0  # ratio of bodies' sizes that one would expect of metres beside millimetres, hardly of a design
 STIFF = 1e5  # ratio of Young's moduli: steel on rubber is 4e4
-STRAINED, UNSTRAINED = 0.05, 1e-13  # strain by a load alone
+STRAINED, UNSTRAINED = 0.05, 1e-8  # strain by a load alone that is too much, and hardly any
 FAR = 0.1  # prescribed displacement over the size of the body
 SOUND = {
     "metres": (9.0, 11.0, 20.0, 5e4),
@@ -80,10 +80,11 @@ def _loads(model: Model) -> list[Finding]:
         strain = size / min(young[body] for body in bodies)
         if STRAINED > strain > UNSTRAINED:
             continue
-        says = "far more than small strains allow" if strain > 1e-3 else "less than rounding errors"
+        large = strain >= STRAINED
+        says = "more than small strains allow" if large else "which is hardly anything"
         findings.append(
             Finding(
-                "warning",
+                "warning" if large else "advice",
                 f"loads[{i}] on '{load.on}'",
                 f"{size:.3g} per area strains body '{bodies[0]}' (Young's modulus {min(young[b] for b in bodies):.3g}) by "
                 f"about {strain:.0e}, {says}",

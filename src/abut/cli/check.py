@@ -67,8 +67,9 @@ def _print(report: Report, as_json: bool) -> None:
         print(f"{finding.severity:8s} {finding.line}")
         for line in finding.details:
             print(f"           {line}")
-    errors, warnings = report.count("error"), report.count("warning")
-    print(f"{errors} errors, {warnings} warnings, {report.count('advice')} pieces of advice")
+    counts = [(report.count(severity), severity) for severity in ("error", "warning", "advice")]
+    said = [f"{n} {severity}{'s' if n > 1 and severity != 'advice' else ''}" for n, severity in counts if n]
+    print(", ".join(said) or "nothing to mend")
 
 
 def _write_motions(directory: Path, job: Job, report: Report) -> None:
