@@ -109,15 +109,16 @@ class Step:
     def balance_error(self) -> float:
         """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self._largest_force)
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.largest_force)
 
     @property
     def regularisation(self) -> float | None:
         """Force that holds motions without resistance over the largest force, nodal ones among them (loads may cancel)."""
-        return None if self.spring is None else self.spring / max(self._largest_force, self.internal)
+        return None if self.spring is None else self.spring / max(self.largest_force, self.internal)
 
     @property
-    def _largest_force(self) -> float:
+    def largest_force(self) -> float:
+        """Largest component of any resultant."""
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
         return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
 

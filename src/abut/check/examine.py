@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from abut.check.constraints import constraints
 from abut.check.cost import cost
 from abut.check.finding import Finding, Motion, Report, from_error, in_order
@@ -13,6 +15,7 @@ from abut.check.units import units
 from abut.discretization.pairs import Pair, pair
 from abut.discretization.supports import Supports, supports
 from abut.errors import AbutError, InputError
+from abut.mesh.exterior import exterior
 from abut.model import Model
 
 
@@ -43,6 +46,7 @@ def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
     """The contact pairs that can be built, and findings on all of them."""
     built: list[Pair] = []
     findings: list[Finding] = []
+    outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
     for contact in model.contacts:
         try:
             own = pair(model, contact, held)
@@ -50,5 +54,5 @@ def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
             findings.append(not_facing(model, contact, error))
             continue
         built.append(own)
-        findings += [*interface(model, own), *sides(model, own), *constraints(model, own, held)]
+        findings += [*interface(model, own, outside), *sides(model, own), *constraints(model, own, held)]
     return built, findings

@@ -13,7 +13,6 @@ from abut.errors import AbutError
 from abut.facing import FoundContact, find_contacts
 from abut.interface.coupling import couple, default_reach
 from abut.interface.geometry import full_moments, nodal_normals
-from abut.mesh.exterior import exterior
 from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
@@ -85,9 +84,11 @@ def _right_side(model: Model, contact: Contact, found: list[FoundContact]) -> st
     return f"the surfaces that face each other are '{names[0]}' (contactor) and '{names[1]}' (target): use them"
 
 
-def interface(model: Model, pair: Pair) -> list[Finding]:
-    """Gaps as a histogram, deep overlaps, and what the contactor does not find opposite."""
-    return [*_gaps(model, pair), *_cover(model, pair)]
+def interface(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding]:
+    """Gaps as a histogram, deep overlaps, and what the contactor does not find opposite.
+
+    outside: (n, 2) the facets of ``abut.mesh.exterior.exterior``."""
+    return [*_gaps(model, pair), *_cover(model, pair, outside)]
 
 
 def _gaps(model: Model, pair: Pair) -> list[Finding]:
@@ -155,15 +156,14 @@ def _bars(gap: NDArray[np.float64], area: NDArray[np.float64], flat: float) -> t
     )
 
 
-def _cover(model: Model, pair: Pair) -> list[Finding]:
+def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding]:
     """A target is too small where the contactor sees facets of its body that do not belong to it."""
     where = f"contact '{pair.contact.name}'"
     covered, whole = pair.coupling.covered, full_moments(pair.contactor, 0)[:, 0]
     share = float(covered.sum() / whole.sum())
     bodies = bodies_at(model.mesh, pair.target.cells)
     cells = np.concatenate([model.mesh.bodies[body] for body in bodies])
-    rows = exterior(model.mesh)
-    around = model.mesh.facets(rows[np.isin(rows[:, 0], cells)], "outside of the target's body")
+    around = model.mesh.facets(outside[np.isin(outside[:, 0], cells)], "outside of the target's body")
     reach = default_reach(pair.contactor, pair.target)
     possible = float(
         np.minimum(couple(pair.contactor, around, 0, points=1, reach=reach).covered, whole).sum() / whole.sum()
