@@ -64,6 +64,24 @@ def test_two_blocks(gap: float) -> None:
     assert found.gap == pytest.approx((gap, gap), abs=1e-12)
 
 
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e3])
+def test_units_and_position_do_not_matter(scale: float) -> None:
+    """The same facets in any unit of length, turned and shifted."""
+    mesh = join(
+        {
+            "lower": box(x=(0, 10), y=(0, 10), z=(0, 10), cells=(6, 6, 3), cell="tet10"),
+            "upper": box(x=(2, 8), y=(2, 8), z=(10.3, 15), cells=(4, 4, 3), cell="hex20"),
+        }
+    )
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    moved = replace(mesh, points=np.ascontiguousarray(scale * (mesh.points @ turn.T + [3.0, -4.0, 50.0])))
+    (one,), (other,) = abut.find_contacts(mesh), abut.find_contacts(moved)
+    assert rows(one.contactor_facets) == rows(other.contactor_facets) == rows(mesh.surfaces["upper.bottom"])
+    assert rows(one.target_facets) == rows(other.target_facets)
+    assert other.gap == pytest.approx((0.3 * scale, 0.3 * scale), rel=1e-9)
+
+
 def test_reach_and_bodies() -> None:
     """Gaps beyond the reach do not count; bodies restrict the search."""
     mesh = stacked(0.5)
@@ -167,7 +185,8 @@ def test_hertz_found_by_itself() -> None:
 def test_auto_in_a_job(tmp_path: Path) -> None:
     """One note says what was chosen; written out, the job gives the same run to the last bit."""
     path, written = tmp_path / "job.toml", tmp_path / "pairs.toml"
-    path.write_text(AUTO.replace("auto = true", "auto = true\nreach = 1.0\nintegration = { points = 3 }"))
+    entry = "auto = true\nreach = 1.0\n[contacts.integration]\npoints = 3\n\n# what follows\n[solve]\nsteps = 2\n"
+    path.write_text(AUTO.replace("auto = true", entry))
     job = load_job(path)
     assert "'auto:upper-lower' (25 facets, contactor: finer) faces" in job.notes[0]
     write_pairs(job, written)
@@ -175,6 +194,7 @@ def test_auto_in_a_job(tmp_path: Path) -> None:
     assert 'contactor = "auto:upper-lower"' in text
     assert "auto = true" not in text
     assert "reach = 1.0" in text
+    assert "\n# what follows\n[solve]\n" in text
     again = load_job(written)
     assert again.model.contacts == job.model.contacts
     assert np.array_equal(abut.solve(again.model).displacement, abut.solve(job.model).displacement)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +43,7 @@ def _run(arguments: argparse.Namespace) -> int:
     if not silent:
         print(*job.notes, sep="\n", end="\n" if job.notes else "")
     solution = solve(job.model, None if silent else _Table())
+    solution = replace(solution, notes=(*job.notes, *solution.notes))
     write(solution, directory)
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))

@@ -17,7 +17,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-HEADER = re.compile(r"^\s*\[+\s*([^\]\s]+?)\s*\]+")
+HEADER = re.compile(r"^\s*\[\[?([^\[\],]+)\]\]?\s*(#.*)?$")
 
 
 def write_pairs(job: Job, path: Path) -> None:
@@ -27,7 +27,10 @@ def write_pairs(job: Job, path: Path) -> None:
     Raises InputError where nothing is found by itself, where entries are not written as [[contacts]], and where a mesh
     file named relative to the job would be another one at ``path``.
     """
-    data = tomllib.loads(job.text)
+    try:
+        data = tomllib.loads(job.text)
+    except tomllib.TOMLDecodeError:
+        raise InputError(f"{job.path}: --write-pairs: only job files (TOML) can be written out") from None
     entries = data.get("contacts", [])
     if not any(entry.get("auto") for entry in entries):
         raise InputError(f"{job.path}: --write-pairs: no [[contacts]] has auto = true: there is nothing to write out")
@@ -48,8 +51,10 @@ def write_pairs(job: Job, path: Path) -> None:
         number += name == "contacts"
         if not (name == "contacts" or name.startswith("contacts.")) or not entries[number].get("auto"):
             text.append(piece)
-        elif name == "contacts":
+            continue
+        if name == "contacts":
             text += [_entry(job, i, entries[number]) for i, own in enumerate(job.entries) if own == number]
+        text.append(_trailing(piece))
     write_text(path, "".join(text))
     written = load_job(path)
     if written.model.contacts != job.model.contacts:
@@ -62,18 +67,26 @@ def _pieces(text: str) -> list[tuple[str, str]]:
     for line in text.splitlines(keepends=True):
         header = HEADER.match(line)
         if header:
-            result.append((header.group(1).strip("[] "), line))
+            result.append((header.group(1).strip(), line))
         else:
             name, piece = result[-1]
             result[-1] = name, piece + line
     return result
 
 
+def _trailing(piece: str) -> str:
+    """Empty lines and comments at the end of a table: they speak of what follows."""
+    lines = piece.splitlines(keepends=True)
+    while lines and any(line.strip() and not line.lstrip().startswith("#") for line in lines):
+        del lines[0]
+    return "".join(lines)
+
+
 def _entry(job: Job, number: int, table: dict[str, Any]) -> str:
     contact = job.model.contacts[number]
     keys = {"name": contact.name, "contactor": contact.contactor, "target": contact.target}
     keys |= {key: value for key, value in table.items() if key not in ("auto", *keys)}
-    return "[[contacts]]\n" + "".join(f"{key} = {_value(value)}\n" for key, value in keys.items()) + "\n"
+    return "[[contacts]]\n" + "".join(f"{key} = {_value(value)}\n" for key, value in keys.items())
 
 
 def _value(value: Any) -> str:
