@@ -10,6 +10,7 @@ import pytest
 
 import abut
 from abut.errors import InputError
+from abut.facing.search import facing, outside
 from abut.job import load_job
 from abut.job.pairs import write_pairs
 from abut.mesh.exterior import exterior
@@ -131,6 +132,10 @@ def test_thin_plates_hide_what_is_behind_them() -> None:
             "c": rectangle(x=(0, 10), y=(5.3, 5.5), cells=(2, 1)),
         }
     )
+    every = outside(mesh, list(mesh.bodies))
+    seen = facing(every, None)
+    assert set(zip(every.body[seen.one].tolist(), every.body[seen.other].tolist())) == {(0, 1), (1, 2)}
+    assert np.abs(seen.gap).max() < 1e-12
     found = abut.find_contacts(mesh)
     assert {f.bodies for f in found} == {("thin", "a"), ("thin", "c")}
     assert all(len(f.contactor_facets) == 3 and len(f.target_facets) == 2 for f in found)
