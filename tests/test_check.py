@@ -172,6 +172,38 @@ def test_displacement_larger_than_the_body() -> None:
     assert "a displacement of 20 is 3.3 times the size of its body" in said(report, "warning")
 
 
+@pytest.mark.parametrize(("on", "force", "stands"), [("foot", 100, False), ("head", -100, True), ("arm", -100, False)])
+def test_loads_that_contact_cannot_balance(on: str, force: float, stands: bool) -> None:
+    """A block is pulled off; pressed above its foot it stands; pressed outside it tips over (the foot ends at x = 8, the
+    force acts at x = 10). No run converges where none can."""
+    upper = box(x=[2.0, 4.0, 6.0, 8.0, 12.0], y=(2, 8), z=(10, 15), cells=(4, 5, 3))
+    named = {}
+    for name, side, beyond in (("foot", "bottom", False), ("head", "top", False), ("arm", "top", True)):
+        facets = upper.surface(side)
+        x = facets.points[facets.nodes[:, :4], 0].mean(axis=1)
+        named[name] = upper.surfaces[side][(x > 8) == beyond]
+    lower = box(x=(0, 8), y=(0, 10), z=(0, 10), cells=(6, 6, 3))
+    model = abut.Model(
+        join({"lower": lower, "upper": replace(upper, surfaces=named)}),
+        [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
+        supports=[abut.Support("lower.bottom", x=0, y=0, z=0)],
+        loads=[abut.Force(f"upper.{on}", (0.0, 0.0, force))],
+        contacts=[abut.Contact("upper.foot", "lower.top")],
+    )
+    report = check(model)
+    if stands:
+        assert report.status == 0
+        assert abut.solve(model).converged
+        return
+    assert report.status == 4
+    assert "body 'upper' can shift along z: the loads pull it off its contact" in said(report, "error")
+    try:
+        converged = abut.solve(model).converged
+    except abut.SingularModelError:
+        converged = False
+    assert not converged
+
+
 def test_loose_motions_are_advice_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Three motions that contact holds and three that nothing does, each a field of the file."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader

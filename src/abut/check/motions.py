@@ -7,17 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.optimize import nnls
 
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import applied_load, strain_load
 from abut.analysis.regularisation import regularise
 from abut.check.finding import Finding, Motion, from_error
 from abut.discretization.pairs import Pair
-from abut.discretization.rigid import each_motion, free_motions
+from abut.discretization.rigid import describe, each_motion, free_motions
 from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 from abut.model import Model
 
+UNBALANCED = 1e-6  # load that pressures cannot balance, over all loads
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
 
 
@@ -43,17 +45,57 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
     shown += _motions(model, held_by, lost, "nothing")
     if complete:
         findings += _without_resistance(model, held_by, held)
+        if not any(finding.severity == "error" for finding in findings):
+            findings += _pulled_off(model, held_by, held, every)
     return findings, shown
 
 
+def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np.float64]) -> list[Finding]:
+    """An error where no pressures that push balance the loads on the motions (n_modes, m) that supports leave free."""
+    load = _load(model)
+    work = free.T @ (held_by.rigid.modes.T @ load)
+    if not len(work):
+        return []
+    push = [np.zeros((0, len(work)))]
+    moves = held_by.rigid.modes @ free
+    for pair in held_by.pairs:
+        if pair.points is not None:  # there the pressure is positive at points, its coefficients need not be
+            push.append(np.asarray(pair.points.operator @ (held.free.T @ moves)))
+            continue
+        moved = np.asarray(pair.rows @ moves)
+        push += [moved, -moved] if pair.tied else [moved]
+    forces = np.concatenate(push)
+    size = np.linalg.norm(forces, axis=1)
+    forces = forces[size > 0.0] / size[size > 0.0, None]
+    if not len(forces):
+        return []
+    pressure, missing = nnls(forces.T, -work)
+    if missing <= UNBALANCED * np.abs(load).sum():
+        return []
+    text = describe(held_by.rigid, (free @ (work + forces.T @ pressure))[:, None])
+    return [
+        Finding(
+            "error",
+            "bodies",
+            f"{text}: the loads pull it off its contact, which can only push",
+            "hold it by a support or turn the load round",
+            status=SingularModelError.exit_status,
+        )
+    ]
+
+
+def _load(model: Model) -> NDArray[np.float64]:
+    return applied_load(model) + strain_load(model)
+
+
 def _without_resistance(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
-    load = applied_load(model) + strain_load(model)
+    """An error, or the motions that need no holding."""
+    load = _load(model)
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
         loose = regularise(held_by.rigid, held_by.everything, held.free, unit, [load])
     except SingularModelError as error:
-        found = from_error(error, "bodies")
-        return [found]
+        return [from_error(error, "bodies")]
     return [
         Finding(
             "advice",
