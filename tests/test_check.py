@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 import abut
 from abut.check import Finding, Report, check
@@ -285,3 +287,39 @@ def test_estimate_of_memory_and_time() -> None:
         law = LAWS[3, solver, 1]
         assert 1 / 3 < law.time * n**law.time_power / seconds < 3
         assert 1 / 3 < (law.base + law.memory * n**law.memory_power) / megabytes < 3
+
+
+LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not line.startswith("#")]
+VALUES = [
+    "nan",
+    "-1",
+    "0",
+    "1e400",
+    '""',
+    '"lower.top"',
+    '"auto:upper-lower"',
+    "[]",
+    "[1, 2]",
+    "true",
+    "1e-320",
+    "1e10",
+]
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(line=st.sampled_from(LINES), value=st.sampled_from(VALUES), drop=st.booleans(), auto=st.booleans())
+def test_any_broken_line_ends_in_findings(
+    line: int, value: str, drop: bool, auto: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every line dropped, every value replaced by nonsense, with named and with found pairs: findings, never a bug."""
+    text = TEXT.replace('contactor = "upper.bottom"\ntarget = "lower.top"', "auto = true\n") if auto else TEXT
+    lines = text.splitlines()
+    if drop or "=" not in lines[line]:
+        del lines[line]
+    else:
+        lines[line] = f"{lines[line].split('=')[0]}= {value}"
+    (tmp_path / "job.toml").write_text("\n".join(lines))
+    status = main(["check", str(tmp_path / "job.toml")])
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    assert status in (0, 1, 2, 4), captured.out
