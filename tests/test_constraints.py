@@ -40,7 +40,8 @@ def test_elimination_spans_the_solutions(seed: int) -> None:
     rows = rng.standard_normal((12, 30)) * (rng.random((12, 30)) < 0.2)
     rows[8:] = rng.standard_normal((4, 8)) @ rows[:8]  # repeated
     y = rng.standard_normal((30, 2))
-    free, prescribed = eliminate(sp.csr_matrix(rows), rows @ y, [str(i) for i in range(12)])
+    done = eliminate(sp.csr_matrix(rows), rows @ y, [str(i) for i in range(12)])
+    free, prescribed = done.free, done.prescribed
     size = np.abs(rows).max()
     assert np.abs(rows @ free.toarray()).max() < 1e-11 * size
     assert np.abs(rows @ prescribed - rows @ y).max() < 1e-11 * size
@@ -49,13 +50,14 @@ def test_elimination_spans_the_solutions(seed: int) -> None:
 
 def test_elimination_follows_chains_and_names_contradictions() -> None:
     links = sp.csr_matrix(np.eye(6, 7) - np.eye(6, 7, 1))
-    free, prescribed = eliminate(links, np.arange(6.0)[:, None], list("abcdef"))
+    done = eliminate(links, np.arange(6.0)[:, None], list("abcdef"))
+    free, prescribed = done.free, done.prescribed
     assert free.shape == (7, 1)
     assert np.ptp(free.toarray()) == 0.0
     assert np.abs(links @ prescribed - np.arange(6.0)[:, None]).max() < 1e-14
     around = sp.vstack([links, sp.csr_matrix(np.eye(7)[:1] - np.eye(7)[2:3])])
     eliminate(around, np.append(np.arange(6.0), 1.0)[:, None], list("abcdefg"))  # 0 + 1 = 1: repeated
-    with pytest.raises(SingularModelError, match="^a, b, g contradict each other"):
+    with pytest.raises(SingularModelError, match=r"^a, b, g contradict"):
         eliminate(around, np.append(np.arange(6.0), 1.1)[:, None], list("abcdefg"))
 
 
@@ -81,6 +83,7 @@ def test_an_end_moved_through_one_node() -> None:
     ours, theirs = abut.solve(moved).steps[-1], abut.solve(whole).steps[-1]
     assert np.abs(ours.displacement - theirs.displacement).max() < EXACT * 0.01
     assert ours.reactions["bar.left"] == pytest.approx(theirs.reactions["bar.left"], rel=EXACT)
+    assert ours.reactions["handle"][0] == pytest.approx(theirs.reactions["bar.right"][0], rel=EXACT)
     assert np.abs(ours.reaction).max() < EXACT * abs(ours.reactions["bar.left"][0])
 
 
@@ -293,7 +296,7 @@ def test_a_rigid_plate_in_space(tool_carries: bool) -> None:
     tool_result = step.rigid["tool"]
     turned = step.displacement[mesh.nodes_of("tool")]
     arm = mesh.points[mesh.nodes_of("tool")] - [0.5, 0.5, 0.0]
-    expected = np.cross(np.broadcast_to([turn, 0, 0], arm.shape), arm) + [0.0, 0.0, -depth]
+    expected = np.array([0.0, 0.0, -depth]) + np.cross(np.broadcast_to([turn, 0, 0], arm.shape), arm)
     assert np.abs(turned - expected).max() < 1e-15
     assert tool_result.rotation == pytest.approx([turn, 0.0, 0.0], abs=1e-14)
     # The mean displacement of the block's top is -d, so that by Betti's theorem (uniform compression) the force is E d / H.
@@ -325,7 +328,7 @@ def test_a_rigid_tool_free_in_space() -> None:
 
 def test_an_axisymmetric_rigid_punch() -> None:
     """Free along the axis, pushed by F: the pressure carries F; far from its edge Sneddon's p(0) = F / (2 pi a^2)."""
-    block = rectangle((0, 8), (-8, 0), (48, 24), "quad8")
+    block = rectangle((0, 4), (-4, 0), (48, 24), "quad8")
     punch = rectangle((0, 1), (0, 1), (2, 1), "quad4")
     mesh = join({"block": block, "punch": punch})
     model = abut.Model(
@@ -339,7 +342,9 @@ def test_an_axisymmetric_rigid_punch() -> None:
     contact = step.contacts[0]
     x = contact.contactor.points[np.maximum(contact.contactor.nodes, 0), 0]
     centre = contact.pressure[(x == 0.0) & (contact.contactor.nodes >= 0)]
-    assert centre == pytest.approx(5.0 / (2 * np.pi), rel=0.05)  # six facets across the radius, a block 8 radii deep
+    assert centre == pytest.approx(
+        5.0 / (2 * np.pi), rel=0.05
+    )  # twelve facets across the radius, a block of finite depth
 
 
 def test_supports_on_a_rigid_body() -> None:
@@ -349,9 +354,9 @@ def test_supports_on_a_rigid_body() -> None:
     by_support = replace(model, supports=[*model.supports, abut.Support("tool.top", x=0, y=-0.01)])
     step = abut.solve(by_support).steps[-1]
     assert np.abs(step.displacement - by_components.displacement).max() < EXACT * 0.01
-    assert step.reactions["tool.top"] == pytest.approx([0.0, 0.0], abs=1e-30) or True
-    with pytest.raises(SingularModelError, match="rigid body 'tool', support on 'tool.top' contradict each other"):
-        twice = pressed(**DOWN)
+    assert step.reactions["tool.top"] == pytest.approx(by_components.rigid["tool"].force, rel=EXACT, abs=1e-9)
+    twice = pressed(**DOWN)
+    with pytest.raises(SingularModelError, match=r"rigid body 'tool', support on 'tool\.top' contradict"):
         abut.solve(replace(twice, supports=[*twice.supports, abut.Support("tool.top", y=-0.02)]))
 
 
