@@ -12,16 +12,22 @@ if TYPE_CHECKING:
     from abut.io.results import write
     from abut.mesh.mesh import Mesh
     from abut.model import (
+        Amplitude,
         BodyForce,
         Contact,
+        Equation,
         Force,
         Gravity,
         Integration,
         Model,
+        NodalForce,
         Pressure,
+        Rigid,
         Solid,
         SolveOptions,
         Support,
+        Temperature,
+        Term,
         Traction,
     )
     from abut.solids.materials import LinearElastic
@@ -33,16 +39,17 @@ _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
     "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
     "find_contacts": "abut.facing", **dict.fromkeys(
-        ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
-         "Support", "Traction"),
+        ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
+         "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
         "abut.model",
     ),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "FoundContact", "Gravity", "InputError",
-    "Integration", "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution",
-    "SolveOptions", "Support", "Traction", "add_surfaces", "find_contacts", "solve", "write",
+    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
+    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Rigid",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "add_surfaces", "find_contacts", "solve", "write",
 ]  # fmt: skip
 
 

@@ -69,7 +69,7 @@ class Holding:
 def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
     """Work out what holds the bodies of a mesh."""
     rigid = rigid_modes(mesh)
-    return _holding(rigid, resistance_of_supports(rigid, held.free), pairs)
+    return _holding(rigid, resistance_of_supports(rigid, held), pairs)
 
 
 def _holding(rigid: RigidModes, support: NDArray[np.float64], pairs: Sequence[Pair]) -> Holding:

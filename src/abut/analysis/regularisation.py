@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.discretization.rigid import RigidModes, describe, each_motion, free_motions
+from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
@@ -56,13 +57,13 @@ class Regularisation:
 def regularise(
     rigid: RigidModes,
     resistances: Sequence[NDArray[np.float64]],
-    free: Any,
+    held: Supports,
     stiffness: Any,
     loads: Sequence[NDArray[np.float64]],
 ) -> Regularisation:
     """Hold the rigid motions that nothing resists, where that takes no force.
 
-    resistances: Gram matrices of supports and all contact, closed; free: (dim n_points, n_free) change of variables;
+    resistances: Gram matrices of supports and all contact, closed; held: the change of variables;
     stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step.
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
@@ -84,11 +85,11 @@ def regularise(
             f"{text}, on which the loads do no work: held at rest in the mean, without a force (regularisation)"
             for text, _ in each_motion(rigid, own)
         ]
-    return _springs(rigid, motions, free, stiffness, tuple(notes))
+    return _springs(rigid, motions, held, stiffness, tuple(notes))
 
 
 def _springs(
-    rigid: RigidModes, motions: NDArray[np.float64], free: Any, stiffness: Any, notes: tuple[str, ...]
+    rigid: RigidModes, motions: NDArray[np.float64], held: Supports, stiffness: Any, notes: tuple[str, ...]
 ) -> Regularisation:
     m = motions.shape[1]
     if not m:
@@ -96,9 +97,9 @@ def _springs(
         gram = np.zeros((rigid.modes.shape[1],) * 2)
         return Regularisation(np.zeros((len(rigid.modes), 0)), none.astype(np.int64), none, gram)
     whole = rigid.modes @ motions
-    moved = free.T @ whole
+    moved = held.coordinates(whole)
     columns = np.sort(scipy.linalg.qr(moved.T, mode="r", pivoting=True)[1][:m]).astype(np.int64)
-    resisted = free.tocsc()[:, columns].T @ rigid.modes
+    resisted = held.coordinates(rigid.modes)[columns]
     return Regularisation(
         motions=np.asarray(scipy.linalg.qr(whole, mode="economic")[0], dtype=np.float64),
         columns=columns,

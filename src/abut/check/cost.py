@@ -42,7 +42,7 @@ LAWS = {  # by dimension, solver and degree of the cells
 def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
     """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
     n = int(held.free.shape[1])
-    solver = chosen(model.solve.linear, n, pairs, model.mesh)
+    solver = chosen(model.solve.linear, n, pairs, model.mesh, held.coupled)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     law = LAWS[model.dim, "direct" if model.dim == 2 else solver, degree]
     seconds, megabytes = law.time * n**law.time_power, law.base + law.memory * n**law.memory_power

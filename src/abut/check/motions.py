@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from abut.analysis.holding import Holding, holding
-from abut.analysis.loads import applied_load, strain_load
+from abut.analysis.loads import loads
 from abut.analysis.regularisation import regularise
 from abut.check.finding import Finding, Motion, from_error
 from abut.discretization.pairs import Pair
@@ -52,7 +52,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
 
 def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np.float64]) -> list[Finding]:
     """An error where no pressures that push balance the loads on the motions (n_modes, m) that supports leave free."""
-    load = _load(model)
+    load = loads(model).at_ends(model)[-1]
     work = free.T @ (held_by.rigid.modes.T @ load)
     if not len(work):
         return []
@@ -60,7 +60,7 @@ def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np
     moves = held_by.rigid.modes @ free
     for pair in held_by.pairs:
         if pair.points is not None:  # there the pressure is positive at points, its coefficients need not be
-            push.append(np.asarray(pair.points.operator @ (held.free.T @ moves)))
+            push.append(np.asarray(pair.points.operator @ held.coordinates(moves)))
             continue
         moved = np.asarray(pair.rows @ moves)
         push += [moved, -moved] if pair.tied else [moved]
@@ -84,16 +84,11 @@ def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np
     ]
 
 
-def _load(model: Model) -> NDArray[np.float64]:
-    return applied_load(model) + strain_load(model)
-
-
 def _without_resistance(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
     """An error, or the motions that need no holding."""
-    load = _load(model)
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
-        loose = regularise(held_by.rigid, held_by.everything, held.free, unit, [load])
+        loose = regularise(held_by.rigid, held_by.everything, held, unit, loads(model).at_ends(model))
     except SingularModelError as error:
         return [from_error(error, "bodies")]
     return [

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from abut.errors import InputError, nearest
 from abut.facing import AUTO, FoundContact, add_surfaces, find_contacts
 from abut.job.schema import ContactTable
+from abut.job.values import values
 from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Integration, Solid
@@ -43,7 +44,7 @@ def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequenc
     contacts: list[tuple[int, Contact]] = []
     notes: list[str] = []
     for i, table in enumerate(tables):
-        options = table.model_dump(exclude={*FINDING, "contactor", "target", "integration"})
+        options = values(table, f"contacts[{i}]", (*FINDING, "contactor", "target", "integration"))
         options["integration"] = Integration(**table.integration.model_dump())
         if not table.auto:
             contacts.append((i, Contact(table.contactor, table.target, **options)))
