@@ -149,3 +149,41 @@ def test_a_body_that_nothing_touches_or_loads_is_refused() -> None:
         abut.SingularModelError, match=r"body 'lost' can shift along x .*5 more motions.*nothing loads it"
     ):
         abut.solve(model)
+
+
+def test_a_rigid_tool_that_may_slide() -> None:
+    """Pushed down with its sideways motion and its turn left free: nothing resists the first, contact the second. The answer
+    is that with the sideways motion prescribed as zero."""
+    mesh = join(
+        {
+            "block": rectangle(x=(0, 6), y=(0, 3), cells=(6, 3), cell="quad8"),
+            "tool": rectangle(x=(2, 4), y=(3, 4), cells=(3, 2), cell="quad8"),
+        }
+    )
+
+    def solve(**given: float) -> abut.Solution:
+        model = abut.Model(
+            mesh,
+            [abut.Solid("block", STEEL)],
+            supports=[abut.Support("block.bottom", x=0, y=0)],
+            contacts=[abut.Contact("block.top", "tool.bottom")],
+            rigid=[abut.Rigid("tool", y=-0.01, **given)],
+            plane="strain",
+        )
+        return abut.solve(model)
+
+    free, held = solve(), solve(x=0.0, rz=0.0)
+    assert regularisation(free) < 1e-9
+    a, b = free.contacts[0], held.contacts[0]
+    assert a.force == pytest.approx(b.force, rel=1e-9, abs=1e-9 * abs(b.force[1]))
+    assert np.nanmax(np.abs(a.pressure - b.pressure)) < 1e-8 * b.max_pressure
+
+
+def test_loads_that_balance_only_at_the_end() -> None:
+    """Two opposite forces, one of them late: half-way one acts alone, and the body is free to follow it."""
+    late = abut.Amplitude(((0.0, 0.0), (0.5, 0.0), (1.0, 1.0)))
+    push = abut.Force("upper.left", (5.0, 0.0, 0.0))
+    back = [abut.Force("upper.right", (-5.0, 0.0, 0.0), amplitude=amplitude) for amplitude in (None, late)]
+    assert abut.solve(blocks([], [DOWN, push, back[0]])).converged
+    with pytest.raises(abut.SingularModelError, match="can shift along x"):
+        abut.solve(replace(blocks([], [DOWN, push, back[1]]), solve=abut.SolveOptions(steps=2)))
