@@ -62,10 +62,21 @@ def test_bad_jobs(case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 
 def test_free_body_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    status, error = run(tmp_path, TEXT.replace("x = 0\ny = 0\nz = -0.02", "z = -0.02"), capsys)
+    push = '\n[[loads]]\nkind = "force"\non = "upper.left"\nvalue = [1, 0, 0]\n'
+    status, error = run(tmp_path, TEXT.replace("x = 0\ny = 0\nz = -0.02", "z = -0.02") + push, capsys)
     assert status == 4
-    assert "body 'upper' can" in error
+    assert "body 'upper' can shift along x" in error
     assert not (tmp_path / "results").exists()
+
+
+def test_motions_without_loads_are_held(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Pressed down only, the block stays where it is: said in a note, shown in the certificate."""
+    status, error = run(tmp_path, TEXT.replace("x = 0\ny = 0\nz = -0.02", "z = -0.02"), capsys)
+    assert (status, error) == (0, "")
+    summary = json.loads((tmp_path / "results" / "summary.json").read_text())
+    assert any("body 'upper' can turn about z" in note for note in summary["notes"])
+    (check,) = (c for c in summary["certificate"]["checks"] if c["name"] == "regularisation")
+    assert check["passed"]
 
 
 def test_body_pulled_off_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

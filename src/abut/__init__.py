@@ -8,19 +8,26 @@ from abut.errors import AbutError, ConvergenceError, InputError, SingularModelEr
 
 if TYPE_CHECKING:
     from abut.analysis import solve
+    from abut.facing import FoundContact, add_surfaces, find_contacts
     from abut.io.results import write
     from abut.mesh.mesh import Mesh
     from abut.model import (
+        Amplitude,
         BodyForce,
         Contact,
+        Equation,
         Force,
         Gravity,
         Integration,
         Model,
+        NodalForce,
         Pressure,
+        Rigid,
         Solid,
         SolveOptions,
         Support,
+        Temperature,
+        Term,
         Traction,
     )
     from abut.solids.materials import LinearElastic
@@ -30,17 +37,19 @@ __version__ = "0.1.0"
 
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
-    "LinearElastic": "abut.solids.materials", **dict.fromkeys(
-        ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
-         "Support", "Traction"),
+    "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
+    "find_contacts": "abut.facing", **dict.fromkeys(
+        ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
+         "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
         "abut.model",
     ),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration",
-    "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support",
-    "Traction", "solve", "write",
+    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
+    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Rigid",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "add_surfaces", "find_contacts", "solve", "write",
 ]  # fmt: skip
 
 

@@ -4,15 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from abut import checks
+from abut.conditions import (
+    COMPONENTS,
+    TURNS,
+    Amplitude,
+    BodyForce,
+    Equation,
+    Force,
+    Gravity,
+    History,
+    Load,
+    NodalForce,
+    Pressure,
+    Rigid,
+    Support,
+    Temperature,
+    Term,
+    Traction,
+)
 from abut.errors import InputError, nearest
-from abut.fields import Field
 from abut.mesh.mesh import Mesh
 from abut.solids.materials import LinearElastic
+
+__all__ = [
+    "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model",
+    "NodalForce", "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+]  # fmt: skip
 
 PLANES = ("strain", "stress", "axisymmetric")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
@@ -32,100 +55,6 @@ class Solid:
 
     def __post_init__(self) -> None:
         checks.finite(self.temperature, f"solid '{self.body}': temperature")
-
-
-@dataclass(frozen=True)
-class Support:
-    """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); what is left out stays free. Values in the mesh's length unit, ramped over the load steps; x, y and z
-    may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
-
-    on: str
-    x: float | Field | None = None
-    y: float | Field | None = None
-    z: float | Field | None = None
-    normal: float | None = None
-
-    def __post_init__(self) -> None:
-        given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
-        for name, value in given.items():
-            if name == "normal" or not callable(value):
-                checks.finite(value, f"support on '{self.on}': {name}")
-        if not given:
-            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
-        if "normal" in given and len(given) > 1:
-            raise InputError(f"support on '{self.on}': give either normal or components, not both")
-
-
-@dataclass(frozen=True)
-class Pressure:
-    """Pressure on a surface, force per area, positive into the body."""
-
-    on: str
-    value: float
-
-    def __post_init__(self) -> None:
-        checks.finite(self.value, f"pressure on '{self.on}': value")
-
-
-def _vector(values: Any, name: str) -> tuple[float, ...]:
-    try:
-        result = tuple(checks.finite(value, name) for value in values)
-    except TypeError:
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
-    if len(result) not in (2, 3):
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
-    return result
-
-
-@dataclass(frozen=True)
-class Traction:
-    """Traction vector on a surface, force per area; numbers or a function of position, points (n, dim) -> (n, dim)."""
-
-    on: str
-    value: tuple[float, ...] | Field
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
-
-
-@dataclass(frozen=True)
-class Force:
-    """Total force (2D: per unit thickness), spread evenly over a surface."""
-
-    on: str
-    value: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
-
-
-@dataclass(frozen=True)
-class Gravity:
-    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
-
-    value: tuple[float, ...]
-    on: str | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
-
-
-@dataclass(frozen=True)
-class BodyForce:
-    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
-    function of position, points (n, dim) -> (n, dim)."""
-
-    value: tuple[float, ...] | Field
-    on: str | None = None
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, "body force: value"))
-
-
-Load = Pressure | Traction | Force | Gravity | BodyForce
 
 
 @dataclass(frozen=True)
@@ -149,8 +78,10 @@ class Integration:
 @dataclass(frozen=True)
 class Contact:
     """A contact pair. The contactor carries the pressure; ``offset`` is added to the geometric gap (negative:
-    interference), in the mesh's length unit; ``epsilon`` smooths the constraint function (dimensionless, relative to
-    the square of a reference pressure); ``method``: the node-to-segment ones are there for comparison only."""
+    interference), in the mesh's length unit, in full from the start or times ``amplitude``; ``adjust`` (length): initial
+    gaps and overlaps up to this size count as zero, before the offset is added; ``epsilon`` smooths the constraint
+    function (dimensionless, relative to the square of a reference pressure); ``method``: the node-to-segment ones are
+    there for comparison only."""
 
     contactor: str
     target: str
@@ -162,6 +93,8 @@ class Contact:
     method: str = "segment-to-segment"
     integration: Integration = field(default_factory=Integration)
     offset: float = 0.0
+    adjust: float = 0.0
+    amplitude: History = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -178,17 +111,23 @@ class Contact:
             )
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")
+        if checks.finite(self.adjust, f"{where}: adjust") < 0.0:
+            raise InputError(f"{where}: adjust: expected a length >= 0, got {self.adjust!r}")
+        if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):
+            raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
         if self.contactor == self.target:
             raise InputError(f"{where}: contactor and target are the same surface '{self.contactor}'")
 
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """How to solve: load steps (a linear ramp), linear solver, iterations allowed in a step."""
+    """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
+    time), linear solver, iterations allowed in a step."""
 
     steps: int = 1
     linear: str = "auto"
     max_iterations: int = 50
+    times: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         for name in ("steps", "max_iterations"):
@@ -196,6 +135,24 @@ class SolveOptions:
             if isinstance(value, bool) or not isinstance(value, int) or value < 1:
                 raise InputError(f"solve.{name}: expected a whole number >= 1, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
+        if self.times is not None:
+            self._check_times()
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Time at the end of each load step."""
+        return self.times or tuple(number / self.steps for number in range(1, self.steps + 1))
+
+    def _check_times(self) -> None:
+        try:
+            times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
+        except TypeError:
+            raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
+        if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
+            raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
+        if self.steps not in (1, len(times)):
+            raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
+        object.__setattr__(self, "times", times)
 
 
 @dataclass(frozen=True)
@@ -203,7 +160,8 @@ class Model:
     """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
 
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the whole turn; points on the axis stay on it without a support of their own.
+    forces are those of the whole turn; points on the axis stay on it without a support of their own. Every body is one of
+    ``solids`` or ``rigid``.
     """
 
     mesh: Mesh
@@ -213,18 +171,28 @@ class Model:
     contacts: Sequence[Contact] = ()
     plane: str | None = None
     solve: SolveOptions = field(default_factory=SolveOptions)
+    equations: Sequence[Equation] = ()
+    rigid: Sequence[Rigid] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts"):
+        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
+        self._check_rigid()
         self._check_solids()
         self._check_names()
+        self._check_equations()
 
     @property
     def dim(self) -> int:
         """2 or 3, the mesh's."""
         return int(self.mesh.points.shape[1])
+
+    @property
+    def histories(self) -> tuple[History, ...]:
+        """The different histories of everything prescribed, the ramp first."""
+        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
 
     def _check_plane(self) -> None:
         if self.dim == 2:
@@ -255,9 +223,52 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-        missing = sorted(set(self.mesh.bodies) - seen)
+        for i, rigid in enumerate(self.rigid):
+            if rigid.body in seen:
+                raise InputError(
+                    f"rigid[{i}].body: body '{rigid.body}' is rigid and has a material (solids); take one of them out"
+                )
+        missing = sorted(set(self.mesh.bodies) - seen - {rigid.body for rigid in self.rigid})
         if missing:
             raise InputError(f"solids: no material for body {', '.join(map(repr, missing))}; add a solid for it")
+        if not self.solids:
+            raise InputError("solids: every body is rigid; at least one must deform")
+
+    def _check_rigid(self) -> None:
+        owner: dict[int, str] = {}
+        exist = ("y",) if self.mesh.axisymmetric else ("x", "y", "rz") if self.dim == 2 else (*COMPONENTS, *TURNS)
+        for i, rigid in enumerate(self.rigid):
+            _known(rigid.body, self.mesh.bodies, f"rigid[{i}].body", "body")
+            if rigid.reference is not None and len(rigid.reference) != self.dim:
+                raise InputError(f"rigid[{i}].reference: expected {self.dim} numbers, got {len(rigid.reference)}")
+            for name in (*COMPONENTS, *TURNS):
+                if name not in exist and getattr(rigid, name):
+                    plane = "axisymmetric" if self.mesh.axisymmetric else "2D"
+                    raise InputError(f"rigid[{i}].{name}: the model is {plane}; leave {name} out")
+            nodes = {int(n) for _, cells, _ in self.mesh.cells_of(rigid.body) for n in np.unique(cells)}
+            if rigid.body in owner.values():
+                raise InputError(f"rigid[{i}].body: body '{rigid.body}' is given twice; keep one of them")
+            shared = nodes & owner.keys()
+            if shared:
+                raise InputError(
+                    f"rigid[{i}].body: '{rigid.body}' and '{owner[min(shared)]}' are rigid and share points; make "
+                    "them one body"
+                )
+            owner |= dict.fromkeys(nodes, rigid.body)
+
+    def _check_equations(self) -> None:
+        for i, equation in enumerate(self.equations):
+            for j, term in enumerate(equation.terms):
+                where = f"equations[{i}].terms[{j}]"
+                if isinstance(term.on, str):
+                    _known(term.on, self.mesh.node_sets, f"{where}.on", "node set")
+                    if len(self.mesh.node_sets[term.on]) != 1:
+                        count = len(self.mesh.node_sets[term.on])
+                        raise InputError(f"{where}.on: node set '{term.on}' has {count} nodes; a term is for one")
+                elif not 0 <= term.on < len(self.mesh.points):
+                    raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(self.mesh.points)}, from 0")
+                if term.component not in COMPONENTS[: self.dim]:
+                    raise InputError(f"{where}.component: the model is 2D; z does not exist")
 
     def _check_names(self) -> None:
         mesh = self.mesh
@@ -268,13 +279,22 @@ class Model:
                 _known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
             if self.dim == 2 and support.z is not None:
                 raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+        rigid = {body.body for body in self.rigid}
         for i, load in enumerate(self.loads):
             if isinstance(load, (Gravity, BodyForce)):
                 if load.on is not None:
                     _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
+                if isinstance(load, Gravity) and load.on in rigid:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force"
+                    )
             else:
-                _known(load.on, mesh.surfaces, f"loads[{i}].on", "surface")
-            if isinstance(load, Pressure) or callable(load.value):
+                self._check_place(load, f"loads[{i}].on")
+                if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out"
+                    )
+            if isinstance(load, (Pressure, Temperature)) or callable(load.value):
                 continue
             if len(load.value) != self.dim:
                 raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
@@ -285,7 +305,41 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
+            if rigid >= self._bodies_of(contact.contactor):
+                self._refuse_rigid(i, contact, rigid)
+        self._check_swapped()
         self._check_facets()
+
+    def _check_place(self, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
+        mesh = self.mesh
+        if isinstance(load, NodalForce):
+            _known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
+        elif isinstance(load, Temperature):
+            _known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
+        else:
+            _known(load.on, mesh.surfaces, where, "surface")
+
+    def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
+        if rigid >= self._bodies_of(contact.target):
+            raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
+        raise InputError(
+            f"contacts[{i}].contactor: '{contact.contactor}' is rigid; the pressure needs the displacements of its own "
+            "side to be unique: swap contactor and target"
+        )
+
+    def _bodies_of(self, surface: str) -> set[str]:
+        cells = self.mesh.surfaces[surface][:, 0]
+        return {body for body, own in self.mesh.bodies.items() if np.isin(cells, own).any()}
+
+    def _check_swapped(self) -> None:
+        sides = {(contact.contactor, contact.target): contact.name for contact in self.contacts}
+        for i, contact in enumerate(self.contacts):
+            other = sides.get((contact.target, contact.contactor))
+            if other is not None and i:
+                raise InputError(
+                    f"contacts[{i}]: '{contact.name}' is contact '{other}' with its sides swapped: the pressure between "
+                    "them would be determined twice; keep the one whose contactor is softer or has the coarser mesh"
+                )
 
     def _check_facets(self) -> None:
         """A facet that carries the pressure of one pair must not belong to another: it would be held twice."""

@@ -13,6 +13,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
 
 
 @dataclass(frozen=True)
@@ -82,12 +83,26 @@ class ContactResult:
 
 
 @dataclass(frozen=True)
+class RigidResult:
+    """A rigid body at the end of a step: displacement (dim,) of its reference and rotation (1,) or (3,), radians; force
+    (dim,) and moment (1,) or (3,) about the reference that move it, zero where a component is free."""
+
+    displacement: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Step:
-    """The state at the end of a load step. ``factor`` in (0, 1] is the share of loads and displacements applied.
+    """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
+    displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
-    reaction: (dim,) resultant of all supports; reactions: the same for each supported surface or node set (points that
-    lie on several count for each of them); load: (dim,) resultant of all loads.
+    reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
+    supported surface or node set without the share of equations (points that lie on several count for each of them, those
+    of a rigid body for the whole body); load: (dim,) resultant of all
+    loads; rigid: by the name of the body.
     """
 
     number: int
@@ -102,14 +117,28 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+    spring: float | None = None  # largest force that holds motions without resistance; None where there are none
+    internal: float = 0.0  # largest nodal force of stresses
+    rigid: Mapping[str, RigidResult] = field(default_factory=dict)
+    earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
 
     @property
     def balance_error(self) -> float:
         """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.largest_force)
+
+    @property
+    def regularisation(self) -> float | None:
+        """Force that holds motions without resistance over the largest force, nodal ones among them (loads may cancel)."""
+        return None if self.spring is None else self.spring / max(self.largest_force, self.internal)
+
+    @property
+    def largest_force(self) -> float:
+        """Largest component of any resultant, now or in a step before."""
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
-        size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / size)
+        forces += [body.force for body in self.rigid.values()]
+        return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), self.earlier, 1e-300)
 
 
 @dataclass(frozen=True)
@@ -141,7 +170,11 @@ class Solution:
             balance = Check(
                 "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the largest force"
             )
-            for check in (balance, *(c for contact in step.contacts for c in contact.checks)):
+            model = [balance]
+            if step.regularisation is not None:
+                model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
+                                   "force that holds motions without resistance, over the largest force"))  # fmt: skip
+            for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
                 if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
                     worst[key] = check

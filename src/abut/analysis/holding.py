@@ -18,13 +18,12 @@ from abut.discretization.rigid import (
     rigid_modes,
 )
 from abut.discretization.supports import Supports
-from abut.errors import SingularModelError
 from abut.mesh.mesh import Mesh
 
 
 @dataclass(frozen=True)
 class Holding:
-    """Resistance against rigid motions: of the supports, of each pair's rows."""
+    """Resistance against rigid motions: of the supports (with what holds loose motions), of each pair's rows."""
 
     rigid: RigidModes
     supports: NDArray[np.float64]
@@ -32,16 +31,14 @@ class Holding:
     by_supports: bool  # supports and ties alone hold every body
     free: NDArray[np.float64]  # (dim n_points, m) rigid motions that the supports alone leave free
 
-    def check(self) -> None:
-        """Raise SingularModelError where a body can move even with all contact closed."""
-        grams = [self.supports, *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs)]
-        motions = free_motions(grams)
-        if motions.shape[1]:
-            others = f" (and {motions.shape[1] - 1} more motions)" if motions.shape[1] > 1 else ""
-            raise SingularModelError(
-                f"{describe(self.rigid, motions)} without resistance{others}: neither supports nor contact hold it; "
-                "add a support, or a symmetry plane (normal = 0)"
-            )
+    @property
+    def everything(self) -> list[NDArray[np.float64]]:
+        """Resistance of supports and of every pair, closed."""
+        return [self.supports, *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs)]
+
+    def helped_by(self, gram: NDArray[np.float64]) -> Holding:
+        """The same with something else that resists."""
+        return _holding(self.rigid, self.supports + gram, self.pairs) if gram.any() else self
 
     def complete(self, active: NDArray[np.bool_], gap: NDArray[np.float64]) -> NDArray[np.bool_]:
         """The active set, with the closest multipliers added where it would let a body go, theory (V8)."""
@@ -72,7 +69,10 @@ class Holding:
 def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
     """Work out what holds the bodies of a mesh."""
     rigid = rigid_modes(mesh)
-    support = resistance_of_supports(rigid, held.free)
+    return _holding(rigid, resistance_of_supports(rigid, held), pairs)
+
+
+def _holding(rigid: RigidModes, support: NDArray[np.float64], pairs: Sequence[Pair]) -> Holding:
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
     return Holding(
         rigid, support, pairs, free_motions([support, *ties]).shape[1] == 0, rigid.modes @ free_motions([support])

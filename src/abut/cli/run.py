@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +40,10 @@ def _run(arguments: argparse.Namespace) -> int:
     job = load_job(arguments.job)
     silent = arguments.quiet or arguments.json
     directory = arguments.output or job.directory
+    if not silent:
+        print(*job.notes, sep="\n", end="\n" if job.notes else "")
     solution = solve(job.model, None if silent else _Table())
+    solution = replace(solution, notes=(*job.notes, *solution.notes))
     write(solution, directory)
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))

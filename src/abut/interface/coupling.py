@@ -29,13 +29,14 @@ ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it
 class IntegrationPoints:
     """The integration points of all segments of a pair (n of them).
 
-    facet: (n,) contactor facet; weight: (n,) area; gap: (n,) geometric gap, length;
+    facet, target_facet: (n,) of contactor and target; weight: (n,) area; gap: (n,) geometric gap, length;
     normal: (n, dim) unit, from target to contactor: theory (F1);
     pressure: (n, 9 n_facets) values of the facet-wise pressure functions;
     gap_operator: (n, dim n_points), change of the gap by a displacement.
     """
 
     facet: NDArray[np.int64]
+    target_facet: NDArray[np.int64]
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     normal: NDArray[np.float64]
@@ -80,6 +81,12 @@ def default_reach(contactor: Surface, target: Surface) -> float:
     return float(max(2.0 * facet, 0.1 * np.linalg.norm(extent)))
 
 
+def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
+    """Size up to which a gap counts as none: ``adjust``, or rounding of the coordinates."""
+    rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
+    return float(adjust + rounding)
+
+
 def couple(
     contactor: Surface,
     target: Surface,
@@ -90,6 +97,7 @@ def couple(
     reach: float | None = None,
     componentwise: bool = False,
     keep_points: bool = False,
+    adjust: float = 0.0,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
 
@@ -99,6 +107,7 @@ def couple(
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
     componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points.
+    adjust: gaps and overlaps up to this size count as zero, length.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
     if contactor.dim != target.dim:
@@ -119,7 +128,7 @@ def couple(
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
         degree, not componentwise, keep_points, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
-        ROUNDING * max(np.abs(s.points).max() for s in (contactor, target)),
+        no_gap(contactor, target, adjust),
     )  # fmt: skip
     offset, n_points = _columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)
@@ -196,7 +205,10 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
         (raw["point_pressure"].ravel(), (np.repeat(np.arange(n), 9), columns.ravel())), shape=(n, 9 * len(contactor))
     )
     pressure.eliminate_zeros()
-    return IntegrationPoints(facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator)
+    target_facet = raw["point_target_facet"].astype(np.int64)
+    return IntegrationPoints(
+        facet, target_facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator
+    )
 
 
 def surface_degree(surface: Surface) -> int:

@@ -12,21 +12,26 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from abut.errors import InputError, nearest
-from abut.job.schema import JobFile, MaterialTable, MeshTable
+from abut.job.contacts import Resolved, resolve_contacts
+from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable
+from abut.job.values import values
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
-    Contact,
+    Equation,
     Force,
     Gravity,
-    Integration,
     Load,
     Model,
+    NodalForce,
     Pressure,
+    Rigid,
     Solid,
     SolveOptions,
     Support,
+    Temperature,
+    Term,
     Traction,
 )
 from abut.solids.materials import LinearElastic
@@ -40,15 +45,22 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
     name.replace("_", "-"): getattr(make, name) for name in make.__all__ if name != "join"
 }
 
+LOADS: Mapping[str, Callable[..., Load]] = {
+    "pressure": Pressure, "traction": Traction, "force": Force, "nodal-force": NodalForce, "temperature": Temperature,
+    "gravity": Gravity,
+}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Job:
-    """A loaded job: the model, where its results go, the file and its text."""
+    """A loaded job: the model, where its results go, the file and its text; what was found and chosen, in words."""
 
     model: Model
     directory: Path
     path: Path
     text: str
+    notes: tuple[str, ...] = ()
+    entries: tuple[int, ...] = ()  # which [[contacts]] each contact of the model comes from
 
 
 def load_job(path: str | Path, refine: int = 0) -> Job:
@@ -74,34 +86,40 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
     try:
-        model = _model(file, path.parent, refine)
+        model, resolved = _model(file, path.parent, refine)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    return Job(model, path.parent / file.output.directory, path, text)
+    return Job(model, path.parent / file.output.directory, path, text, resolved.notes, resolved.entries)
 
 
-def _model(file: JobFile, folder: Path, refine: int) -> Model:
+def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
         solids.append(Solid(s.body, materials[s.material], s.temperature))
-    return Model(
-        mesh=_mesh(file.mesh, folder, refine),
+    resolved = resolve_contacts(file.contacts, _mesh(file.mesh, folder, refine), solids)
+    model = Model(
+        mesh=resolved.mesh,
         plane=file.model.plane,
         solids=solids,
-        supports=[Support(**s.model_dump()) for s in file.supports],
-        loads=[_load(load) for load in file.loads],
-        contacts=[
-            Contact(
-                **{k: v for k, v in c.model_dump().items() if k != "integration"},
-                integration=Integration(**c.integration.model_dump()),
-            )
-            for c in file.contacts
-        ],
+        supports=[Support(**values(s, f"supports[{i}]")) for i, s in enumerate(file.supports)],
+        loads=[_load(load, f"loads[{i}]") for i, load in enumerate(file.loads)],
+        contacts=resolved.contacts,
         solve=SolveOptions(**file.solve.model_dump()),
+        equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
+        rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
     )
+    return model, resolved
+
+
+def _equation(table: EquationTable, where: str) -> Equation:
+    try:
+        terms = tuple(Term(**term.model_dump()) for term in table.terms)
+        return Equation(**{**values(table, where), "terms": terms})
+    except InputError as error:
+        raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
 def _material(name: str, table: MaterialTable) -> LinearElastic:
@@ -111,13 +129,9 @@ def _material(name: str, table: MaterialTable) -> LinearElastic:
         raise InputError(f"materials.{name}.{error}") from None
 
 
-def _load(table: BaseModel) -> Load:
-    values = table.model_dump()
-    kind = values.pop("kind")
-    if isinstance(values["value"], list):
-        values["value"] = tuple(values["value"])
-    record = {"pressure": Pressure, "traction": Traction, "force": Force, "gravity": Gravity}[kind]
-    return record(**values)
+def _load(table: BaseModel, where: str) -> Load:
+    given = values(table, where)
+    return LOADS[given.pop("kind")](**given)
 
 
 def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:
@@ -157,7 +171,7 @@ def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: i
 
 def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
-    location = [part for part in error["loc"] if part not in ("pressure", "traction", "force", "gravity")]
+    location = [part for part in error["loc"] if part not in LOADS]
     place = ""
     for part in location:
         place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)

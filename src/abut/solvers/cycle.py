@@ -72,7 +72,9 @@ def _level(level: Any) -> Level:
     small = np.finfo(np.float32).eps * diagonal.max()  # coarse functions that small aggregates cannot carry are zero
     inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small).astype(np.float32)
     largest = _largest(matrix, inverse)
-    degree = math.ceil(math.sqrt(largest))  # flat and stretched cells widen the spectrum, which takes longer polynomials
+    degree = math.ceil(
+        math.sqrt(largest)
+    )  # flat and stretched cells widen the spectrum, which takes longer polynomials
     return Level(matrix, inverse, largest, _blocks(level.P), _blocks(level.R), degree)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.discretization.pairs import Pair
+from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.solvers.active_set import Outcome, System
 from abut.solvers.condensed import condense
@@ -23,23 +25,35 @@ LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cel
 
 @dataclass(frozen=True)
 class Prepared:
-    """system: with its linear solver; finish: what a step's outcome still needs at its load factor; name: for the summary;
-    note: for the log; count: linear iterations of an iterative solver."""
+    """system: with its linear solver; finish: what a step's outcome still needs, at its histories' weights; name: for the
+    summary; note: for the log; count: linear iterations of an iterative solver."""
 
     system: System
-    finish: Callable[[Outcome, float], Outcome]
+    finish: Callable[[Outcome, NDArray[np.float64]], Outcome]
     name: str
     note: str
     count: Count | None = None
 
 
-def choose(linear: str, system: System, mesh: Mesh) -> str:
-    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do."""
+def choose(linear: str, system: System, mesh: Mesh, coupled: bool) -> str:
+    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do.
+
+    coupled: free displacements belong to several points at once. Raises InputError where "amg" cannot do that."""
+    return chosen(linear, len(system.load), system.pairs, mesh, coupled)
+
+
+def chosen(linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool) -> str:
+    """The same from the number of free displacements and the contact pairs."""
+    if linear == "amg" and coupled:
+        raise InputError(
+            'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
+            'couple points; choose "direct" or "auto"'
+        )
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
-    large = mesh.dim == 3 and len(system.load) >= LARGE[degree]
-    able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in system.pairs)
+    large = mesh.dim == 3 and n_free >= LARGE[degree]
+    able = not coupled and find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 
@@ -49,20 +63,20 @@ def prepare(
     """Set a linear solver up.
 
     linear: "direct" or "amg"; free: (dim n_points, n_free) change of variables; rigid: (dim n_points, m) rigid motions of
-    the bodies; loose: (dim n_points, k) those that supports leave free.
+    the bodies; loose: (n_free, k) those that supports leave free.
     Raises InputError where the solver is not installed or cannot serve the system.
     """
     if linear == "amg":
         levels = hierarchy(system.stiffness, free, rigid, dim)
-        iterative, count = iterate(system, levels, free.T @ loose)
+        iterative, count = iterate(system, levels, loose)
         return Prepared(iterative, lambda outcome, _: outcome, "multigrid (PyAMG)", levels.summary, count)
-    condensed = condense(system, free.T @ loose)
+    condensed = condense(system, loose)
     name = f"direct ({solver_name()})"
     if condensed is None:
         return Prepared(system, lambda outcome, _: outcome, name, f"direct solver {solver_name()}")
 
-    def finish(outcome: Outcome, factor: float) -> Outcome:
-        return replace(outcome, unknowns=condensed.expand(outcome.unknowns, factor, outcome.laws))
+    def finish(outcome: Outcome, weights: NDArray[np.float64]) -> Outcome:
+        return replace(outcome, unknowns=condensed.expand(outcome.unknowns, weights, outcome.laws))
 
     note = f"direct solver {solver_name()}; all displacements eliminated but {len(condensed.kept)}, the rest is dense"
     return Prepared(condensed.system, finish, name, note)

@@ -1,0 +1,76 @@
+"""One thing that `abut check` has to say, and all of them together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut import checks
+from abut.errors import AbutError
+
+SEVERITIES = ("error", "warning", "advice", "info")
+SOUND, DOUBTFUL, BAD_INPUT = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Finding:
+    """severity: error (the run fails or its result is worthless), warning (the result may be wrong), advice (it would be
+    better otherwise) or info; what, where, and the cure: what to do, empty where there is nothing to do; details: further
+    lines; status: exit status that an error stands for.
+    """
+
+    severity: str
+    where: str
+    what: str
+    cure: str = ""
+    details: tuple[str, ...] = ()
+    status: int = BAD_INPUT
+
+    def __post_init__(self) -> None:
+        checks.choice(self.severity, "finding.severity", SEVERITIES)
+
+    @property
+    def line(self) -> str:
+        """The finding in one line."""
+        return f"{self.where}: {self.what}{'; ' if self.cure else ''}{self.cure}"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A rigid motion that supports leave free: in words, what resists it ("contact" or "nothing"), displacement
+    (n_points, dim), a tenth of the body's size."""
+
+    text: str
+    resisted_by: str
+    displacement: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Report:
+    """All findings, the gravest first, and the rigid motions that supports leave free."""
+
+    findings: tuple[Finding, ...]
+    motions: tuple[Motion, ...] = ()
+
+    @property
+    def status(self) -> int:
+        """Exit status: 0 nothing worse than advice, 1 warnings, 2 or 4 (the graver one) errors."""
+        errors = [f.status for f in self.findings if f.severity == "error"]
+        return max(errors) if errors else DOUBTFUL if self.count("warning") else SOUND
+
+    def count(self, severity: str) -> int:
+        return sum(f.severity == severity for f in self.findings)
+
+
+def in_order(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """The gravest first."""
+    return tuple(sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)))
+
+
+def from_error(error: AbutError, where: str) -> Finding:
+    """What an error of abut says, as a finding; its message ends in the cure."""
+    what, _, cure = str(error).rpartition("; ")
+    return Finding("error", where, what or cure, cure if what else "", status=error.exit_status)

@@ -1,0 +1,113 @@
+"""Rigid motions of the bodies: which ones contact alone resists, and which nothing does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from abut.analysis.holding import Holding, holding
+from abut.analysis.loads import loads
+from abut.analysis.regularisation import regularise
+from abut.check.finding import Finding, Motion, from_error
+from abut.discretization.pairs import Pair
+from abut.discretization.rigid import describe, each_motion, free_motions
+from abut.discretization.supports import Supports
+from abut.errors import SingularModelError
+from abut.model import Model
+
+UNBALANCED = 1e-6  # load that pressures cannot balance, over all loads
+SHOWN = 0.1  # size of a motion over that of its body, for the eye
+
+
+def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[Finding], list[Motion]]:
+    """Findings, and each motion that supports leave free with its displacement. ``pairs``: all that could be built."""
+    held_by = holding(model.mesh, held, pairs)
+    findings: list[Finding] = []
+    complete = len(pairs) == len(model.contacts)
+    every = free_motions([held_by.supports])
+    lost = free_motions(held_by.everything)
+    by_contact = every - lost @ (lost.T @ every)
+    basis, size, _ = np.linalg.svd(by_contact, full_matrices=False)
+    shown = _motions(model, held_by, basis[:, size > 0.5], "contact")
+    if shown and complete:
+        findings.append(
+            Finding(
+                "info",
+                "bodies",
+                f"{len(shown)} rigid motions are held by contact alone, which can only push",
+                details=tuple(motion.text for motion in shown),
+            )
+        )
+    shown += _motions(model, held_by, lost, "nothing")
+    if complete:
+        findings += _without_resistance(model, held_by, held)
+        if not any(finding.severity == "error" for finding in findings):
+            findings += _pulled_off(model, held_by, held, every)
+    return findings, shown
+
+
+def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np.float64]) -> list[Finding]:
+    """An error where no pressures that push balance the loads on the motions (n_modes, m) that supports leave free."""
+    load = loads(model).at_ends(model)[-1]
+    work = free.T @ (held_by.rigid.modes.T @ load)
+    if not len(work):
+        return []
+    push = [np.zeros((0, len(work)))]
+    moves = held_by.rigid.modes @ free
+    for pair in held_by.pairs:
+        if pair.points is not None:  # there the pressure is positive at points, its coefficients need not be
+            push.append(np.asarray(pair.points.operator @ held.coordinates(moves)))
+            continue
+        moved = np.asarray(pair.rows @ moves)
+        push += [moved, -moved] if pair.tied else [moved]
+    forces = np.concatenate(push)
+    size = np.linalg.norm(forces, axis=1)
+    forces = forces[size > 0.0] / size[size > 0.0, None]
+    if not len(forces):
+        return []
+    pressure, missing = nnls(forces.T, -work)
+    if missing <= UNBALANCED * np.abs(load).sum():
+        return []
+    text = describe(held_by.rigid, (free @ (work + forces.T @ pressure))[:, None])
+    return [
+        Finding(
+            "error",
+            "bodies",
+            f"{text}: the loads pull it off its contact, which can only push",
+            "hold it by a support or turn the load round",
+            status=SingularModelError.exit_status,
+        )
+    ]
+
+
+def _without_resistance(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
+    """An error, or the motions that need no holding."""
+    try:
+        unit = sp.identity(held.free.shape[1], format="csr")
+        loose = regularise(held_by.rigid, held_by.everything, held, unit, loads(model).at_ends(model))
+    except SingularModelError as error:
+        return [from_error(error, "bodies")]
+    return [
+        Finding(
+            "advice",
+            "bodies",
+            text.replace(" (regularisation)", ""),
+            "if it is to stand elsewhere, add a support or a symmetry plane",
+        )
+        for text in loose.notes
+    ]
+
+
+def _motions(model: Model, held_by: Holding, free: NDArray[np.float64], resisted_by: str) -> list[Motion]:
+    """The motions (n_modes, m), each a single shift or turn of one body where that is possible."""
+    result = []
+    for text, motion in each_motion(held_by.rigid, free):
+        displacement = (held_by.rigid.modes @ motion).reshape(-1, model.dim)
+        moved = np.abs(displacement).max(axis=1) > 1e-9
+        extent = float(np.ptp(model.mesh.points[moved], axis=0).max()) if moved.any() else 1.0
+        result.append(Motion(text, resisted_by, SHOWN * extent * displacement))
+    return result

@@ -1,0 +1,90 @@
+"""abut check: what is wrong with a job, and the cure, before it is solved."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from abut.errors import AbutError
+
+if TYPE_CHECKING:
+    from abut.check import Report
+    from abut.job import Job
+
+
+def add_check(commands: Any) -> None:
+    """Add the command to the parser's ``commands``."""
+    check = commands.add_parser(
+        "check",
+        help="examine a job without solving it",
+        description="Free motions, over-constraint, gaps, normals, mesh and units of a job: each finding with its cure.",
+        epilog="exit status: 0 nothing worse than advice; 1 warnings; 2 bad input; 4 no unique solution",
+    )
+    check.add_argument("job", type=Path, help="the job file")
+    check.add_argument("--json", action="store_true", help="print the findings as JSON")
+    check.add_argument("--output", type=Path, metavar="DIR", help="write the free rigid motions to DIR/motions.vtu")
+    check.add_argument(
+        "--write-pairs", type=Path, metavar="OUT", help="write the job to OUT with all pairs that auto = true finds"
+    )
+    check.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    check.set_defaults(command=_check)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from abut.check import Finding, Report, check, from_error
+    from abut.job import load_job
+    from abut.job.pairs import write_pairs
+
+    try:
+        job = load_job(arguments.job)
+    except AbutError as error:
+        report = Report((from_error(error, "job"),))
+        _print(report, arguments.json)
+        return report.status
+    report = check(job.model)
+    found = tuple(Finding("info", "contacts", note) for note in job.notes)
+    report = Report(report.findings + found, report.motions)
+    if arguments.output is not None:
+        _write_motions(arguments.output, job, report)
+    if arguments.write_pairs is not None:
+        write_pairs(job, arguments.write_pairs)
+    _print(report, arguments.json)
+    return report.status
+
+
+def _print(report: Report, as_json: bool) -> None:
+    if as_json:
+        findings = [
+            {"severity": f.severity, "where": f.where, "what": f.what, "cure": f.cure, "details": list(f.details)}
+            for f in report.findings
+        ]
+        motions = [{"motion": m.text, "resisted_by": m.resisted_by} for m in report.motions]
+        print(json.dumps({"schema": 1, "status": report.status, "findings": findings, "motions": motions}, indent=2))
+        return
+    for finding in report.findings:
+        print(f"{finding.severity:8s} {finding.line}")
+        for line in finding.details:
+            print(f"           {line}")
+    counts = [(report.count(severity), severity) for severity in ("error", "warning", "advice")]
+    said = [f"{n} {severity}{'s' if n > 1 and severity != 'advice' else ''}" for n, severity in counts if n]
+    print(", ".join(said) or "nothing to mend")
+
+
+def _write_motions(directory: Path, job: Job, report: Report) -> None:
+    """One file with a displacement field for each motion: warp by vector in ParaView."""
+    import numpy as np
+
+    from abut.io.atomic import make_directory
+    from abut.io.vtu import write_vtu
+
+    mesh = job.model.mesh
+    make_directory(directory)
+    fields = {
+        f"{number + 1}: {motion.text} (held by {motion.resisted_by})": np.pad(
+            motion.displacement, ((0, 0), (0, 3 - mesh.dim))
+        )
+        for number, motion in enumerate(report.motions)
+    }
+    write_vtu(directory / "motions.vtu", mesh.points, [(block.kind, block.nodes) for block in mesh.blocks], fields)

@@ -1,0 +1,117 @@
+"""Contacts of a job file: surfaces by name, pairs found (auto = true), and found surfaces by their name ("auto:a-b")."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from abut.errors import InputError, nearest
+from abut.facing import AUTO, FoundContact, add_surfaces, find_contacts
+from abut.job.schema import ContactTable
+from abut.job.values import values
+from abut.mesh.facets import bodies_at
+from abut.mesh.mesh import Mesh
+from abut.model import Contact, Integration, Solid
+
+FINDING = ("auto", "bodies", "reach")  # keys that say what to look for; the others are the contact's own
+Key = tuple[float | None, tuple[str, ...] | None]
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """The mesh with the surfaces that had to be found, all contacts, the number of the entry that each comes from, and what
+    was found and chosen, in words."""
+
+    mesh: Mesh
+    contacts: tuple[Contact, ...]
+    entries: tuple[int, ...]
+    notes: tuple[str, ...]
+
+
+def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequence[Solid]) -> Resolved:
+    """All contacts of a job.
+
+    Pairs of bodies that an entry names by its surfaces, or that an earlier entry with auto = true has found, are left out
+    of what a later one finds. Raises InputError for keys that do not go together and for pairs that do not exist.
+    """
+    finder = _Finder(mesh, solids)
+    for i, table in enumerate(tables):
+        _check(table, f"contacts[{i}]")
+    named = [() if table.auto else finder.named(table, f"contacts[{i}]") for i, table in enumerate(tables)]
+    used: dict[str, FoundContact] = {found.contactor: found for own in named for found in own}
+    mesh = add_surfaces(mesh, list(used.values()))
+    coupled = {_bodies(mesh, table) for table in tables if not table.auto}
+    contacts: list[tuple[int, Contact]] = []
+    notes: list[str] = []
+    for i, table in enumerate(tables):
+        options = values(table, f"contacts[{i}]", (*FINDING, "contactor", "target", "integration"))
+        options["integration"] = Integration(**table.integration.model_dump())
+        if not table.auto:
+            contacts.append((i, Contact(table.contactor, table.target, **options)))
+            continue
+        found = [f for f in finder.find(table) if frozenset(f.bodies) not in coupled]
+        if not found:
+            raise InputError(
+                f"contacts[{i}]: auto: no two bodies face each other within reach (other than those of other entries); give "
+                "a larger reach, or name the surfaces"
+            )
+        coupled |= {frozenset(f.bodies) for f in found}
+        mesh = add_surfaces(mesh, found)
+        first = options.pop("name")
+        for f in found:
+            own = f.contact(**options)
+            contacts.append((i, f.contact(name=f"{first}-{own.name}", **options) if first else own))
+        notes += [f.note for f in found]
+    return Resolved(mesh, tuple(c for _, c in contacts), tuple(i for i, _ in contacts), tuple(notes))
+
+
+class _Finder:
+    """Looks once for each reach and choice of bodies."""
+
+    def __init__(self, mesh: Mesh, solids: Sequence[Solid]) -> None:
+        self._mesh, self._solids = mesh, solids
+        self._known: dict[Key, tuple[FoundContact, ...]] = {}
+
+    def find(self, table: ContactTable) -> tuple[FoundContact, ...]:
+        key: Key = (table.reach, None if table.bodies is None else tuple(table.bodies))
+        if key not in self._known:
+            self._known[key] = find_contacts(self._mesh, self._solids, reach=table.reach, bodies=table.bodies)
+        return self._known[key]
+
+    def named(self, table: ContactTable, where: str) -> tuple[FoundContact, ...]:
+        """The found pair that an entry names by its surfaces, if it does."""
+        sides = {side: name for side in ("contactor", "target") if (name := getattr(table, side)).startswith(AUTO)}
+        sides = {side: name for side, name in sides.items() if name not in self._mesh.surfaces}
+        if not sides:
+            return ()
+        pairs = self.find(table)
+        known = [name for found in pairs for name in (found.contactor, found.target)]
+        for side, name in sides.items():
+            if name not in known:
+                raise InputError(f"{where}.{side}: no two surfaces found as {name!r}{nearest(name, known)}")
+        return tuple(found for found in pairs if {found.contactor, found.target} & set(sides.values()))
+
+
+def _check(table: ContactTable, where: str) -> None:
+    if table.auto:
+        for side in ("contactor", "target"):
+            if getattr(table, side):
+                raise InputError(f"{where}.{side}: auto = true finds both surfaces; leave {side} or auto out")
+        return
+    for side in ("contactor", "target"):
+        if not getattr(table, side):
+            raise InputError(f"{where}.{side}: missing; name both surfaces, or give auto = true")
+    if (table.bodies, table.reach) != (None, None) and not any(
+        name.startswith(AUTO) for name in (table.contactor, table.target)
+    ):
+        raise InputError(
+            f"{where}: bodies and reach are for auto = true and surfaces named '{AUTO}...'; leave them out"
+        )
+
+
+def _bodies(mesh: Mesh, table: ContactTable) -> frozenset[str]:
+    """Bodies that an entry couples by its surfaces; none where it names unknown ones, which the model will refuse."""
+    sides = (table.contactor, table.target)
+    if not all(name in mesh.surfaces for name in sides):
+        return frozenset()
+    return frozenset(body for name in sides for body in bodies_at(mesh, mesh.surfaces[name][:, 0]))
