@@ -35,12 +35,13 @@ def _run(arguments: argparse.Namespace) -> int:
     from abut.analysis import solve
     from abut.io.results import summary, write
     from abut.job import load_job
+    from abut.report import read_origin
 
     job = load_job(arguments.job)
     silent = arguments.quiet or arguments.json
     directory = arguments.output or job.directory
     solution = solve(job.model, None if silent else _Table())
-    write(solution, directory)
+    write(solution, directory, read_origin(job.path, job.text))
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
@@ -89,5 +90,5 @@ def _print_result(solution: Solution, directory: Path) -> None:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
     print(
-        f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView"
+        f"{sum(solution.timings.values()):.1f} s; results in {directory}: open report.html in a browser, *.pvd in ParaView"
     )

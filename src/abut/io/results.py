@@ -6,25 +6,25 @@ import csv
 import io
 import json
 import math
-import platform
 import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 
-import abut
 from abut.io.atomic import make_directory, write_text
 from abut.io.grids import Grid, contact_grid, field_grid
+from abut.io.versions import versions
 from abut.io.vtu import write_vtu
+from abut.report import Origin, write_report
 from abut.state import Solution, Step
 
 
-def write(solution: Solution, directory: str | Path) -> Path:
+def write(solution: Solution, directory: str | Path, origin: Origin | None = None) -> Path:
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
-    summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for each contact.
+    report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
+    each contact. origin: what the report says of the job (its name, its text, what theory expects).
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
@@ -39,6 +39,7 @@ def write(solution: Solution, directory: str | Path) -> Path:
         _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
+    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
     return folder
 
@@ -72,12 +73,7 @@ def summary(solution: Solution) -> dict[str, Any]:
         },
         "notes": list(solution.notes),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
-        "versions": {
-            "abut": abut.__version__,
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "python": platform.python_version(),
-        },
+        "versions": versions(),
     }
 
 
