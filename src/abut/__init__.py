@@ -23,13 +23,16 @@ if TYPE_CHECKING:
         Support,
         Traction,
     )
+    from abut.report import write_report
     from abut.solids.materials import LinearElastic
     from abut.state import Solution
+    from abut.view import plot, to_pyvista
 
 __version__ = "0.1.0"
 
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
+    "write_report": "abut.report", "plot": "abut.view", "to_pyvista": "abut.view",
     "LinearElastic": "abut.solids.materials", **dict.fromkeys(
         ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
          "Support", "Traction"),
@@ -40,7 +43,7 @@ _HOME = {
 __all__ = [
     "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration",
     "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support",
-    "Traction", "solve", "write",
+    "Traction", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -31,7 +31,8 @@ def read_origin(path: Path, text: str) -> Origin:
     except (OSError, ValueError):
         data = {}
     entry = data.get(path.stem) if isinstance(data, dict) else None
-    title = path.stem if path.stem != "job" else path.absolute().parent.name
+    folder = path.absolute().parent.name
+    title = folder if path.stem == "job" else f"{folder}: {path.stem}"
     return Origin(title, text, entry if isinstance(entry, dict) else {})
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import abut
 from abut.io.versions import versions
 from abut.report.describe import tables
-from abut.report.lines import pressure_lines
+from abut.report.lines import Line, pressure_lines
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.scene import scene
 from abut.state import Solution
@@ -204,6 +204,12 @@ def _history(solution: Solution) -> dict[str, Any]:
     }
 
 
+def _opening(line: Line) -> NDArray[np.float64]:
+    """The gap along a line, or nothing where it is rounding all along."""
+    some = np.nanmax(np.nan_to_num(np.abs(line.gap)), initial=0.0) > 1e-9 * np.ptp(line.distance)
+    return line.gap if some else np.full_like(line.gap, np.nan)
+
+
 def _lines(solution: Solution, origin: Origin) -> list[dict[str, Any]]:
     theory = ellipse(origin.expected)
     result = []
@@ -221,7 +227,7 @@ def _lines(solution: Solution, origin: Origin) -> list[dict[str, Any]]:
                     "zero": "the largest pressure" if reference is None else "the centre of contact",
                     "distance": _plain(distance),
                     "pressure": _plain(line.pressure),
-                    "gap": _plain(line.gap),
+                    "gap": _plain(_opening(line)),
                     "theory": None if reference is None else _plain(reference),
                 }
             )

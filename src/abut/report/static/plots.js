@@ -15,6 +15,10 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
   const axis = (more) => ({ stroke: colour("soft"), grid, ticks: grid, font: "12px system-ui", labelFont: "12px system-ui", ...more });
   const powers = (u, values) => values.map((v) => v == null ? "" : "1e" + Math.round(Math.log10(v)));
   const plain = (u, values) => values.map(short);
+  const decades = (u, axis, low, high) => { // at most eight powers of ten
+    const [a, b] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))], every = Math.max(1, Math.ceil((b - a) / 7));
+    return Array.from({ length: Math.floor((b - a) / every) + 1 }, (_, i) => 10 ** (b - i * every)).reverse();
+  };
   const right = series.some((s) => s.right);
   const pad = options.whole ? 0.5 : 0;
   const logarithmic = (u, low, high) => low > 0 ? [10 ** Math.floor(Math.log10(low) - 0.2), 10 ** Math.ceil(Math.log10(high) + 0.2)] : [1e-16, 1];
@@ -33,7 +37,7 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
     },
     axes: [
       axis({ label: xLabel, size: 44, labelSize: 20, values: plain, incrs: options.whole ? [1, 2, 5, 10, 20, 50, 100, 200, 500] : undefined }),
-      axis({ size: 72, values: options.log ? powers : plain }),
+      axis({ size: 72, values: options.log ? powers : plain, splits: options.log ? decades : undefined, filter: (u, s) => s }),
       ...(right ? [axis({ scale: "right", side: 1, size: 72, grid: { show: false }, values: plain, label: "gap", labelSize: 18 })] : []),
     ],
     series: [
@@ -79,7 +83,7 @@ function drawPlots(data) {
   const count = run.step.map((_, i) => i + 1);
   const borders = run.step.flatMap((s, i) => i && s !== run.step[i - 1] ? [i + 0.5] : []);
   const whole = { whole: true, marks: borders };
-  const positive = (values) => values.map((v) => v > 0 ? v : null);
+  const positive = (values) => values.map((v) => v == null ? null : Math.max(v, 1e-17));
   const convergence = at("convergence");
   plot(convergence, "Residuals", "iteration", count, [
     { label: "equilibrium, over the reference force", values: positive(run.residual), colour: "accent" },

@@ -78,10 +78,10 @@ class View {
       }
     }
     this.pressed = weight > 0 ? { centre: middle.divideScalar(weight), size: Math.hypot(...zone[0].map((v, c) => zone[1][c] - v)) || 0.1 * this.size } : null;
-    const across = new THREE.Vector3(0.5, -0.75, 0.45);
+    const across = new THREE.Vector3(0.5, -0.75, 0.5);
     this.facing = weight > 0 && sum.length() > 1e-6 * weight ? sum.normalize() : null;
     if (this.facing && Math.abs(this.facing.z) > 0.8) across.z = 0;
-    this.from = this.facing ? this.facing.clone().multiplyScalar(0.9).addScaledVector(across, 0.75) : new THREE.Vector3(0.6, -1, 0.55);
+    this.from = this.facing ? this.facing.clone().multiplyScalar(0.62).addScaledVector(across, 0.9) : new THREE.Vector3(0.6, -1, 0.55);
     this.from.normalize();
     const largest = Math.max(...[...this.bodies].map((b) => b.field(last, "displacement").reduce((a, v) => Math.max(a, v), 0)), 0);
     const limit = largest > 0 ? (0.1 * this.size) / largest : 1;
@@ -104,13 +104,27 @@ class View {
       this.camera.position.set(centre.x, centre.y, 0.5 * this.size);
     } else {
       const from = directions[name] ? new THREE.Vector3(...directions[name]).normalize() : this.from;
-      const far = (0.5 * extent) / Math.sin((14 * Math.PI) / 180) / Math.min(1, this.aspect || 1);
-      this.camera.position.copy(centre).addScaledVector(from, far * (contact ? 1.1 : 0.92));
+      const far = contact ? (0.55 * extent) / Math.tan((14 * Math.PI) / 180) : this.distance(from);
+      this.camera.position.copy(centre).addScaledVector(from, far);
     }
     this.controls.target.copy(centre);
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw();
+  }
+
+  // How far away the camera must be to see all corners of the box.
+  distance(from) {
+    const right = new THREE.Vector3(0, 0, 1).cross(from);
+    if (right.length() < 1e-6) right.set(1, 0, 0);
+    const up = from.clone().cross(right.normalize()), tangent = Math.tan((14 * Math.PI) / 180);
+    let far = 0;
+    for (let i = 0; i < 8; i++) {
+      const corner = new THREE.Vector3(...[0, 1, 2].map((c) => this.box[(i >> c) & 1][c])).sub(this.centre);
+      const wide = Math.max(Math.abs(corner.dot(right)) / (this.aspect || 1), Math.abs(corner.dot(up))) / tangent;
+      far = Math.max(far, wide + corner.dot(from));
+    }
+    return 1.06 * far;
   }
 
   resize() {
@@ -159,7 +173,7 @@ class View {
       const ghost = how === "ghost" && !shown;
       part.mesh.visible = shown || how !== "hidden";
       Object.assign(part.mesh.material, { transparent: ghost, depthWrite: !ghost });
-      u.opacity.value = ghost ? 0.16 : 1;
+      u.opacity.value = ghost ? 0.12 : 1;
       u.plain.value.setStyle(colour("body" + (1 + (body % 4))));
       u.coloured.value = coloured && !ghost ? 1 : 0;
       u.map.value = this.maps[s.field];
@@ -170,7 +184,7 @@ class View {
       const ink = document.documentElement.dataset.theme === "dark" ? "#e8edf3" : "#1a222c";
       for (const lines of [part.features, part.grid]) lines.material.uniforms.ink.value.setStyle(ink);
       part.features.material.uniforms.opacity.value = ghost ? 0.35 : 0.75;
-      part.grid.material.uniforms.opacity.value = 0.17;
+      part.grid.material.uniforms.opacity.value = Math.min(0.3, 18 / Math.sqrt(this.triangles()));
       part.features.visible = part.mesh.visible;
       part.grid.visible = part.mesh.visible && s.mesh && !ghost;
     };
