@@ -90,7 +90,9 @@ def _screenshot(plotter: Any, path: Path) -> None:
     try:
         plotter.screenshot(path)
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot write the picture {path}: {error}; give a .png file in a folder that exists") from None
+        raise InputError(
+            f"cannot write the picture {path}: {error}; give a .png file in a folder that exists"
+        ) from None
 
 
 def _pyvista() -> Any:

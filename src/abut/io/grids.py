@@ -34,7 +34,9 @@ def field_grid(model: Model, step: Step) -> Grid:
     body = np.zeros(mesh.n_cells, dtype=np.int32)
     for number, cells in enumerate(mesh.bodies.values()):
         body[cells] = number
-    return Grid(mesh.points, tuple((block.kind, block.nodes) for block in mesh.blocks), point_fields(step), {"body": body})
+    return Grid(
+        mesh.points, tuple((block.kind, block.nodes) for block in mesh.blocks), point_fields(step), {"body": body}
+    )
 
 
 def point_fields(step: Step) -> dict[str, NDArray[np.float64]]:

@@ -39,7 +39,9 @@ def _bodies(model: Model) -> Table:
     for name, cells in model.mesh.bodies.items():
         kinds = ", ".join(f"{len(own)} {kind}" for kind, _, own in model.mesh.cells_of(name))
         solid = solids.get(name)
-        words = "rigid" if solid is None else ", ".join(filter(None, (_value(solid.material), _details(solid, "material"))))
+        words = (
+            "rigid" if solid is None else ", ".join(filter(None, (_value(solid.material), _details(solid, "material"))))
+        )
         rows.append([name, kinds or str(len(cells)), words])
     return {"title": "Bodies", "head": ["body", "cells", "material"], "rows": rows}
 

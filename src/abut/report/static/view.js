@@ -155,6 +155,7 @@ class View {
     }
     if (!(high >= low)) [low, high] = [0, 1];
     if (name === "pressure") low = 0;
+    if (name === "gap" && high < 1e-9 * this.size) [low, high] = [0, 1e-9 * this.size]; // rounding
     return (this.extents[name] = [low, high]);
   }
 
