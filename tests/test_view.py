@@ -41,7 +41,7 @@ def solved(cell: str) -> abut.Solution:
     )
 
 
-def read(path: Path):  # noqa: ANN201
+def read(path: Path):
     """A VTU file by VTK's reader, which must find no fault with it."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
@@ -53,13 +53,13 @@ def read(path: Path):  # noqa: ANN201
     return reader.GetOutput()
 
 
-def arrays(data) -> dict[str, np.ndarray]:  # noqa: ANN001
+def arrays(data) -> dict[str, np.ndarray]:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
 
-def measure(grid) -> float:  # noqa: ANN001
+def measure(grid) -> float:
     """Length, area or volume of all cells, by VTK's own shape functions (its triangulation of each cell)."""
     from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 

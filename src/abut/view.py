@@ -1,4 +1,4 @@
-"""Solutions for PyVista: as data to work with, or as a quick picture. PyVista is optional (``pip install abut[picture]``)."""
+"""Solutions for PyVista, which is optional (``pip install abut[picture]``): data to work with, or a quick picture."""
 
 from __future__ import annotations
 

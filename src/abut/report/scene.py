@@ -15,7 +15,7 @@ from abut.report.skins import Patch, Skin, patch, skin
 from abut.state import ContactResult, Solution, Step
 
 BUDGET = 9_000_000  # bytes of arrays; a third more as text
-FINE = 60_000  # points on all contact surfaces together, above which they are divided more coarsely
+FINE = 30_000  # points on all contact surfaces together, above which they are divided more coarsely
 VALUES = 20  # bytes of a point in a step: displacement, von Mises and the like
 FIXED = 36  # bytes of a point in all: coordinates, triangles, edges
 
