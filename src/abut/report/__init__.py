@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from abut.io.atomic import write_text
+from abut.io.atomic import write_file
 from abut.report.origin import Origin, read_origin
 from abut.report.page import page
 from abut.state import Solution
@@ -17,5 +17,10 @@ def write_report(solution: Solution, path: str | Path, origin: Origin | None = N
 
     origin: the job's name and text, and what theory says of it. Raises InputError where the file cannot be written."""
     path = Path(path)
-    write_text(path, page(solution, origin or Origin(path.stem)))
+    data = page(solution, origin or Origin(path.stem)).encode("utf-8")
+
+    def write(temporary: Path) -> None:
+        temporary.write_bytes(data)
+
+    write_file(path, write)
     return path

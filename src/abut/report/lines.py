@@ -92,7 +92,7 @@ def _planes(
     across = np.cross(normal, along)
     through = x[top] + OFF * (weight @ way) / weight.sum()
     planes = ((along, across), (across, along))
-    return [(f"towards {_direction(way)}", np.append(normal, -(normal @ through))) for way, normal in planes]
+    return [(f"along {_direction(way)}", np.append(normal, -(normal @ through))) for way, normal in planes]
 
 
 def _direction(way: NDArray[np.float64]) -> str:

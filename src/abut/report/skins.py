@@ -92,9 +92,10 @@ def skin(mesh: Mesh, body: str, without: NDArray[np.int64]) -> Skin:
     triangles = [nodes[:, np.array(_TRIANGLES[kind])].reshape(-1, 3) for kind, nodes in faces]
     edges, features = _edges(mesh, faces)
     every = np.concatenate([*triangles, np.empty((0, 3), np.int64)])
-    used, numbers = np.unique(np.concatenate([every.ravel(), edges.ravel()]), return_inverse=True)
-    split = every.size
-    return Skin(used, numbers[:split].reshape(-1, 3), numbers[split:].reshape(-1, 2), features)
+    seen = np.zeros(len(mesh.points), dtype=bool)
+    seen[every] = seen[edges] = True
+    number = np.cumsum(seen) - 1
+    return Skin(np.flatnonzero(seen), number[every], number[edges], features)
 
 
 def _outside(mesh: Mesh, body: str) -> NDArray[np.int64]:

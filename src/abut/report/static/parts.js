@@ -48,7 +48,7 @@ function surfaceMaterial(lit) {
         vec3 normal = normalize(n);
         if (normal.z < 0.0) normal = -normal;
         float key = max(dot(normal, normalize(vec3(-0.4, 0.55, 0.75))), 0.0);
-        float light = shown ? 0.62 + 0.3 * key + 0.12 * normal.z : 0.68 + 0.3 * key + 0.1 * normal.z;
+        float light = shown ? 0.62 + 0.3 * key + 0.12 * normal.z : 0.6 + 0.32 * key + 0.12 * normal.z;
         gl_FragColor = vec4(rgb * mix(1.0, light, lit), opacity);
       }`,
   });

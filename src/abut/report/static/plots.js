@@ -2,7 +2,11 @@
 // Plots with uPlot: convergence, history over the steps, pressure along lines.
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
-const short = (value) => value == null ? "" : value === 0 ? "0" : String(Number(value.toPrecision(5)));
+const short = (value) => {
+  if (value == null || value === 0) return value === 0 ? "0" : "";
+  const size = Math.abs(value);
+  return size < 1e-3 || size >= 1e6 ? value.toExponential(3).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(value.toPrecision(5)));
+};
 
 function plot(parent, title, xLabel, xs, series, options = {}) {
   const box = document.createElement("div");
@@ -24,7 +28,7 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
   const logarithmic = (u, low, high) => low > 0 ? [10 ** Math.floor(Math.log10(low) - 0.2), 10 ** Math.ceil(Math.log10(high) + 0.2)] : [1e-16, 1];
   const linear = (u, low, high) => {
     if (low == null) return [0, 1];
-    low = Math.min(low, 0);
+    low = low > -1e-6 * high ? 0 : low; // rounding below zero is none
     if (high <= low) high = low + 1;
     return [low < 0 ? low - 0.05 * (high - low) : 0, high + 0.08 * (high - low)];
   };

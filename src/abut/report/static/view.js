@@ -1,6 +1,8 @@
 "use strict";
 // The picture: camera, what is shown of each part, colours.
 
+const RAW = "srgb-linear"; // colours go to the screen as they are written, without three's conversion
+
 class View {
   constructor(holder, scene) {
     this.holder = holder;
@@ -175,7 +177,7 @@ class View {
       part.mesh.visible = shown || how !== "hidden";
       Object.assign(part.mesh.material, { transparent: ghost, depthWrite: !ghost });
       u.opacity.value = ghost ? 0.12 : 1;
-      u.plain.value.setStyle(colour("body" + (1 + (body % 4))));
+      u.plain.value.setStyle(colour("body" + (1 + (body % 4))), RAW);
       u.coloured.value = coloured && !ghost ? 1 : 0;
       u.map.value = this.maps[s.field];
       u.low.value = low;
@@ -183,7 +185,7 @@ class View {
       u.bands.value = s.bands ? 12 : 0;
       u.nothing.value = s.field === "pressure" ? 1e-3 * high : -1e30;
       const ink = document.documentElement.dataset.theme === "dark" ? "#e8edf3" : "#1a222c";
-      for (const lines of [part.features, part.grid]) lines.material.uniforms.ink.value.setStyle(ink);
+      for (const lines of [part.features, part.grid]) lines.material.uniforms.ink.value.setStyle(ink, RAW);
       part.features.material.uniforms.opacity.value = ghost ? 0.35 : 0.75;
       part.grid.material.uniforms.opacity.value = Math.min(0.3, 18 / Math.sqrt(this.triangles()));
       part.features.visible = part.mesh.visible;
@@ -200,7 +202,7 @@ class View {
       part.mesh.renderOrder = part.grid.renderOrder = 2;
       u.opacity.value = same ? 0.95 : 0.55;
       u.coloured.value = same ? 1 : 0;
-      if (!same) u.plain.value.setStyle(colour("second"));
+      if (!same) u.plain.value.setStyle(colour("second"), RAW);
     });
     this.draw();
   }
