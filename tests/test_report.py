@@ -119,6 +119,10 @@ def test_plane_bodies_are_flat(cell: str) -> None:
         x = unpack(body["points"]).reshape(-1, 3).astype(float)
         t = x[unpack(body["triangles"]).reshape(-1, 3)]
         assert 0.5 * np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])[:, 2].sum() == pytest.approx(area, rel=1e-6)
+        sides = np.sort(unpack(body["triangles"]).reshape(-1, 3)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        sides, count = np.unique(sides, axis=0, return_counts=True)
+        assert count.max() == 2  # neighbours meet edge to edge, and none lies on another
+        assert np.linalg.norm(np.diff(x[sides[count == 1]], axis=1), axis=2).sum() == pytest.approx(border, rel=1e-6)
         e = x[unpack(body["edges"]).reshape(-1, 2)[: body["features"]]]
         assert np.linalg.norm(e[:, 1] - e[:, 0], axis=1).sum() == pytest.approx(border, rel=1e-6)
 
@@ -280,7 +284,7 @@ def test_run_writes_the_report(tmp_path: Path) -> None:
 
 TOUCH_EVERYTHING = """<script>(() => {
   document.documentElement.dataset.before = abut.view.count().pixels;
-  const change = (e, value) => { e.value = value; e.dispatchEvent(new Event("input")); e.dispatchEvent(new Event("change")); };
+  const change = (e, value) => { e.value = value; for (const k of ["input", "change"]) e.dispatchEvent(new Event(k)); };
   for (const e of document.querySelectorAll("#panel select")) for (const o of [...e.options].reverse()) change(e, o.value);
   for (const e of document.querySelectorAll("#panel input[type=range]")) for (const v of [e.min, e.max]) change(e, v);
   for (const e of document.querySelectorAll("#panel input[type=checkbox]")) { e.click(); e.click(); }
