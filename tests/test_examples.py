@@ -61,7 +61,7 @@ def check_profile(contact: abut.state.ContactResult, expected: dict, tolerance: 
     line = pressure_lines(contact)[0]
     s = line.distance_from(np.array(centre))
     error = np.abs(line.pressure - peak * np.sqrt(np.maximum(1.0 - (s / half) ** 2, 0.0)))
-    assert np.trapezoid(error, s) < tolerance * peak * np.ptp(s)
+    assert np.sum(0.5 * (error[1:] + error[:-1]) * np.diff(s)) < tolerance * peak * np.ptp(s)
 
 
 def test_another_code_uses_the_interface_alone() -> None:

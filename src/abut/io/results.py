@@ -39,8 +39,8 @@ def write(solution: Solution, directory: str | Path, origin: Origin | None = Non
         _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
-    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
+    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
 
