@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 from pathlib import Path
 
@@ -10,6 +11,9 @@ import pytest
 
 import abut
 from abut.job import load_job
+from abut.report.lines import pressure_lines
+from abut.report.origin import PROFILE, ellipse
+from abut.report.origin import quantities as known_quantities
 
 FOLDER = Path(__file__).parents[1] / "examples"
 JOBS = [path for path in sorted(FOLDER.rglob("*.toml")) if path.parent.name != "faulty"]  # those: test_check.py
@@ -37,14 +41,39 @@ def test_example_runs_and_balances(path: Path) -> None:
 def check_expected(path: Path, contact: abut.state.ContactResult) -> None:
     """What theory says of the first contact: expected.json beside the job, by the job file's name."""
     expected = json.loads((path.parent / "expected.json").read_text())[path.stem]
-    quantities = {
-        "contact.max_pressure": contact.max_pressure,
-        "contact.area": contact.area,
-        **{f"contact.force.{axis}": value for axis, value in zip("xyz", contact.force)},
-    }
+    quantities = known_quantities(contact)
     for name, wanted in expected.items():
-        value = quantities[name]
         assert wanted["source"]
+        if name == PROFILE:
+            check_profile(contact, expected, wanted["tolerance"])
+            continue
+        value = quantities[name]
         if "value" in wanted:
             assert value == pytest.approx(wanted["value"], rel=wanted["tolerance"]), name
         assert wanted.get("at_least", -np.inf) <= value <= wanted.get("at_most", np.inf), name
+
+
+def check_profile(contact: abut.state.ContactResult, expected: dict, tolerance: float) -> None:
+    """The pressure along the report's line is Hertz's ellipse, in the mean over the line (as share of the peak): its edge,
+    where the slope is infinite, falls within a facet."""
+    theory = ellipse(expected)
+    assert theory is not None
+    peak, half, centre = theory
+    line = pressure_lines(contact)[0]
+    s = line.distance_from(np.array(centre))
+    error = np.abs(line.pressure - peak * np.sqrt(np.maximum(1.0 - (s / half) ** 2, 0.0)))
+    assert np.sum(0.5 * (error[1:] + error[:-1]) * np.diff(s)) < tolerance * peak * np.ptp(s)
+
+
+def test_another_code_uses_the_interface_alone() -> None:
+    """scikit-fem with abut's interface gives what abut gives: the same equations, to rounding (1e-10)."""
+    pytest.importorskip("skfem")
+    path = Path(__file__).parents[1] / "examples" / "scikit-fem" / "contact.py"
+    spec = importlib.util.spec_from_file_location("contact_by_scikit_fem", path)
+    assert spec is not None
+    assert spec.loader is not None
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    assert example.main() < 1e-10
+    active = example.solve()[2]
+    assert 0 < active.sum() < len(active)  # the crown opens towards the corners: the active set had to be found

@@ -30,13 +30,16 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.report import write_report
     from abut.solids.materials import LinearElastic
     from abut.state import Solution
+    from abut.view import plot, to_pyvista
 
 __version__ = "0.1.0"
 
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
+    "write_report": "abut.report", "plot": "abut.view", "to_pyvista": "abut.view",
     "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
     "find_contacts": "abut.facing", **dict.fromkeys(
         ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
@@ -49,7 +52,7 @@ __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
     "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Rigid",
     "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-    "add_surfaces", "find_contacts", "solve", "write",
+    "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,6 +185,18 @@ class Solution:
     def displacement(self) -> NDArray[np.float64]:
         """Displacement at the end of the last step, (n_points, dim)."""
         return self.steps[-1].displacement
+
+    def to_pyvista(self, step: int = -1) -> Any:
+        """Bodies and contacts as a ``pyvista.MultiBlock``: ``abut.to_pyvista(solution, step)``."""
+        import abut
+
+        return abut.to_pyvista(self, step)
+
+    def plot(self, what: str = "pressure", **options: Any) -> Any:
+        """A quick picture of pressure, gap, von Mises or displacement: ``abut.plot(solution, what, ...)``."""
+        import abut
+
+        return abut.plot(self, what, **options)
 
 
 Observer = Callable[[Iteration | str], None]  # gets each iteration, and notes as text

@@ -36,6 +36,7 @@ def _run(arguments: argparse.Namespace) -> int:
     from abut.analysis import solve
     from abut.io.results import summary, write
     from abut.job import load_job
+    from abut.report import read_origin
 
     job = load_job(arguments.job)
     silent = arguments.quiet or arguments.json
@@ -44,7 +45,7 @@ def _run(arguments: argparse.Namespace) -> int:
         print(*job.notes, sep="\n", end="\n" if job.notes else "")
     solution = solve(job.model, None if silent else _Table())
     solution = replace(solution, notes=(*job.notes, *solution.notes))
-    write(solution, directory)
+    write(solution, directory, read_origin(job.path, job.text))
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
@@ -93,5 +94,5 @@ def _print_result(solution: Solution, directory: Path) -> None:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
     print(
-        f"{sum(solution.timings.values()):.1f} s; results in {directory}: open fields.pvd and contact_*.pvd in ParaView"
+        f"{sum(solution.timings.values()):.1f} s; results in {directory}: open report.html in a browser, *.pvd in ParaView"
     )

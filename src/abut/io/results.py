@@ -6,43 +6,41 @@ import csv
 import io
 import json
 import math
-import platform
 import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
-from numpy.typing import NDArray
 
-import abut
-from abut.cells import BY_CODE, CELLS
 from abut.io.atomic import make_directory, write_text
+from abut.io.grids import Grid, contact_grid, field_grid
+from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.mesh.surface import Surface
-from abut.state import ContactResult, Solution, Step
-
-NOT_COVERED, OPEN, CLOSED = 0, 1, 2
+from abut.report import Origin, write_report
+from abut.state import Solution, Step
 
 
-def write(solution: Solution, directory: str | Path) -> Path:
+def write(solution: Solution, directory: str | Path, origin: Origin | None = None) -> Path:
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
-    summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for each contact.
+    report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
+    each contact. origin: what the report says of the job (its name, its text, what theory expects).
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
     make_directory(folder)
     for step in solution.steps:
-        _write_fields(folder, solution, step)
+        _write_grid(folder / f"fields_{step.number:04d}.vtu", field_grid(solution.model, step))
         for contact in step.contacts:
-            _write_contact(folder, step, contact)
+            stem = f"contact_{file_name(contact.name)}"
+            _write_grid(folder / f"{stem}_{step.number:04d}.vtu", contact_grid(step, contact))
     _write_collection(folder, "fields", solution)
     for contact in solution.contacts:
         _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
+    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
 
@@ -75,12 +73,7 @@ def summary(solution: Solution) -> dict[str, Any]:
         },
         "notes": list(solution.notes),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
-        "versions": {
-            "abut": abut.__version__,
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "python": platform.python_version(),
-        },
+        "versions": versions(),
     }
 
 
@@ -151,85 +144,8 @@ def _log(solution: Solution) -> str:
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
-def von_mises(stress: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Von Mises stress of (n, 6) stresses xx yy zz xy yz zx."""
-    xx, yy, zz, xy, yz, zx = stress.T
-    return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2))
-
-
-def _vectors(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Two-dimensional vectors with a zero third component, as ParaView wants them."""
-    return np.pad(values, ((0, 0), (0, 3 - values.shape[1])))
-
-
-def _write_fields(folder: Path, solution: Solution, step: Step) -> None:
-    mesh = solution.model.mesh
-    body = np.zeros(mesh.n_cells, dtype=np.int32)
-    for number, cells in enumerate(mesh.bodies.values()):
-        body[cells] = number
-    write_vtu(
-        folder / f"fields_{step.number:04d}.vtu",
-        mesh.points,
-        [(block.kind, block.nodes) for block in mesh.blocks],
-        {
-            "displacement": _vectors(step.displacement),
-            "stress": step.stress,
-            "von_mises": von_mises(step.stress),
-        },
-        {"body": body},
-    )
-
-
-def _write_contact(folder: Path, step: Step, contact: ContactResult) -> None:
-    parts = []
-    sides = ((contact.contactor, contact.pressure, contact.gap, 0), (contact.target, contact.target_pressure, None, 1))
-    for surface, pressure, gap, side in sides:
-        closed = np.nan_to_num(pressure).max(axis=1) > 0.0
-        if side == 0:
-            status = np.where(contact.covered, np.where(closed, CLOSED, OPEN), NOT_COVERED)
-        else:
-            status = np.where(closed, CLOSED, OPEN)
-        parts += _loose_facets(surface, step.displacement, pressure, gap, status.astype(np.int32), side)
-    first = 0
-    blocks, points, data, cells = [], [], [], []
-    for kind, x, values, own in parts:
-        n = CELLS[kind].nodes
-        blocks.append((kind, first + np.arange(len(x)).reshape(-1, n)))
-        first += len(x)
-        points.append(x)
-        data.append(values)
-        cells.append(own)
-    write_vtu(
-        folder / f"contact_{file_name(contact.name)}_{step.number:04d}.vtu",
-        np.concatenate(points),
-        blocks,
-        {k: np.concatenate([d[k] for d in data]) for k in data[0]},
-        {k: np.concatenate([c[k] for c in cells]) for k in cells[0]},
-    )
-
-
-def _loose_facets(
-    surface: Surface,
-    displacement: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    gap: NDArray[np.float64] | None,
-    status: NDArray[np.int32],
-    side: int,
-) -> list[tuple[str, NDArray[np.float64], dict[str, NDArray[Any]], dict[str, NDArray[Any]]]]:
-    """Facets by type, each with points of its own, so that a pressure may jump between them."""
-    result = []
-    for code in np.unique(surface.kinds):
-        kind = BY_CODE[code]
-        own = np.flatnonzero(surface.kinds == code)
-        nodes = surface.nodes[own, : kind.nodes].ravel()
-        values = {
-            "pressure": np.nan_to_num(pressure[own, : kind.nodes]).ravel(),
-            "gap": np.full(len(nodes), np.nan) if gap is None else gap[own, : kind.nodes].ravel(),
-            "displacement": _vectors(displacement[nodes]),
-        }
-        cells = {"status": status[own], "side": np.full(len(own), side, dtype=np.int32)}
-        result.append((kind.name, surface.points[nodes], values, cells))
-    return result
+def _write_grid(path: Path, grid: Grid) -> None:
+    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
 
 
 def _write_collection(folder: Path, stem: str, solution: Solution) -> None:

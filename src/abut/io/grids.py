@@ -1,0 +1,96 @@
+"""A solution as grids that a viewer knows: cells, points and named arrays, for VTU files and for PyVista alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import BY_CODE, CELLS
+from abut.mesh.surface import Surface
+from abut.model import Model
+from abut.solids.invariants import von_mises
+from abut.state import ContactResult, Step
+
+NOT_COVERED, OPEN, CLOSED = 0, 1, 2
+CONTACTOR, TARGET = 0, 1
+
+
+@dataclass(frozen=True)
+class Grid:
+    """points (n, 2 or 3); blocks of cells (kind, connectivity); arrays over points and over cells (in their order)."""
+
+    points: NDArray[np.float64]
+    blocks: tuple[tuple[str, NDArray[Any]], ...]
+    point_data: dict[str, NDArray[Any]]
+    cell_data: dict[str, NDArray[Any]]
+
+
+def field_grid(model: Model, step: Step) -> Grid:
+    """The whole mesh with displacement, stress, von_mises at points, and the body's number at cells."""
+    mesh = model.mesh
+    body = np.zeros(mesh.n_cells, dtype=np.int32)
+    for number, cells in enumerate(mesh.bodies.values()):
+        body[cells] = number
+    return Grid(
+        mesh.points, tuple((block.kind, block.nodes) for block in mesh.blocks), point_fields(step), {"body": body}
+    )
+
+
+def point_fields(step: Step) -> dict[str, NDArray[np.float64]]:
+    """What is known at every point of the mesh: displacement (n, 3), stress (n, 6), von_mises (n,)."""
+    return {"displacement": vectors(step.displacement), "stress": step.stress, "von_mises": von_mises(step.stress)}
+
+
+def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:
+    """Facets of a contact's sides with pressure, gap, displacement at points; status and side at cells.
+
+    Each facet has points of its own, so that the pressure may jump between facets.
+    status: 0 not covered by the target, 1 open, 2 closed; gap is NaN on the target, and where it is not covered.
+    """
+    first = 0
+    blocks, points, data, cells = [], [], [], []
+    for side in sides:
+        for kind, x, values, own in _side(step, contact, side):
+            blocks.append((kind, first + np.arange(len(x)).reshape(-1, CELLS[kind].nodes)))
+            first += len(x)
+            points.append(x)
+            data.append(values)
+            cells.append(own)
+    return Grid(
+        np.concatenate(points),
+        tuple(blocks),
+        {k: np.concatenate([d[k] for d in data]) for k in data[0]},
+        {k: np.concatenate([c[k] for c in cells]) for k in cells[0]},
+    )
+
+
+def vectors(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Two-dimensional vectors with a zero third component, as viewers want them."""
+    return np.pad(values, ((0, 0), (0, 3 - values.shape[1])))
+
+
+def _side(
+    step: Step, contact: ContactResult, side: int
+) -> list[tuple[str, NDArray[np.float64], dict[str, NDArray[Any]], dict[str, NDArray[Any]]]]:
+    """The facets of one side by type: kind, points, arrays over points, arrays over cells."""
+    surface: Surface = contact.contactor if side == CONTACTOR else contact.target
+    pressure = contact.pressure if side == CONTACTOR else contact.target_pressure
+    closed = np.nan_to_num(pressure).max(axis=1) > 0.0
+    covered = contact.covered if side == CONTACTOR else np.ones(len(surface), dtype=bool)
+    status = np.where(covered, np.where(closed, CLOSED, OPEN), NOT_COVERED).astype(np.int32)
+    result = []
+    for code in np.unique(surface.kinds):
+        kind = BY_CODE[code]
+        own = np.flatnonzero(surface.kinds == code)
+        nodes = surface.nodes[own, : kind.nodes].ravel()
+        values = {
+            "pressure": np.nan_to_num(pressure[own, : kind.nodes]).ravel(),
+            "gap": contact.gap[own, : kind.nodes].ravel() if side == CONTACTOR else np.full(len(nodes), np.nan),
+            "displacement": vectors(step.displacement[nodes]),
+        }
+        cells = {"status": status[own], "side": np.full(len(own), side, dtype=np.int32)}
+        result.append((kind.name, surface.points[nodes], values, cells))
+    return result

@@ -1,0 +1,26 @@
+"""The report of a run: one HTML file with a picture to turn, the certificate and plots (``docs/report.md``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from abut.io.atomic import write_file
+from abut.report.origin import Origin, read_origin
+from abut.report.page import page
+from abut.state import Solution
+
+__all__ = ["Origin", "read_origin", "write_report"]
+
+
+def write_report(solution: Solution, path: str | Path, origin: Origin | None = None) -> Path:
+    """Write the report of a solution to the HTML file ``path`` and return it.
+
+    origin: the job's name and text, and what theory says of it. Raises InputError where the file cannot be written."""
+    path = Path(path)
+    data = page(solution, origin or Origin(path.stem)).encode("utf-8")
+
+    def write(temporary: Path) -> None:
+        temporary.write_bytes(data)
+
+    write_file(path, write)
+    return path

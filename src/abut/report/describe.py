@@ -1,0 +1,81 @@
+"""What was solved, in words: bodies, materials, supports, loads, contacts as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from abut.model import Model
+
+Table = dict[str, Any]  # title, head (names of columns), rows (lists of text)
+
+_GROUPS = (
+    ("Supports", "supports"),
+    ("Loads", "loads"),
+    ("Rigid bodies", "rigid"),
+    ("Equations", "equations"),
+    ("Contacts", "contacts"),
+)
+_SUBJECT = ("on", "body", "name")  # the first of these that a record has stands in a column of its own
+
+
+def tables(model: Model) -> list[Table]:
+    """The model's records as tables of text."""
+    result = [_bodies(model)]
+    for title, name in _GROUPS:
+        records = getattr(model, name, ())
+        if records:
+            rows = [[type(r).__name__, _subject(r), _details(r)] for r in records]
+            result.append({"title": title, "head": ["kind", "where", "values"], "rows": rows})
+    return result
+
+
+def _bodies(model: Model) -> Table:
+    solids = {solid.body: solid for solid in model.solids}
+    rows = []
+    for name, cells in model.mesh.bodies.items():
+        kinds = ", ".join(f"{len(own)} {kind}" for kind, _, own in model.mesh.cells_of(name))
+        solid = solids.get(name)
+        words = (
+            "rigid" if solid is None else ", ".join(filter(None, (_value(solid.material), _details(solid, "material"))))
+        )
+        rows.append([name, kinds or str(len(cells)), words])
+    return {"title": "Bodies", "head": ["body", "cells", "material"], "rows": rows}
+
+
+def _subject(record: Any) -> str:
+    value = next((getattr(record, name) for name in _SUBJECT if hasattr(record, name)), None)
+    return "everywhere" if value is None else _value(value)
+
+
+def _details(record: Any, *without: str) -> str:
+    """Every value that was given: name and value of fields that differ from their defaults."""
+    subject = next((name for name in _SUBJECT if hasattr(record, name)), "")
+    parts = []
+    for own in fields(record):
+        value = getattr(record, own.name)
+        default = own.default if own.default_factory is MISSING else own.default_factory()
+        if own.name != subject and own.name not in without and value is not None and not _same(value, default):
+            parts.append(f"{own.name} {_value(value)}")
+    return ", ".join(parts)
+
+
+def _same(value: Any, default: Any) -> bool:
+    return default is not MISSING and type(value) is type(default) and bool(value == default)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float | np.floating):
+        return f"{float(value):.6g}"
+    if isinstance(value, str | int):
+        return str(value)
+    if callable(value):
+        return "a function of position"
+    if is_dataclass(value):
+        return _details(value)
+    if isinstance(value, Sequence):
+        return "(" + ", ".join(map(_value, value)) + ")"
+    return str(value)

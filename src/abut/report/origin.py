@@ -1,0 +1,99 @@
+"""Where a solution came from: the job's name and text, and what theory says of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from abut.state import ContactResult, Solution
+
+PROFILE = "contact.profile"
+
+
+@dataclass(frozen=True)
+class Origin:
+    """title: the job's name; text: the job file; expected: what is known of the first contact by theory, by quantity
+    (``examples/README.md`` says how it is written)."""
+
+    title: str = "abut"
+    text: str = ""
+    expected: Mapping[str, Any] = field(default_factory=dict)
+
+
+def read_origin(path: Path, text: str) -> Origin:
+    """The origin of a job file; theory is read from ``expected.json`` beside it, where that has an entry for the file."""
+    try:
+        data = json.loads(path.with_name("expected.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        data = {}
+    entry = data.get(path.stem) if isinstance(data, dict) else None
+    folder = path.absolute().parent.name
+    title = folder if path.stem == "job" else f"{folder}: {path.stem}"
+    return Origin(title, text, entry if isinstance(entry, dict) else {})
+
+
+def quantities(contact: ContactResult) -> dict[str, float]:
+    """What ``expected.json`` may speak of, by its names there."""
+    return {
+        "contact.max_pressure": contact.max_pressure,
+        "contact.area": contact.area,
+        **{f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)},
+    }
+
+
+def comparison(solution: Solution, expected: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Rows quantity, value, expected (words), deviation (relative, or None), passed, source; what cannot be read is left
+    out: the file may be somebody else's."""
+    if not solution.contacts:
+        return []
+    known, rows = quantities(solution.contacts[0]), []
+    for name, wanted in expected.items():
+        if name not in known or not isinstance(wanted, dict):
+            continue
+        value, low, high = known[name], _number(wanted, "at_least"), _number(wanted, "at_most")
+        exact, tolerance = _number(wanted, "value"), _number(wanted, "tolerance")
+        words, deviation, passed = [], None, True
+        if exact is not None and tolerance is not None:
+            deviation = (value - exact) / abs(exact) if exact else value
+            passed = abs(deviation) <= tolerance
+            words.append(f"{exact:.7g} within {100 * tolerance:.3g} %")
+        if low is not None:
+            passed = passed and value >= low
+            words.append(f"at least {low:.7g}")
+        if high is not None:
+            passed = passed and value <= high
+            words.append(f"at most {high:.7g}")
+        if words:
+            rows.append(
+                {
+                    "quantity": name.removeprefix("contact.").replace("_", " ").replace(".", " "),
+                    "value": value,
+                    "expected": ", ".join(words),
+                    "deviation": deviation,
+                    "passed": passed,
+                    "source": str(wanted.get("source", "")),
+                }
+            )
+    return rows
+
+
+def ellipse(expected: Mapping[str, Any]) -> tuple[float, float, tuple[float, ...]] | None:
+    """Peak, half width and centre of the elliptic pressure (Hertz) that theory gives along a line, if it does."""
+    wanted = expected.get(PROFILE)
+    if not isinstance(wanted, dict):
+        return None
+    peak, half, centre = _number(wanted, "peak"), _number(wanted, "half_width"), wanted.get("centre")
+    if peak is None or half is None or not half > 0.0 or not isinstance(centre, list):
+        return None
+    if not all(isinstance(c, (int, float)) and math.isfinite(c) for c in centre):
+        return None
+    return peak, half, tuple(float(c) for c in centre)
+
+
+def _number(table: Mapping[str, Any], key: str) -> float | None:
+    value = table.get(key)
+    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else None

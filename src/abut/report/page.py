@@ -1,0 +1,234 @@
+"""The report: one HTML file with everything in it, which opens without a network."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Iterable, Sequence
+from html import escape
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import abut
+from abut.io.versions import versions
+from abut.report.describe import tables
+from abut.report.lines import Line, pressure_lines
+from abut.report.origin import Origin, comparison, ellipse
+from abut.report.scene import scene
+from abut.state import Solution
+
+LIBRARIES = ("three.min.js", "uplot.min.js")
+SCRIPTS = ("plots.js", "parts.js", "view.js", "report.js")
+STYLES = ("uplot.min.css", "report.css")
+
+
+def page(solution: Solution, origin: Origin) -> str:
+    """The whole report as text of an HTML file."""
+    picture = scene(solution)
+    data = {
+        "scene": picture.data,
+        "convergence": _convergence(solution),
+        "history": _history(solution),
+        "lines": _lines(solution, origin),
+    }
+    parts = {
+        "title": escape(origin.title),
+        "style": "\n".join(map(_static, STYLES)),
+        "head": _head(solution, origin),
+        "reduced": "".join(f"<p class=note>To keep this file small, {escape(text)}.</p>" for text in picture.reduced),
+        "certificate": _certificate(solution),
+        "comparison": _comparison(solution, origin),
+        "contacts": _contacts(solution),
+        "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
+        "run": _run(solution),
+        "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
+        "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
+        "libraries": "\n".join(f"<script>{_static(name)}</script>" for name in LIBRARIES),
+        "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>",
+    }
+    first, *rest = _static("report.html").split("{{")
+    text = [first]
+    for piece in rest:
+        name, after = piece.split("}}", 1)
+        text += [parts[name], after]
+    return "".join(text)
+
+
+def _static(name: str) -> str:
+    return files("abut.report").joinpath("static", name).read_text(encoding="utf-8")
+
+
+def _head(solution: Solution, origin: Origin) -> str:
+    failed = [check for check in solution.certificate if not check.passed]
+    theory = [row for row in comparison(solution, origin.expected) if not row["passed"]]
+    if not solution.converged:
+        good, verdict = False, f"Not converged at step {solution.steps[-1].number}: what follows is the last state."
+    elif failed:
+        names = ", ".join(f"{c.contact}: {c.name}" if c.contact else c.name for c in failed)
+        good, verdict = False, f"Converged, but {len(failed)} of {len(solution.certificate)} checks fail: {names}."
+    elif theory:
+        good, verdict = False, f"Converged, but not what theory says: {', '.join(r['quantity'] for r in theory)}."
+    else:
+        good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass."
+    facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
+    if solution.contacts:
+        top = max(solution.contacts, key=lambda c: c.max_pressure)
+        force = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
+        facts = [
+            ("largest pressure", number(top.max_pressure)),
+            ("contact force", number(float(np.linalg.norm(force.force)))),
+            ("contact area", number(sum(c.area for c in solution.contacts))),
+            *facts,
+        ]
+    facts.append(("seconds", f"{sum(solution.timings.values()):.3g}"))
+    chips = "".join(f"<div><b>{escape(value)}</b><span>{name}</span></div>" for name, value in facts)
+    mark = "✓" if good else "✗"
+    return (
+        f"<h1>{escape(origin.title)}</h1>"
+        f'<p class="verdict {"good" if good else "bad"}"><i>{mark}</i>{escape(verdict)}</p><div class=facts>{chips}</div>'
+    )
+
+
+def _certificate(solution: Solution) -> str:
+    rows = [
+        [
+            _mark(check.passed),
+            escape(check.contact or "whole model"),
+            escape(check.name),
+            f"{check.value:.2e}",
+            f"{check.limit:.2e}",
+            escape(check.meaning),
+        ]
+        for check in solution.certificate
+    ]
+    return _table(["", "contact", "check", "value", "limit", "what it says"], rows, raw=True)
+
+
+def _mark(passed: bool) -> str:
+    return f"<span class={'pass' if passed else 'fail'}>{'pass' if passed else 'FAIL'}</span>"
+
+
+def _comparison(solution: Solution, origin: Origin) -> str:
+    rows = [
+        [
+            _mark(row["passed"]),
+            escape(row["quantity"]),
+            f"{row['value']:.7g}",
+            escape(row["expected"]),
+            "" if row["deviation"] is None else f"{100 * row['deviation']:+.2g} %",
+            escape(row["source"]),
+        ]
+        for row in comparison(solution, origin.expected)
+    ]
+    if not rows:
+        return ""
+    head = ["", f"of {escape(solution.contacts[0].name)}", "computed", "theory", "deviation", "source"]
+    return "<section><h2>Beside theory</h2>" + _table(head, rows, raw=True) + "</section>"
+
+
+def _contacts(solution: Solution) -> str:
+    rows = [
+        [
+            c.name,
+            "(" + ", ".join(number(value) for value in c.force) + ")",
+            number(c.max_pressure),
+            number(c.area),
+            number(c.max_penetration),
+            f"{c.active} of {c.multipliers}",
+            f"{100 * c.covered_share:.3g} %",
+        ]
+        for c in solution.contacts
+    ]
+    head = ["contact", "force on the contactor", "largest pressure", "area", "penetration", "active", "covered"]
+    return _table(head, rows, "At the end of the last step") if rows else ""
+
+
+def _run(solution: Solution) -> str:
+    timings = [[name, f"{seconds:.3g} s"] for name, seconds in solution.timings.items()]
+    notes = "".join(f"<li>{escape(note)}</li>" for note in solution.notes)
+    stamp = time.strftime("%Y-%m-%d %H:%M")
+    return (
+        f"<div class=columns><div>{_table(['stage', 'time'], timings)}</div>"
+        f"<div>{_table(['version', ''], [[k, v] for k, v in versions().items()])}</div></div>"
+        f"<ul class=notes>{notes}</ul><p class=note>Written by abut {abut.__version__}, {stamp}.</p>"
+    )
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]], title: str = "", raw: bool = False) -> str:
+    text = (lambda cell: cell) if raw else escape
+    body = "".join("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    names = "".join(f"<th>{text(name)}</th>" for name in head)
+    heading = f"<h3>{escape(title)}</h3>" if title else ""
+    return f"{heading}<div class=wide><table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table></div>"
+
+
+def number(value: float) -> str:
+    """A number as a person reads it: six digits at most."""
+    return f"{value:.6g}" if math.isfinite(value) else "none"
+
+
+def _plain(values: Iterable[float] | NDArray[np.float64]) -> list[float | None]:
+    """Numbers for a plot: seven digits, None where there is none."""
+    return [float(f"{value:.7g}") if math.isfinite(value) else None for value in values]
+
+
+def _convergence(solution: Solution) -> dict[str, Any]:
+    rows = [row for step in solution.steps for row in step.iterations]
+    return {
+        "step": [row.step for row in rows],
+        "residual": _plain(row.residual for row in rows),
+        "contact": _plain(row.contact_residual for row in rows),
+        "active": [row.active for row in rows],
+        "changed": [row.changed for row in rows],
+    }
+
+
+def _history(solution: Solution) -> dict[str, Any]:
+    names = [contact.name for contact in solution.contacts]
+    each = [[step.contacts[i] for step in solution.steps] for i in range(len(names))]
+    return {
+        "factor": _plain(step.factor for step in solution.steps),
+        "contacts": [
+            {
+                "name": name,
+                "force": _plain(float(np.linalg.norm(c.force)) for c in own),
+                "area": _plain(c.area for c in own),
+                "pressure": _plain(c.max_pressure for c in own),
+            }
+            for name, own in zip(names, each)
+        ],
+    }
+
+
+def _opening(line: Line) -> NDArray[np.float64]:
+    """The gap along a line, or nothing where it is rounding all along."""
+    some = np.nanmax(np.nan_to_num(np.abs(line.gap)), initial=0.0) > 1e-9 * np.ptp(line.distance)
+    return line.gap if some else np.full_like(line.gap, np.nan)
+
+
+def _lines(solution: Solution, origin: Origin) -> list[dict[str, Any]]:
+    theory = ellipse(origin.expected)
+    result = []
+    for index, contact in enumerate(solution.contacts):
+        for line in pressure_lines(contact):
+            distance, reference = line.distance, None
+            if theory and index == 0 and len(theory[2]) == line.points.shape[1]:
+                peak, half, centre = theory
+                distance = line.distance_from(np.array(centre))
+                reference = peak * np.sqrt(np.maximum(1.0 - (distance / half) ** 2, 0.0))
+            result.append(
+                {
+                    "contact": contact.name,
+                    "label": line.label,
+                    "zero": "the largest pressure" if reference is None else "the centre of contact",
+                    "distance": _plain(distance),
+                    "pressure": _plain(line.pressure),
+                    "gap": _plain(_opening(line)),
+                    "theory": None if reference is None else _plain(reference),
+                }
+            )
+    return result

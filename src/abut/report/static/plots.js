@@ -1,0 +1,109 @@
+"use strict";
+// Plots with uPlot: convergence, history over the steps, pressure along lines.
+
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+const short = (value) => {
+  if (value == null || value === 0) return value === 0 ? "0" : "";
+  const size = Math.abs(value);
+  return size < 1e-3 || size >= 1e6 ? value.toExponential(3).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(value.toPrecision(5)));
+};
+
+function plot(parent, title, xLabel, xs, series, options = {}) {
+  const box = document.createElement("div");
+  box.className = "plot";
+  const heading = document.createElement("h3");
+  heading.textContent = title;
+  box.append(heading);
+  parent.append(box);
+  const grid = { stroke: colour("line"), width: 1 };
+  const axis = (more) => ({ stroke: colour("soft"), grid, ticks: grid, font: "12px system-ui", labelFont: "12px system-ui", ...more });
+  const powers = (u, values) => values.map((v) => v == null ? "" : "1e" + Math.round(Math.log10(v)));
+  const plain = (u, values) => values.map(short);
+  const decades = (u, axis, low, high) => { // at most eight powers of ten
+    const [a, b] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))], every = Math.max(1, Math.ceil((b - a) / 7));
+    return Array.from({ length: Math.floor((b - a) / every) + 1 }, (_, i) => 10 ** (b - i * every)).reverse();
+  };
+  const right = series.some((s) => s.right);
+  const pad = options.whole ? 0.5 : 0;
+  const logarithmic = (u, low, high) => low > 0 ? [10 ** Math.floor(Math.log10(low) - 0.2), 10 ** Math.ceil(Math.log10(high) + 0.2)] : [1e-16, 1];
+  const linear = (u, low, high) => {
+    if (low == null) return [0, 1];
+    low = low > -1e-6 * high ? 0 : low; // rounding below zero is none
+    if (high <= low) high = low + 1;
+    return [low < 0 ? low - 0.05 * (high - low) : 0, high + 0.08 * (high - low)];
+  };
+  const chart = new uPlot({
+    width: box.clientWidth - 20, height: 270,
+    scales: {
+      x: { time: false, range: (u, low, high) => low === high ? [low - 0.5, high + 0.5] : [low - pad, high + pad] },
+      y: options.log ? { distr: 3, range: logarithmic } : { range: linear },
+      right: { range: linear },
+    },
+    axes: [
+      axis({ label: xLabel, size: 44, labelSize: 20, values: plain, incrs: options.whole ? [1, 2, 5, 10, 20, 50, 100, 200, 500] : undefined }),
+      axis({ size: 72, values: options.log ? powers : plain, splits: options.log ? decades : undefined, filter: (u, s) => s }),
+      ...(right ? [axis({ scale: "right", side: 1, size: 72, grid: { show: false }, values: plain, label: "gap", labelSize: 18 })] : []),
+    ],
+    series: [
+      { label: xLabel, value: (u, v) => short(v) },
+      ...series.map((s) => ({
+        label: s.label, scale: s.right ? "right" : "y", stroke: colour(s.colour), width: s.width || 2, dash: s.dash, spanGaps: false,
+        points: { show: s.points !== false && xs.length < 60, size: 6, fill: colour("paper"), stroke: colour(s.colour) },
+        value: (u, v) => v == null ? "–" : v.toPrecision(5),
+      })),
+    ],
+    hooks: options.marks ? { draw: [(u) => marks(u, options.marks)] } : {},
+  }, [xs, ...series.map((s) => s.values)], box);
+  new ResizeObserver(() => {
+    if (Math.abs(chart.width - (box.clientWidth - 20)) > 2) chart.setSize({ width: box.clientWidth - 20, height: 270 });
+  }).observe(box);
+}
+
+function marks(u, places) { // vertical lines where a new load step begins
+  u.ctx.save();
+  u.ctx.strokeStyle = colour("soft");
+  u.ctx.setLineDash([4, 4]);
+  for (const place of places) {
+    const x = u.valToPos(place, "x", true);
+    u.ctx.beginPath();
+    u.ctx.moveTo(x, u.bbox.top);
+    u.ctx.lineTo(x, u.bbox.top + u.bbox.height);
+    u.ctx.stroke();
+  }
+  u.ctx.restore();
+}
+
+function drawPlots(data) {
+  const at = (id) => { const e = document.getElementById(id); e.replaceChildren(); return e; };
+  const lines = at("lines");
+  lines.closest("section").hidden = !data.lines.length;
+  for (const line of data.lines) {
+    const series = [{ label: "pressure", values: line.pressure, colour: "accent", points: false }];
+    if (line.theory) series.push({ label: "theory", values: line.theory, colour: "second", dash: [6, 5], points: false });
+    if (line.gap.some((v) => v != null)) series.push({ label: "gap", values: line.gap, colour: "third", right: true, width: 1.2, points: false });
+    plot(lines, `${line.contact}: pressure ${line.label}`, `distance from ${line.zero}`, line.distance, series);
+  }
+  const run = data.convergence;
+  const count = run.step.map((_, i) => i + 1);
+  const borders = run.step.flatMap((s, i) => i && s !== run.step[i - 1] ? [i + 0.5] : []);
+  const whole = { whole: true, marks: borders };
+  const positive = (values) => values.map((v) => v == null ? null : Math.max(v, 1e-17));
+  const convergence = at("convergence");
+  plot(convergence, "Residuals", "iteration", count, [
+    { label: "equilibrium, over the reference force", values: positive(run.residual), colour: "accent" },
+    { label: "contact law, over the reference pressure", values: positive(run.contact), colour: "second" },
+  ], { ...whole, log: true });
+  plot(convergence, "Active set", "iteration", count, [
+    { label: "in contact", values: run.active, colour: "accent" },
+    { label: "changed", values: run.changed, colour: "second" },
+  ], whole);
+  const history = at("history");
+  if (data.history.factor.length > 1) {
+    const colours = ["accent", "second", "third", "good", "bad", "soft"];
+    for (const [key, title] of [["force", "Contact force"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
+      if (!data.history.contacts.length) break;
+      plot(history, title, "share of the load", data.history.factor,
+        data.history.contacts.map((c, i) => ({ label: c.name, values: c[key], colour: colours[i % colours.length] })));
+    }
+  }
+}

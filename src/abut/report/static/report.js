@@ -1,0 +1,145 @@
+"use strict";
+// The page: the panel beside the picture, light and dark, and what tests read off the root element.
+
+(() => {
+  const root = document.documentElement;
+  const data = JSON.parse(document.getElementById("data").textContent);
+  root.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+
+  const element = (tag, properties = {}, ...children) => {
+    const result = Object.assign(document.createElement(tag), properties);
+    result.append(...children);
+    return result;
+  };
+  const choice = (options, value, change) => {
+    const select = element("select", { onchange: () => change(select.value) }, ...options.map((o) => element("option", { textContent: o })));
+    select.value = value;
+    return select;
+  };
+  const tick = (label, checked, change) => {
+    const box = element("input", { type: "checkbox", checked, onchange: () => change(box.checked) });
+    return element("label", {}, box, element("span", { textContent: label }));
+  };
+  const slider = (count, value, change) => {
+    const input = element("input", { type: "range", min: 0, max: count - 1, step: 1, value, oninput: () => change(Number(input.value)) });
+    return input;
+  };
+
+  function colourBar(view) {
+    const canvas = element("canvas", { width: 1, height: 256 });
+    const input = (index) => {
+      const own = element("input", { type: "number", step: "any", title: "type another limit; empty it for the computed one" });
+      own.onchange = () => {
+        const s = view.state, range = [...view.range(s.field)];
+        range[index] = own.value === "" ? view.extent(s.field)[index] : Number(own.value);
+        s.range[s.field] = range;
+        view.apply();
+        show();
+      };
+      return own;
+    };
+    const [top, bottom] = [input(1), input(0)];
+    const middle = [3, 2, 1].map(() => element("span"));
+    const show = () => {
+      const stops = MAPS[view.state.field], [low, high] = view.range(view.state.field);
+      const context = canvas.getContext("2d"), gradient = context.createLinearGradient(0, 256, 0, 0);
+      stops.forEach((s, i) => gradient.addColorStop(i / (stops.length - 1), "#" + s));
+      context.fillStyle = gradient;
+      context.fillRect(0, 0, 1, 256);
+      top.value = Number(high.toPrecision(5));
+      bottom.value = Number(low.toPrecision(5));
+      middle.forEach((m, i) => { m.textContent = "\u2002" + short(Number((low + ((3 - i) / 4) * (high - low)).toPrecision(4))); });
+    };
+    return [element("div", { id: "bar" }, canvas, element("div", {}, top, ...middle, bottom)), show];
+  }
+
+  function panel(view) {
+    const s = view.state, scene = data.scene, at = document.getElementById("panel");
+    const heading = (text) => element("h4", { textContent: text });
+    const fields = Object.keys(MAPS).filter((f) => scene.contacts.length || (f !== "pressure" && f !== "gap"));
+    const [bar, showBar] = colourBar(view);
+    at.append(heading("Colour"), choice(fields, s.field, (f) => { s.field = f; showBar(); view.apply(); }), bar);
+    at.append(tick("bands of colour", s.bands, (on) => { s.bands = on; view.apply(); }));
+    at.append(tick("mesh", s.mesh, (on) => { s.mesh = on; view.apply(); }));
+    showBar();
+    if (scene.steps.length > 1) {
+      const title = heading("");
+      const name = () => { title.textContent = `Step ${view.step.number}: ${short(view.step.factor)} of the load`; };
+      at.append(title, slider(scene.steps.length, s.step, (i) => { s.step = i; name(); view.apply(); }));
+      name();
+    }
+    const title = heading("");
+    const name = () => { title.textContent = `Deformation ×${s.scale}${s.scale === 1 ? " (true)" : ""}`; };
+    at.append(title, slider(view.scales.length, view.scales.indexOf(1), (i) => { s.scale = view.scales[i]; name(); view.apply(); }));
+    name();
+    at.append(heading("Bodies"));
+    scene.bodies.forEach((b, i) => {
+      const how = view.flat ? ["solid", "hidden"] : ["solid", "ghost", "hidden"];
+      const select = choice(how, s.bodies[i], (value) => { s.bodies[i] = value; view.apply(); });
+      at.append(element("label", {}, element("span", { textContent: b.name }), select));
+    });
+    if (scene.contacts.length) at.append(heading("Contact surfaces"));
+    scene.contacts.forEach((c, i) => {
+      if (view.flat && c.role !== "contactor") return;
+      const label = view.flat ? `${c.contact}: ${c.surface}` : `${c.contact}: ${c.surface} (${c.role})`;
+      at.append(tick(label, s.sides[i], (on) => { s.sides[i] = on; view.apply(); }));
+    });
+    at.append(heading(""), element("button", { textContent: "Save picture", onclick: () => {
+      view.draw();
+      element("a", { href: view.renderer.domElement.toDataURL("image/png"), download: document.title + ".png" }).click();
+    } }));
+  }
+
+  function viewButtons(view) {
+    const names = view.flat ? ["all"] : ["all", "x", "y", "z", "corner"];
+    if (view.pressed) names.splice(1, 0, "contact");
+    const buttons = names.map((name) => element("button", { textContent: name, onclick: () => view.look(name) }));
+    document.getElementById("views").append(...buttons);
+    document.getElementById("hint").textContent = view.flat
+      ? "drag to move, wheel to zoom, click for values" : "drag to turn, wheel to zoom, right button to move, click for values";
+  }
+
+  function picking(view) {
+    const canvas = view.renderer.domElement, box = document.getElementById("picked");
+    let start = null;
+    canvas.addEventListener("pointerdown", (e) => { start = [e.clientX, e.clientY]; });
+    canvas.addEventListener("pointerup", (e) => {
+      if (!start || Math.hypot(e.clientX - start[0], e.clientY - start[1]) > 4) return;
+      const frame = canvas.getBoundingClientRect();
+      const hit = view.pick((e.clientX - frame.left) / frame.width, (e.clientY - frame.top) / frame.height);
+      box.hidden = !hit;
+      if (!hit) return;
+      const values = Object.entries(hit.values).map(([name, v]) => `${name}: ${v.toPrecision(6)}`);
+      box.textContent = [hit.name, `(${hit.point.map(short).join(", ")})`, ...values].join("\n");
+    });
+  }
+
+  let view = null;
+  try {
+    view = new View(document.getElementById("canvas"), data.scene);
+  } catch (error) {
+    if (document.createElement("canvas").getContext("webgl2")) throw error;
+    document.getElementById("canvas").textContent = "This browser cannot draw in 3D (WebGL 2 is off); everything below works without.";
+    root.dataset.webgl = "off";
+  }
+  if (view) {
+    panel(view);
+    viewButtons(view);
+    picking(view);
+    window.abut = { view };
+  }
+  drawPlots(data);
+  document.getElementById("theme").onclick = () => {
+    root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
+    drawPlots(data);
+    if (view) view.apply();
+  };
+  requestAnimationFrame(() => {
+    if (view) {
+      const { pixels, colours } = view.count();
+      Object.assign(root.dataset, { pixels, colours });
+    }
+    root.dataset.plots = document.querySelectorAll(".plot canvas").length;
+    root.dataset.ready = "true";
+  });
+})();

@@ -1,0 +1,250 @@
+"use strict";
+// The picture: camera, what is shown of each part, colours.
+
+const RAW = "srgb-linear"; // colours go to the screen as they are written, without three's conversion
+
+class View {
+  constructor(holder, scene) {
+    this.holder = holder;
+    this.data = scene;
+    this.flat = scene.dim === 2;
+    scene.bodies.forEach((b, i) => { b.number = i; });
+    scene.contacts.forEach((c, i) => { c.number = i; });
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    holder.prepend(this.renderer.domElement);
+    this.world = new THREE.Scene();
+    this.bodies = scene.bodies.map((b) => new Part(b, "body", this.flat));
+    this.sides = scene.contacts.map((c) => (this.flat ? new Part(c, "fence", true) : new Part(c, "side", false)));
+    if (this.flat) this.sides.forEach((s) => { if (s.item.role !== "contactor") s.mesh.visible = s.grid.visible = false; });
+    for (const part of [...this.bodies, ...this.sides]) this.world.add(part.mesh, part.features, part.grid);
+    this.state = {
+      step: scene.steps.length - 1, scale: 1, bands: false, mesh: this.triangles() < 40000,
+      field: scene.contacts.length ? (this.flat ? "von Mises" : "pressure") : "von Mises",
+      bodies: this.bodies.map(() => "solid"), sides: this.sides.map((s) => s.item.role === "contactor"), range: {},
+    };
+    if (!this.flat) this.ghostTargets();
+    this.maps = Object.fromEntries(Object.entries(MAPS).map(([name, stops]) => [name, ramp(stops)]));
+    this.measure();
+    this.camera = this.flat ? new THREE.OrthographicCamera() : new THREE.PerspectiveCamera(28, 1, 1e-3 * this.size, 100 * this.size);
+    this.camera.up.set(0, this.flat ? 1 : 0, this.flat ? 0 : 1);
+    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener("change", () => this.draw());
+    if (this.flat) {
+      this.controls.enableRotate = false;
+      this.controls.mouseButtons.LEFT = 2;
+      this.controls.touches.ONE = 1;
+    }
+    new ResizeObserver(() => this.resize()).observe(holder);
+    this.resize();
+    this.apply();
+    this.look("start");
+  }
+
+  triangles() { return this.bodies.reduce((n, p) => n + p.map.length / 3, 0); }
+
+  // The target is in the way of the contactor's pressure: it is drawn as a ghost, unless it is a contactor too.
+  ghostTargets() {
+    const pressed = new Set(this.sides.filter((s) => s.item.role === "contactor").map((s) => s.item.body));
+    for (const s of this.sides) if (!pressed.has(s.item.body)) this.state.bodies[s.item.body] = "ghost";
+  }
+
+  // Size and middle of everything, and of the pressed parts; the direction from which these are seen.
+  measure() {
+    const low = [Infinity, Infinity, Infinity], high = low.map((v) => -v);
+    for (const part of [...this.bodies, ...this.sides]) {
+      for (let i = 0; i < part.base.length; i++) {
+        low[i % 3] = Math.min(low[i % 3], part.base[i]);
+        high[i % 3] = Math.max(high[i % 3], part.base[i]);
+      }
+    }
+    this.box = [low, high];
+    this.centre = new THREE.Vector3(...low.map((v, c) => 0.5 * (v + high[c])));
+    this.size = Math.hypot(...low.map((v, c) => high[c] - v)) || 1;
+    const last = this.data.steps[this.data.steps.length - 1];
+    const sum = new THREE.Vector3(), middle = new THREE.Vector3();
+    const zone = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    let weight = 0;
+    for (const part of this.sides.filter((s) => s.item.role === "contactor")) {
+      const p = part.field(last, "pressure"), normals = unpack(part.item.normals);
+      const top = p.reduce((a, b) => Math.max(a, b || 0), 0);
+      for (let i = 0; i < p.length; i++) {
+        if (!(p[i] > 0.01 * top)) continue;
+        const x = Array.from(part.base.subarray(3 * i, 3 * i + 3));
+        x.forEach((v, c) => { zone[0][c] = Math.min(zone[0][c], v); zone[1][c] = Math.max(zone[1][c], v); });
+        sum.add(new THREE.Vector3(...normals.subarray(3 * i, 3 * i + 3)).multiplyScalar(p[i]));
+        middle.add(new THREE.Vector3(...x).multiplyScalar(p[i]));
+        weight += p[i];
+      }
+    }
+    this.pressed = weight > 0 ? { centre: middle.divideScalar(weight), size: Math.hypot(...zone[0].map((v, c) => zone[1][c] - v)) || 0.1 * this.size } : null;
+    const across = new THREE.Vector3(0.5, -0.75, 0.5);
+    this.facing = weight > 0 && sum.length() > 1e-6 * weight ? sum.normalize() : null;
+    if (this.facing && Math.abs(this.facing.z) > 0.8) across.z = 0;
+    this.from = this.facing ? this.facing.clone().multiplyScalar(0.62).addScaledVector(across, 0.9) : new THREE.Vector3(0.6, -1, 0.55);
+    this.from.normalize();
+    const largest = Math.max(...[...this.bodies].map((b) => b.field(last, "displacement").reduce((a, v) => Math.max(a, v), 0)), 0);
+    const limit = largest > 0 ? (0.1 * this.size) / largest : 1;
+    this.scales = [0, 1];
+    for (let power = 1; power < 1e9 && this.scales.at(-1) < limit; power *= 10) this.scales.push(2 * power, 5 * power, 10 * power);
+    while (this.scales.length > 2 && this.scales.at(-2) > limit) this.scales.pop();
+  }
+
+  look(name) {
+    const directions = { x: [1, 0, 0], y: [0, -1, 0], z: [0, 0, 1], corner: [0.6, -1, 0.55] };
+    const contact = name === "contact" && this.pressed;
+    const centre = (contact ? this.pressed.centre : this.centre).clone();
+    const extent = contact ? 1.6 * this.pressed.size : this.size;
+    if (this.flat) {
+      const [low, high] = this.box, aspect = this.aspect || 1;
+      const half = contact ? 0.5 * extent : 0.54 * Math.max(high[1] - low[1], (high[0] - low[0]) / aspect);
+      this.camera.zoom = 1;
+      Object.assign(this.camera, { top: half, bottom: -half, left: -half * aspect, right: half * aspect, near: -this.size, far: this.size });
+      this.half = half;
+      this.camera.position.set(centre.x, centre.y, 0.5 * this.size);
+    } else {
+      const from = directions[name] ? new THREE.Vector3(...directions[name]).normalize() : this.from;
+      const far = contact ? (0.55 * extent) / Math.tan((14 * Math.PI) / 180) : this.distance(from);
+      this.camera.position.copy(centre).addScaledVector(from, far);
+    }
+    this.controls.target.copy(centre);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  // How far away the camera must be to see all corners of the box.
+  distance(from) {
+    const right = new THREE.Vector3(0, 0, 1).cross(from);
+    if (right.length() < 1e-6) right.set(1, 0, 0);
+    const up = from.clone().cross(right.normalize()), tangent = Math.tan((14 * Math.PI) / 180);
+    let far = 0;
+    for (let i = 0; i < 8; i++) {
+      const corner = new THREE.Vector3(...[0, 1, 2].map((c) => this.box[(i >> c) & 1][c])).sub(this.centre);
+      const wide = Math.max(Math.abs(corner.dot(right)) / (this.aspect || 1), Math.abs(corner.dot(up))) / tangent;
+      far = Math.max(far, wide + corner.dot(from));
+    }
+    return 1.06 * far;
+  }
+
+  resize() {
+    const width = this.holder.clientWidth, height = this.holder.clientHeight;
+    if (!width || !height) return;
+    this.aspect = width / height;
+    this.renderer.setSize(width, height, false);
+    if (this.flat && this.half) Object.assign(this.camera, { left: -this.half * this.aspect, right: this.half * this.aspect });
+    else this.camera.aspect = this.aspect;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  get step() { return this.data.steps[this.state.step]; }
+
+  // Least and largest value of a field over all steps and parts.
+  extent(name) {
+    this.extents ||= {};
+    if (this.extents[name]) return this.extents[name];
+    let low = Infinity, high = -Infinity;
+    for (const step of this.data.steps) {
+      for (const part of [...this.bodies, ...this.sides]) {
+        for (const v of part.field(step, name) || []) {
+          if (v < low) low = v;
+          if (v > high) high = v;
+        }
+      }
+    }
+    if (!(high >= low)) [low, high] = [0, 1];
+    if (name === "pressure") low = 0;
+    if (name === "gap" && high < 1e-9 * this.size) [low, high] = [0, 1e-9 * this.size]; // rounding
+    return (this.extents[name] = [low, high]);
+  }
+
+  range(name) { return this.state.range[name] || this.extent(name); }
+
+  // Everything on the screen follows from the state.
+  apply() {
+    const s = this.state, [low, high] = this.range(s.field);
+    const [, tallest] = this.extent(this.fence());
+    const height = tallest > 0 ? (0.12 * this.size) / tallest : 0;
+    for (const part of this.bodies) part.update(this.step, s.scale, s.field, 0);
+    for (const part of this.sides) part.update(this.step, s.scale, this.flat ? this.fence() : s.field, height);
+    const onBodies = s.field === "von Mises" || s.field === "displacement";
+    const style = (part, body, coloured, shown) => {
+      const u = part.mesh.material.uniforms, how = s.bodies[body];
+      const ghost = how === "ghost" && !shown;
+      part.mesh.visible = shown || how !== "hidden";
+      Object.assign(part.mesh.material, { transparent: ghost, depthWrite: !ghost });
+      u.opacity.value = ghost ? 0.12 : 1;
+      u.plain.value.setStyle(colour("body" + (1 + (body % 4))), RAW);
+      u.coloured.value = coloured && !ghost ? 1 : 0;
+      u.map.value = this.maps[s.field];
+      u.low.value = low;
+      u.high.value = high;
+      u.bands.value = s.bands ? 12 : 0;
+      u.nothing.value = s.field === "pressure" ? 1e-3 * high : -1e30;
+      const ink = document.documentElement.dataset.theme === "dark" ? "#e8edf3" : "#1a222c";
+      for (const lines of [part.features, part.grid]) lines.material.uniforms.ink.value.setStyle(ink, RAW);
+      part.features.material.uniforms.opacity.value = ghost ? 0.35 : 0.75;
+      part.grid.material.uniforms.opacity.value = Math.min(0.3, 18 / Math.sqrt(this.triangles()));
+      part.features.visible = part.mesh.visible;
+      part.grid.visible = part.mesh.visible && s.mesh && !ghost;
+    };
+    for (const part of this.bodies) style(part, part.item.number, onBodies, false);
+    this.sides.forEach((part, i) => {
+      style(part, part.item.body, s.sides[i] || onBodies, s.sides[i]);
+      if (!this.flat) return;
+      const u = part.mesh.material.uniforms, same = s.field === this.fence();
+      part.mesh.visible = part.grid.visible = s.sides[i] && part.item.role === "contactor";
+      part.grid.material.uniforms.opacity.value = 0.8;
+      Object.assign(part.mesh.material, { transparent: true, depthTest: false });
+      part.mesh.renderOrder = part.grid.renderOrder = 2;
+      u.opacity.value = same ? 0.95 : 0.55;
+      u.coloured.value = same ? 1 : 0;
+      if (!same) u.plain.value.setStyle(colour("second"), RAW);
+    });
+    this.draw();
+  }
+
+  // What is drawn across the contactor's line in 2D.
+  fence() { return this.state.field === "gap" ? "gap" : "pressure"; }
+
+  draw() { this.renderer.render(this.world, this.camera); }
+
+  // The value under the pointer: part, place, value.
+  pick(x, y) {
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2(2 * x - 1, 1 - 2 * y), this.camera);
+    const parts = [...this.sides, ...this.bodies].filter((p) => p.mesh.visible && !(p.kind === "body" && this.state.bodies[p.item.number] === "ghost"));
+    const hit = ray.intersectObjects(parts.map((p) => p.mesh), false)[0];
+    if (!hit) return null;
+    const part = hit.object.userData.part, place = part.geometry.attributes.position.array;
+    const corners = [hit.face.a, hit.face.b, hit.face.c];
+    const nearest = corners.reduce((best, k) => {
+      const d = Math.hypot(...[0, 1, 2].map((c) => place[3 * k + c] - hit.point.getComponent(c)));
+      return d < best[0] ? [d, k] : best;
+    }, [Infinity, 0])[1];
+    const k = part.map[nearest], values = {};
+    for (const name of Object.keys(MAPS)) {
+      const field = part.field(this.step, name);
+      if (field && !Number.isNaN(field[k])) values[name] = field[k];
+    }
+    return { name: part.kind === "body" ? part.item.name : part.item.surface, point: Array.from(part.base.subarray(3 * k, 3 * k + this.data.dim)), values };
+  }
+
+  // How much is drawn: pixels that are not empty and how many colours they have, for tests.
+  count() {
+    this.draw();
+    const gl = this.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, data = new Uint8Array(4 * w * h);
+    gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, data);
+    const colours = new Set();
+    let pixels = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (!data[i + 3]) continue;
+      pixels++;
+      colours.add((data[i] >> 3 << 10) | (data[i + 1] >> 3 << 5) | (data[i + 2] >> 3));
+    }
+    return { pixels, colours: colours.size };
+  }
+}
