@@ -322,8 +322,8 @@ class Model:
         if rigid >= self._bodies_of(contact.target):
             raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
         raise InputError(
-            f"contacts[{i}].contactor: '{contact.contactor}' is rigid; the pressure needs displacements of its own side "
-            "to be unique: swap contactor and target"
+            f"contacts[{i}].contactor: '{contact.contactor}' is rigid; the pressure needs the displacements of its own "
+            "side to be unique: swap contactor and target"
         )
 
     def _bodies_of(self, surface: str) -> set[str]:
