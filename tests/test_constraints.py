@@ -13,6 +13,7 @@ import scipy.sparse as sp
 
 import abut
 from abut.discretization.elimination import eliminate
+from abut.discretization.supports import supports
 from abut.errors import InputError, SingularModelError
 from abut.io.results import write
 from abut.job import load_job
@@ -372,20 +373,22 @@ def test_a_tool_comes_and_goes() -> None:
     assert np.abs(steps[-1].displacement).max() < 1e-12 * 0.01
 
 
-def test_a_body_glued_to_a_rigid_one() -> None:
-    """Shared points follow the rigid body: a bar clamped in a rigid end that turns by theta is bent by M = E I theta / L."""
-    bar_ = rectangle((0, 10), (0, 1), (20, 2), "quad8")
-    end = rectangle((10, 11), (0, 1), (2, 2), "quad8")
-    both = join({"bar": bar_, "end": end})
-    # glue: points of the end at x = 10 become those of the bar
-    twins = {n: at(both, "bar", *both.points[n]) for n in both.nodes_of("end.left")}
-    number = np.arange(len(both.points))
+def glue(mesh: Mesh, body: str, surface: str) -> Mesh:
+    """Points of a surface become those of a body at the same place."""
+    twins = {n: at(mesh, body, *mesh.points[n]) for n in mesh.nodes_of(surface)}
+    number = np.arange(len(mesh.points))
     number[list(twins)] = list(twins.values())
     kept, new = np.unique(number, return_inverse=True)
-    mesh = replace(
-        both, points=both.points[kept],
-        blocks=tuple(replace(b, nodes=new[b.nodes].astype(np.int32)) for b in both.blocks),
-    )  # fmt: skip
+    blocks = tuple(replace(b, nodes=new[b.nodes].astype(np.int32)) for b in mesh.blocks)
+    return replace(mesh, points=mesh.points[kept], blocks=blocks)
+
+
+def test_a_body_glued_to_a_rigid_one() -> None:
+    """Shared points follow the rigid body: a bar clamped in a rigid end that turns by theta is bent by M = E I theta / L,
+    with stresses -E (y - h / 2) theta / L all along, also at the clamp."""
+    bar_ = rectangle((0, 10), (0, 1), (20, 2), "quad8")
+    end = rectangle((10, 11), (0, 1), (2, 2), "quad8")
+    mesh = glue(join({"bar": bar_, "end": end}), "bar", "end.left")
     foot = at(mesh, "bar", 0.0, 0.5)
     mesh = replace(mesh, node_sets={"foot": np.array([foot])})
     model = abut.Model(
@@ -393,10 +396,60 @@ def test_a_body_glued_to_a_rigid_one() -> None:
         [abut.Support("bar.left", x=0), abut.Support("foot", y=0)], plane="stress",
         rigid=[abut.Rigid("end", (10.0, 0.5), rz=0.01)],
     )  # fmt: skip
-    tool = abut.solve(model).steps[-1].rigid["end"]
+    step = abut.solve(model).steps[-1]
+    tool, bar_nodes = step.rigid["end"], mesh.nodes_of("bar")
+    stress = -1000.0 * (mesh.points[bar_nodes, 1] - 0.5) * 0.01 / 10
+    assert np.abs(step.stress[bar_nodes, 0] - stress).max() < 1e-9
     assert tool.moment[0] == pytest.approx(1000.0 / 12 * 0.01 / 10, rel=1e-8)
     assert np.abs(tool.force).max() < 1e-9
     assert tool.displacement[1] == pytest.approx(0.01 * 10 / 2, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("condensed", "law"), [(True, "complementarity"), (False, "complementarity"), (True, "constraint-function")]
+)
+def test_a_rigid_back_on_a_free_pad(condensed: bool, law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pad glued to a rigid back, pressed on a block: both are free to sink, and contact alone holds them."""
+    if not condensed:
+        monkeypatch.setattr("abut.solvers.condensed.LARGEST", 0)
+    parts = {
+        "block": rectangle((0, 1), (-1, 0), (4, 3), "quad8"),
+        "pad": rectangle((0, 1), (0, 1), (3, 2), "quad8"),
+        "back": rectangle((0, 1), (1, 2), (3, 7), "quad8"),
+    }
+    mesh = glue(join(parts), "pad", "back.bottom")
+    model = abut.Model(
+        mesh, [abut.Solid("block", abut.LinearElastic(1e3, 0.0)), abut.Solid("pad", abut.LinearElastic(1e3, 0.0))],
+        [abut.Support("block.bottom", x=0, y=0)], [abut.Force("back.top", (0.0, -2.0))],
+        [abut.Contact("block.top", "pad.bottom", law=law)], plane="strain", rigid=[abut.Rigid("back", x=0.0)],
+    )  # fmt: skip
+    step = abut.solve(model).steps[-1]
+    tolerance = EXACT if law == "complementarity" else 1e-6  # smoothed
+    assert step.converged
+    assert np.nanmax(np.abs(step.contacts[0].pressure / 2.0 - 1.0)) < tolerance
+    assert step.rigid["back"].displacement[1] == pytest.approx(-2.0 * 2.0 / 1e3, rel=tolerance)
+
+
+def test_what_is_held_at_a_point() -> None:
+    """1 along a direction that a point cannot move in, whoever holds it, 0 where it can."""
+    model = pressed(**DOWN)
+    far = [int(n) for n in model.mesh.nodes_of("block.top")[:4]]
+    equations = [
+        equal((far[0], "x"), (far[1], "x")),
+        abut.Equation((abut.Term(far[2], "x", 0.5), abut.Term(far[2], "y", 0.5))),
+        abut.Equation((abut.Term(far[3], "y", 3.0),), 0.1),
+    ]
+    held = supports(replace(model, equations=equations))
+    tool, foot = int(model.mesh.nodes_of("tool")[0]), int(model.mesh.nodes_of("block.bottom")[0])
+    root = np.sqrt(0.5)
+    cases = [
+        (far[0], (1, 0), 0.0), (far[2], (root, root), 1.0), (far[2], (root, -root), 0.0), (far[2], (1, 0), 0.5),
+        (far[3], (0, 1), 1.0), (far[3], (1, 0), 0.0), (tool, (0, 1), 1.0), (foot, (1, 0), 1.0),
+    ]  # fmt: skip
+    points, directions, expected = (np.array(column) for column in zip(*cases))
+    assert held.held_share(points, directions.astype(float)) == pytest.approx(expected, abs=1e-12)
+    loose = supports(pressed(x=0.0))
+    assert loose.held_share(np.array([tool]), np.array([[0.0, 1.0]])) == pytest.approx([0.0], abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -218,6 +218,30 @@ def test_unloading_returns_to_nothing(law: str) -> None:
         assert all(check.passed for check in solution.certificate), solution.certificate
 
 
+@pytest.mark.parametrize("linear", ["direct", "amg"])
+def test_unloading_a_body_that_contact_alone_holds(linear: str) -> None:
+    """A block under a force that goes back to nothing, and stays there: rounding lets nothing go."""
+    rest = abut.Amplitude(((0.0, 0.0), (0.25, 1.0), (0.5, 0.0), (0.75, 0.0), (1.0, 2.0)))
+    mesh = join(
+        {
+            "lower": box((0, 1), (0, 1), (0, 1), (3, 3, 2), "hex8"),
+            "upper": box((0.2, 0.8), (0.2, 0.8), (1, 1.5), (4, 3, 2), "hex8"),
+        }
+    )
+    model = abut.Model(
+        mesh,
+        [abut.Solid(body, abut.LinearElastic(1000.0, 0.3)) for body in mesh.bodies],
+        [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0)],
+        [abut.Force("upper.top", (0.0, 0.0, -1.0), amplitude=rest)],
+        [abut.Contact("upper.bottom", "lower.top")],
+        solve=abut.SolveOptions(steps=8, linear=linear),
+    )
+    solution = abut.solve(model)
+    assert solution.converged
+    for step in solution.steps:
+        assert step.contacts[0].force[2] == pytest.approx(rest(step.factor), rel=1e-7, abs=1e-7)
+
+
 def test_histories_side_by_side() -> None:
     """Without contact all is linear: the sum of what each history does alone, at unequal times."""
     mesh = single(rectangle((0, 2), (0, 1), (4, 2), "quad8"))
