@@ -13,32 +13,39 @@ from numpy.typing import NDArray
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import applied_load, strain_load
 from abut.analysis.results import step_result
+from abut.analysis.resume import begin_after, check_order, restored, saved_step
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
-from abut.solvers.active_set import System, solve_step, start
+from abut.solvers.active_set import Outcome, System, solve_step, start
 from abut.solvers.blocks import newton_step
 from abut.solvers.iterative import NotConverged
-from abut.solvers.linear import Prepared, choose, prepare
-from abut.state import Observer, Solution, Step
+from abut.solvers.linear import Prepared, choose, expected_seconds, prepare
+from abut.state import Observer, OnStep, Saved, Solution, Stage, Step
 
 ABSURD = 1e6  # displacement over model size that no units explain
 
 
-def _silent(_: object) -> None:
+def _silent(*_: object) -> None:
     return None
 
 
-def solve(model: Model, observer: Observer | None = None) -> Solution:
+def solve(
+    model: Model, observer: Observer | None = None, on_step: OnStep | None = None, resume: Sequence[Saved] = ()
+) -> Solution:
     """Solve a model step by step.
 
-    ``observer`` is called with every iteration (``abut.state.Iteration``) and with notes as text while it runs.
+    ``observer`` is called with every iteration (``abut.state.Iteration``), with stages that begin (``abut.state.Stage``)
+    and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the solution so far after each
+    converged step, and what it takes to go on from there; ``resume``: such records of all steps done before, in order,
+    of the same model: the run goes on after the last of them.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
     Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
     """
     observe: Observer = observer or _silent
+    keep: OnStep = on_step or _silent
     notes: list[str] = []
 
     def note(text: str) -> None:
@@ -46,6 +53,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         observe(text)
 
     clock = _Clock()
+    observe(Stage("assembling the stiffness"))
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
     full_stiffness = stiffness(model.mesh, materials, model.plane)
@@ -53,9 +61,11 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     load = applied + strain_load(model)
     resultant = applied.reshape(-1, model.dim).sum(axis=0)
     clock.mark("assembly")
+    observe(Stage("cutting and integrating the interface"))
     every = pairs(model, held)
     _describe(every, note)
     clock.mark("interface")
+    observe(Stage("looking for motions that nothing holds"))
     held_by: Holding = holding(model.mesh, held, every)
     held_by.check()
     reduced = held.reduce(full_stiffness)
@@ -74,37 +84,62 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     clock.mark("set-up")
 
     def linear_solver(kind: str) -> Prepared:
+        what = "factorising" if kind == "direct" else "setting up multigrid for"
+        size = f"{n_free:,}".replace(",", " ")
+        observe(Stage(f"{what} {size} displacements", expected_seconds(kind, n_free, model.dim)))
         result = prepare(kind, system, held.free, held_by.rigid.together, held_by.free, model.dim)
         note(result.note)
         return result
 
-    solver = linear_solver(choose(model.solve.linear, system, model.mesh))
+    def result(outcome: Outcome, number: int, factor: float) -> Step:
+        displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
+        _check_size(model, displacement, note)
+        return step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor)
+
+    def so_far(complete: bool) -> Solution:
+        return Solution(model, tuple(steps), n_free, solver.name, tuple(notes), dict(clock.timings), complete)
+
+    times = [k / model.solve.steps for k in range(1, model.solve.steps + 1)]
+    check_order(resume, n_free, operator.shape[0])
+    kind = choose(model.solve.linear, system, model.mesh)
+    if resume and model.solve.linear == "auto":
+        kind = resume[-1].linear
+    solver = linear_solver(kind)
     state = start(solver.system)
     steps: list[Step] = []
-    count = model.solve.steps
-    for number in range(1, count + 1):
-        factor = number / count
+    if resume:
+        observe(Stage("restoring the steps done before"))
+        steps += [result(restored(saved), saved.number, saved.factor) for saved in resume]
+        state = begin_after(resume[-1], state, note)
+        times = [t for t in times if t > resume[-1].factor * (1.0 + 1e-12)]
+        clock.mark("results")
+    first = len(steps) + 1
+    count = len(steps) + len(times)
+    for number, factor in enumerate(times, start=first):
+        observe(Stage(f"step {number} of {count}", None, number - 1, count))
         try:
             outcome = solve_step(solver.system, state, factor, number, model.solve.max_iterations, observe)
         except NotConverged as reason:
             note(f"step {number}: {reason}: going on with the direct solver")
-            solver = linear_solver("direct")
+            kind = "direct"
+            solver = linear_solver(kind)
             outcome = solve_step(
                 solver.system, start(solver.system), factor, number, model.solve.max_iterations, observe
             )
         state = outcome.unknowns
         outcome = solver.finish(outcome, factor)
-        displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
         clock.mark("solve")
-        _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor))
+        observe(Stage(f"stresses and checks of step {number}", None, number - 1, count))
+        steps.append(result(outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
             break
+        keep(so_far(complete=False), saved_step(outcome, state, number, factor, kind))
+        clock.mark("writing")
     if solver.count is not None:
         note(f"{solver.count.iterations} linear iterations in all")
-    return Solution(model, tuple(steps), n_free, solver.name, tuple(notes), clock.timings)
+    return so_far(complete=True)
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

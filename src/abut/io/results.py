@@ -8,6 +8,7 @@ import json
 import math
 import platform
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 import abut
+from abut.analysis.remedies import remedies, unsettled
 from abut.cells import BY_CODE, CELLS
 from abut.io.atomic import make_directory, write_text
 from abut.io.vtu import write_vtu
@@ -25,15 +27,16 @@ from abut.state import ContactResult, Solution, Step
 NOT_COVERED, OPEN, CLOSED = 0, 1, 2
 
 
-def write(solution: Solution, directory: str | Path) -> Path:
+def write(solution: Solution, directory: str | Path, steps: Sequence[Step] | None = None) -> Path:
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
     summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for each contact.
+    ``steps``: those whose VTU files are still to be written, all of them by default.
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
     make_directory(folder)
-    for step in solution.steps:
+    for step in solution.steps if steps is None else steps:
         _write_fields(folder, solution, step)
         for contact in step.contacts:
             _write_contact(folder, step, contact)
@@ -55,7 +58,7 @@ def summary(solution: Solution) -> dict[str, Any]:
     """What summary.json holds: plain numbers, lists and text; None where a number does not exist."""
     return {
         "schema": 1,
-        "status": "converged" if solution.converged else "not converged",
+        "status": status(solution),
         "dofs": solution.dofs,
         "solver": solution.solver,
         "steps": [_step_summary(step) for step in solution.steps],
@@ -73,6 +76,7 @@ def summary(solution: Solution) -> dict[str, Any]:
                 for check in solution.certificate
             ],
         },
+        "remedies": [str(remedy) for remedy in remedies(solution)],
         "notes": list(solution.notes),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
         "versions": {
@@ -82,6 +86,19 @@ def summary(solution: Solution) -> dict[str, Any]:
             "python": platform.python_version(),
         },
     }
+
+
+def status(solution: Solution) -> str:
+    """ "converged", "not converged", or "incomplete" where steps are still to come."""
+    if not solution.converged:
+        return "not converged"
+    return "converged" if solution.complete else "incomplete"
+
+
+def step_files(step: Step) -> list[str]:
+    """Names of the files that hold one step."""
+    stems = ["fields", *(f"contact_{file_name(contact.name)}" for contact in step.contacts)]
+    return [f"{stem}_{step.number:04d}.vtu" for stem in stems]
 
 
 def _step_summary(step: Step) -> dict[str, Any]:
@@ -114,6 +131,15 @@ def _step_summary(step: Step) -> dict[str, Any]:
             for c in step.contacts
         ],
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
+        "unsettled": [
+            {
+                "contact": place.contact,
+                "facets": place.facets.tolist(),
+                "nodes": place.nodes.tolist(),
+                "coordinates": place.coordinates.tolist(),
+            }
+            for place in unsettled(step)
+        ],
     }
 
 
@@ -173,6 +199,8 @@ def _write_fields(folder: Path, solution: Solution, step: Step) -> None:
 
 def _write_contact(folder: Path, step: Step, contact: ContactResult) -> None:
     parts = []
+    unsettled_facets = np.zeros(len(contact.contactor), dtype=np.int32)
+    unsettled_facets[step.cycling.get(contact.name, [])] = 1
     sides = ((contact.contactor, contact.pressure, contact.gap, 0), (contact.target, contact.target_pressure, None, 1))
     for surface, pressure, gap, side in sides:
         closed = np.nan_to_num(pressure).max(axis=1) > 0.0
@@ -180,7 +208,12 @@ def _write_contact(folder: Path, step: Step, contact: ContactResult) -> None:
             status = np.where(contact.covered, np.where(closed, CLOSED, OPEN), NOT_COVERED)
         else:
             status = np.where(closed, CLOSED, OPEN)
-        parts += _loose_facets(surface, step.displacement, pressure, gap, status.astype(np.int32), side)
+        facets = {
+            "status": status.astype(np.int32),
+            "side": np.full(len(surface), side, dtype=np.int32),
+            "unsettled": unsettled_facets if side == 0 else np.zeros(len(surface), dtype=np.int32),
+        }
+        parts += _loose_facets(surface, step.displacement, pressure, gap, facets)
     first = 0
     blocks, points, data, cells = [], [], [], []
     for kind, x, values, own in parts:
@@ -204,8 +237,7 @@ def _loose_facets(
     displacement: NDArray[np.float64],
     pressure: NDArray[np.float64],
     gap: NDArray[np.float64] | None,
-    status: NDArray[np.int32],
-    side: int,
+    facets: Mapping[str, NDArray[np.int32]],
 ) -> list[tuple[str, NDArray[np.float64], dict[str, NDArray[Any]], dict[str, NDArray[Any]]]]:
     """Facets by type, each with points of its own, so that a pressure may jump between them."""
     result = []
@@ -218,7 +250,7 @@ def _loose_facets(
             "gap": np.full(len(nodes), np.nan) if gap is None else gap[own, : kind.nodes].ravel(),
             "displacement": _vectors(displacement[nodes]),
         }
-        cells = {"status": status[own], "side": np.full(len(own), side, dtype=np.int32)}
+        cells = {name: every[own] for name, every in facets.items()}
         result.append((kind.name, surface.points[nodes], values, cells))
     return result
 
