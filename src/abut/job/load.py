@@ -66,6 +66,8 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: not valid TOML: lists or tables nested too deeply") from None
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
