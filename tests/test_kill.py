@@ -12,9 +12,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from test_restart import arrays, job
 
 from abut.cli import main
+from test_restart import arrays, job
 
 KILLS = 24
 
@@ -86,7 +86,7 @@ def test_files_are_whole_after_kill(tmp_path: Path) -> None:
         if summary.exists() and len(done := json.loads(summary.read_text())["steps"]) < 12:
             broken.append((len(done), number))
     assert len(broken) > KILLS // 4, "the delays no longer hit the run"
-    steps, number = max(broken)
+    _, number = max(broken)
     folder = tmp_path / str(number)
     (folder / ".fields_0001.vtu.999999999.tmp.vtu").write_text("left behind")
     restarted = main(["run", "--quiet", "--restart", str(path), "--output", str(folder)])

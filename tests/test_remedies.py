@@ -65,7 +65,7 @@ CYCLE = [(3, 2), (4, 2), (3, 2), (4, 2), (3, 2)]
 
 def test_contactor_finer_than_target() -> None:
     found = actions(failed(model(upper=12, lower=2), CYCLE))
-    assert found[0] == "contact 'c': swap the sides (contactor = \"lower.top\", target = \"upper.bottom\")"
+    assert found[0] == 'contact \'c\': swap the sides (contactor = "lower.top", target = "upper.bottom")'
     assert found[1] == "contact 'c': refine 'lower.top' 6 times"  # facets of 1/12 against 1/2
 
 

@@ -27,7 +27,9 @@ from abut.solvers import condensed
 
 ROOT = Path(__file__).parents[1]
 BALL = (ROOT / "examples" / "hertz-sphere" / "job.toml").read_text()
-BALL = BALL.replace("cells = 16", "cells = 4").replace("hex20", "hex8").replace("constraint-function", "complementarity")
+BALL = (
+    BALL.replace("cells = 16", "cells = 4").replace("hex20", "hex8").replace("constraint-function", "complementarity")
+)
 STEPS = 5
 
 

@@ -19,6 +19,7 @@ PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
+MOST_STEPS = 1_000_000  # load steps, and iterations in one
 LINEAR = ("auto", "direct", "amg")
 
 
@@ -193,8 +194,8 @@ class SolveOptions:
     def __post_init__(self) -> None:
         for name in ("steps", "max_iterations"):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-                raise InputError(f"solve.{name}: expected a whole number >= 1, got {value!r}")
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
+                raise InputError(f"solve.{name}: expected a whole number from 1 to {MOST_STEPS}, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
 
 

@@ -74,7 +74,7 @@ def run_all(numbers: Sequence[int], seed: int, folder: Path) -> Iterator[Result]
     left = list(numbers)
     while left:
         died = None
-        for result in _run_in_process(left, seed, folder):
+        for result in _run_in_process(tuple(left), seed, folder):
             left.remove(result.number)
             died = result.status is None
             yield result

@@ -8,18 +8,19 @@ import struct
 from collections.abc import Sequence
 
 TOKENS = [
-    b"0", b"-1", b"1", b"2", b"3", b"7", b"15", b"255", b"65536", b"2147483647", b"2147483648", b"4294967295", b"-2147483649",
-    b"9223372036854775807", b"18446744073709551615", b"123456789012345678901234567890", b"1e308", b"-1e308", b"1e309",
-    b"1e-320", b"5e-324", b"1e-12", b"1e12", b"0.5", b"-0.0", b"nan", b"inf", b"-inf", b"NaN", b"", b" ", b"x", b"1.5.2", b"1e",
-    b"0x10", b"1_000", b"+3", b"\xff\xfe", b"\x00", b"\xc3\xa9", b"$", b"$End", b"\"", b"'", b"[", b"]", b"{", b"#", b"\\", b"%s",
+    b"0", b"-1", b"1", b"2", b"3", b"7", b"15", b"255", b"65536", b"2147483647", b"2147483648", b"4294967295",
+    b"-2147483649", b"9223372036854775807", b"18446744073709551615", b"123456789012345678901234567890", b"1e308",
+    b"-1e308", b"1e309", b"1e-320", b"5e-324", b"1e-12", b"1e12", b"0.5", b"-0.0", b"nan", b"inf", b"-inf", b"NaN",
+    b"", b" ", b"x", b"1.5.2", b"1e", b"0x10", b"1_000", b"+3", b"\xff\xfe", b"\x00", b"\xc3\xa9", b"$", b"$End",
+    b"\"", b"'", b"[", b"]", b"{", b"#", b"\\", b"%s",
 ]  # fmt: skip
 VALUES = [
-    "nan", "inf", "-inf", "1e308", "-1e308", "1e-320", "5e-324", "1e400", "0", "-0.0", "-1", "1", "2", "3", "0.5", "1e-9", "1e9",
-    "10000000000", "9223372036854775807", "170141183460469231731687303715884105728", "true", "false", '""', '"x"', '"auto"',
-    '"\\u0000"', '"../../x"', '"/"', '"."', '"a\\nb"', "'\U0001f600'", "[]", "[0]", "[0, 0]", "[1, 2]", "[0, 0, 0]", "[1, 2, 3]",
-    "[1e308, -1e308]", "[nan, 0, 0]", "[true, false, true]", '["a", "b"]', "[[1, 2], [3, 4]]", "{}", "{ a = 1 }",
-    "2001-06-07", "07:32:00", "[" * 40 + "]" * 40, "[" * 5000 + "]" * 5000, "{ a = " * 300 + "1" + " }" * 300,
-    '"' + "x" * 100_000 + '"', "9" * 5000,
+    "nan", "inf", "-inf", "1e308", "-1e308", "1e-320", "5e-324", "1e400", "0", "-0.0", "-1", "1", "2", "3", "0.5",
+    "1e-9", "1e9", "10000000000", "9223372036854775807", "170141183460469231731687303715884105728", "true", "false",
+    '""', '"x"', '"auto"', '"\\u0000"', '"../../x"', '"/"', '"."', '"a\\nb"', "'\U0001f600'", "[]", "[0]", "[0, 0]",
+    "[1, 2]", "[0, 0, 0]", "[1, 2, 3]", "[1e308, -1e308]", "[nan, 0, 0]", "[true, false, true]", '["a", "b"]',
+    "[[1, 2], [3, 4]]", "{}", "{ a = 1 }", "2001-06-07", "07:32:00", "[" * 40 + "]" * 40, "[" * 5000 + "]" * 5000,
+    "{ a = " * 300 + "1" + " }" * 300, '"' + "x" * 100_000 + '"', "9" * 5000,
 ]  # fmt: skip
 NUMBER = re.compile(rb"[-+]?\d+(\.\d*)?([eE][-+]?\d+)?")
 
@@ -131,7 +132,9 @@ def _scaled(text: str, _: Sequence[str], chance: random.Random) -> str:
         return text
     place = chance.choice(places)
     number = float(place.group())
-    fresh = chance.choice([-number, 0.0, number + 1, number - 1, 2 * number, number * 1e-6, number * 1e150, number * 1e-300])
+    fresh = chance.choice(
+        [-number, 0.0, number + 1, number - 1, 2 * number, number * 1e-6, number * 1e150, number * 1e-300]
+    )
     if "." not in place.group() and abs(fresh) < 10:
         return text[: place.start()] + str(round(fresh)) + text[place.end() :]
     return text[: place.start()] + repr(fresh) + text[place.end() :]
@@ -178,7 +181,7 @@ def _section(text: str, others: Sequence[str], chance: random.Random) -> str:
 
 
 def _any(text: str, others: Sequence[str], chance: random.Random) -> str:
-    data = damaged(text.encode(), [other.encode() for other in others], chance)
+    data = damaged(text.encode("utf-8", "surrogateescape"), [other.encode() for other in others], chance)
     return data.decode("utf-8", "surrogateescape")
 
 

@@ -21,7 +21,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int, metavar="NUMBER", help="one input; its files are kept")
     arguments = parser.parse_args()
-    numbers = [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)
+    numbers = (
+        [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)
+    )
     ends: Counter[tuple[str, int | None]] = Counter()
     bad = 0
     began = time.monotonic()

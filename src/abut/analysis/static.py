@@ -16,7 +16,7 @@ from abut.analysis.results import step_result
 from abut.analysis.resume import begin_after, check_order, restored, saved_step
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
-from abut.errors import SingularModelError
+from abut.errors import InputError, SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
 from abut.solvers.active_set import Outcome, System, solve_step, start
@@ -71,6 +71,7 @@ def solve(
     reduced = held.reduce(full_stiffness)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
+    _check_finite(reduced.data, load)
     system = System(
         stiffness=reduced,
         load=held.free.T @ (load - full_stiffness @ held.prescribed),  # theory (F9)
@@ -164,6 +165,14 @@ def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[
     if largest > extent:
         note(
             f"displacements of {largest:.2g} exceed the model's size {extent:.2g}: check units (displacements must be small)"
+        )
+
+
+def _check_finite(*numbers: NDArray[np.float64]) -> None:
+    """Every number may be sound by itself, and still a product too large for a computer."""
+    if not all(np.isfinite(values).all() for values in numbers):
+        raise InputError(
+            "stiffnesses or forces are too large to compute with; check the units of materials, loads, mesh"
         )
 
 

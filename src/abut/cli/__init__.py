@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import traceback
 from collections.abc import Sequence
@@ -11,13 +12,14 @@ from pathlib import Path
 
 from abut.cli.run import add_run
 from abut.cli.verify import add_infsup, add_verify
-from abut.errors import AbutError
+from abut.errors import AbutError, InputError
 
-DONE, BUG, INTERRUPTED = 0, 1, 130
+DONE, BUG, INTERRUPTED, NO_READER = 0, 1, 130, 141
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution."""
+    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
+    130 stopped by Ctrl-C (143 by SIGTERM), 1 a bug."""
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
@@ -25,6 +27,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except AbutError as error:
         print(f"abut: error: {error}", file=sys.stderr)
         return error.exit_status
+    except MemoryError:
+        print(
+            "abut: error: not enough memory for this model; choose a coarser mesh, or a larger machine (a mesh file that "
+            "is small may be damaged)",
+            file=sys.stderr,
+        )
+        return InputError.exit_status
+    except BrokenPipeError:  # whoever read the output has gone, as in `abut run JOB | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NO_READER
     except KeyboardInterrupt:
         print("abut: stopped", file=sys.stderr)
         return INTERRUPTED

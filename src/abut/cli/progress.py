@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import threading
 import time
@@ -65,7 +66,8 @@ class Progress:
         if self._live is not None:
             self._live.console.print(text, markup=False, highlight=False, soft_wrap=True)
         else:
-            print(text, flush=True)
+            with contextlib.suppress(BrokenPipeError):  # the results are worth more than who reads along
+                print(text, flush=True)
         self._spoke = time.monotonic()
 
     def _enter_stage(self, stage: Stage) -> None:

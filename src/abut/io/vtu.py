@@ -138,26 +138,37 @@ def _check_counts(path: Path, data: bytes) -> None:
                 f"{path}: not a readable VTU file: {key.decode()} = {value.decode('utf-8', 'replace').strip()!r} cannot be "
                 "right; write it again"
             )
+    order = ">" if b"BigEndian" in head else "<"
+    word = np.dtype(order + ("u8" if b"UInt64" in head.partition(b"header_type")[2][:20] else "u4"))
+    count = 3 if b"compressor" in head else 1  # blocks, size of a block, size of the last; or the size alone
+    size = count * word.itemsize
+    length = 4 * -(-size // 3)  # in base64
+    for inline in re.finditer(rb"<(?:Data)?Array\b[^>]*\bbinary\b[^>]*>\s*([^<\s]*)", head):
+        _check_sizes(path, _decoded(inline[1][:length])[:size], word, count, limit)
     begin = data.find(b"_", start)
     if start < 0 or begin < 0:
         return
-    order = ">" if b"BigEndian" in head else "<"
-    word = np.dtype(order + ("u8" if b'header_type="UInt64"' in head else "u4"))
-    count = 3 if b"compressor=" in head else 1  # blocks, size of a block, size of the last; or the size alone
-    encoded = b'encoding="base64"' in data[start:begin]
+    encoded = b"base64" in data[start:begin]
     for offset in re.findall(rb'offset\s*=\s*"\s*(\d+)', head):
-        at, size = begin + 1 + int(offset), count * word.itemsize
-        own = data[at : at + (4 * -(-size // 3) if encoded else size)]
-        try:
-            words = np.frombuffer((base64.b64decode(own) if encoded else own)[:size], word)
-        except ValueError:
-            words = np.empty(0, word)
-        if len(words) and words[0] == 0:
-            continue  # an empty array
-        if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
-            raise InputError(
-                f"{path}: not a readable VTU file: the data at offset {int(offset)} is damaged; write it again"
-            )
+        at = begin + 1 + int(offset)
+        own = _decoded(data[at : at + length]) if encoded else data[at : at + size]
+        _check_sizes(path, own[:size], word, count, limit)
+
+
+def _decoded(text: bytes) -> bytes:
+    try:
+        return base64.b64decode(text)
+    except ValueError:
+        return b""
+
+
+def _check_sizes(path: Path, own: bytes, word: Any, count: int, limit: int) -> None:
+    """Refuse the sizes ``own`` that stand before the data of an array where they cannot be right."""
+    words = np.frombuffer(own[: len(own) // word.itemsize * word.itemsize], word)
+    if len(words) and words[0] == 0:
+        return  # an empty array
+    if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
+        raise InputError(f"{path}: not a readable VTU file: the sizes of an array are damaged; write it again")
 
 
 def _load(path: Path) -> Any:

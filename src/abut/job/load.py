@@ -64,7 +64,7 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
         raise InputError(f"{path}: not a text file in UTF-8; is it a job file?") from None
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError is one, and so is a number of too many digits
         raise InputError(f"{path}: not valid TOML: {error}") from None
     except RecursionError:
         raise InputError(f"{path}: not valid TOML: lists or tables nested too deeply") from None

@@ -10,6 +10,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from abut.cells import CELLS
+from abut.checks import LARGEST
 from abut.errors import InputError
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
@@ -59,6 +60,11 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
         bad = int(used[~np.isfinite(points).all(axis=1)][0])
         raise InputError(
             f"{where}: point {bad} (counted from 0) has a coordinate that is no number; write the mesh again"
+        )
+    if np.abs(points).max() > LARGEST:
+        bad = int(used[np.argmax(np.abs(points).max(axis=1))])
+        raise InputError(
+            f"{where}: point {bad} (counted from 0) has a coordinate beyond {LARGEST:g}; write the mesh again"
         )
     if top == 2:
         if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():

@@ -27,6 +27,7 @@ ROUGH, FINE, FINEST = (
     1e-9,
 )  # reductions of the residual asked of them: while the set changes, cycles, is final
 FEW = 0.02  # share of the active set below which changes count as few
+NO_PRESSURE = 1e-12  # over Young's modulus: a contact that presses less does not press at all
 TOLERANCE = 1e-8  # of the relative residuals, for laws that are not piecewise linear
 
 
@@ -295,10 +296,15 @@ def _report(
         active=int(state.active.sum()),
         changed=changed,
         residual=float(np.abs(_equilibrium(system, state, factor)).max(initial=0.0) / force),
-        contact_residual=float(violation.max(initial=0.0) / max(np.abs(state.pressure).max(initial=0.0), 1e-300)),
+        contact_residual=_relative(float(violation.max(initial=0.0)), float(np.abs(state.pressure).max(initial=0.0))),
         penetration=max(depth, default=0.0),
         seconds=seconds,
     )
+
+
+def _relative(violation: float, pressure: float) -> float:
+    """A violation of the law over the largest pressure; 1 where there is no pressure to compare with."""
+    return violation / pressure if pressure > 1e-300 else float(violation > 0.0)
 
 
 def _finish_smooth(
@@ -315,7 +321,10 @@ def _finish_smooth(
     none = np.zeros(len(state.active), dtype=bool)
     if not any(pair.smooth for pair in system.pairs):
         return Outcome(state, tuple(done), True, none, partial(_active_laws, factor=factor))
-    reference = max(np.abs(state.pressure).max(initial=0.0), 1e-300)
+    reference = float(np.abs(state.pressure).max(initial=0.0))
+    if reference <= NO_PRESSURE * max(pair.stiffness * pair.size for pair in system.pairs):
+        # The function is smoothed over a share of the largest pressure: without one it is the complementarity law.
+        return Outcome(state, tuple(done), True, none, partial(_active_laws, factor=factor))
     smooth = partial(_smooth_laws, factor=factor, reference=reference)
     violation = np.zeros(len(state.active))
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
