@@ -35,9 +35,10 @@ class Progress:
         self._stage: Stage | None = None
         self._lock = threading.Lock()
         self._closed = threading.Event()
-        self._began = self._spoke = self._first = time.monotonic()
+        self._began = self._spoke = self._first = self._since = time.monotonic()
         self._patience = PATIENCE
-        self._step = self._iteration = self._before = 0
+        self._step = self._iteration = 0
+        self._before = self._done = self._total = 0  # load steps: done before this run, by now, to be done
 
     def __call__(self, item: Iteration | Stage | str) -> None:
         if isinstance(item, Stage):
@@ -73,8 +74,11 @@ class Progress:
     def _enter_stage(self, stage: Stage) -> None:
         now = time.monotonic()
         with self._lock:
-            if stage.total and (self._stage is None or not self._stage.total):
+            if stage.total and not self._total:
                 self._first, self._before = now, stage.done
+            if stage.total and (not self._total or stage.done > self._done):
+                self._done, self._since = stage.done, now
+            self._total = stage.total or self._total
             self._stage, self._began, self._iteration = stage, now, 0
             self._patience = PATIENCE
             if not self._silent and self._live is None and (stage.seconds or 0.0) >= LONG:
@@ -89,10 +93,10 @@ class Progress:
         if self._iteration:
             text += f", iteration {self._iteration + 1}"
         text += f" ({now - self._began:.0f} s)"
-        done = stage.done - self._before
-        if done > 0 and stage.total > stage.done:
-            left = (now - self._first) / done * (stage.total - stage.done) - (now - self._began)
-            text += f"; {stage.done} of {stage.total} steps done, about {_duration(max(left, 0.0))} left"
+        if self._total > self._done > self._before:
+            each = (self._since - self._first) / (self._done - self._before)
+            left = max(each * (self._total - self._done) - (now - self._since), 0.0)
+            text += f"; {self._done} of {self._total} steps done, about {_duration(left)} left"
         return text
 
     def _watch(self) -> None:
