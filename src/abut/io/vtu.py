@@ -197,7 +197,8 @@ def _regions(path: Path, grid: Any) -> tuple[NDArray[np.int64] | None, list[str]
     texts = grid.GetFieldData().GetAbstractArray("region_names")
     if texts is not None and not texts.IsA("vtkStringArray"):
         raise InputError(f"{path}: the field data 'region_names' must be strings; write it as a string array")
-    names = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())] if texts is not None else []
+    found = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())] if texts is not None else []
+    names = [name.decode("utf-8", "replace") if isinstance(name, bytes) else name for name in found]
     region = grid.GetCellData().GetAbstractArray("region")
     if region is None:
         return None, names
