@@ -36,17 +36,27 @@ def write(solution: Solution, directory: str | Path, steps: Sequence[Step] | Non
     """
     folder = Path(directory)
     make_directory(folder)
-    for step in solution.steps if steps is None else steps:
+    write_steps(folder, solution, solution.steps if steps is None else steps)
+    write_index(folder, solution)
+    return folder
+
+
+def write_steps(folder: Path, solution: Solution, steps: Sequence[Step]) -> None:
+    """The VTU files of some steps."""
+    for step in steps:
         _write_fields(folder, solution, step)
         for contact in step.contacts:
             _write_contact(folder, step, contact)
+
+
+def write_index(folder: Path, solution: Solution) -> None:
+    """The files that tell of all steps."""
     _write_collection(folder, "fields", solution)
     for contact in solution.contacts:
         _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
-    return folder
 
 
 def file_name(name: str) -> str:

@@ -11,7 +11,7 @@ from types import TracebackType
 from abut.errors import InputError
 from abut.io.atomic import make_directory, remove_leftovers
 from abut.io.restart import clear, save_step
-from abut.io.results import step_files, write
+from abut.io.results import step_files, write, write_index, write_steps
 from abut.state import Iteration, Saved, Solution, Stage, Step
 
 LOG = "run.jsonl.part"
@@ -63,8 +63,9 @@ class Stream:
         """Write the last step of the solution so far."""
         if not self._resumed and not self._written:
             clear(self.directory)  # of an earlier run: it would no longer fit
-        write(solution, self.directory, self._missing(solution))
+        write_steps(self.directory, solution, self._missing(solution))
         self._written.add(saved.number)
+        write_index(self.directory, solution)
         save_step(self.directory, self._model, saved)
 
     def finish(self, solution: Solution) -> None:
