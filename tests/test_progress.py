@@ -11,14 +11,14 @@ import time
 from pathlib import Path
 
 import pytest
-from test_restart import STEPS, job
 
 import abut
 from abut.cli import main, progress
 from abut.cli.progress import Progress
 from abut.job import load_job
 from abut.solvers.linear import expected_seconds
-from abut.state import Iteration, Stage
+from abut.state import Iteration, Phase
+from test_restart import STEPS, job
 
 
 def test_plain_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,8 +67,8 @@ def test_live_line_on_a_terminal(tmp_path: Path) -> None:
 
 def test_long_stages_are_announced(capsys: pytest.CaptureFixture[str]) -> None:
     with Progress() as show:
-        show(Stage("cutting", None))
-        show(Stage("factorising 154 686 displacements", 31.4))
+        show(Phase("cutting", None))
+        show(Phase("factorising 154 686 displacements", 31.4))
     assert capsys.readouterr().out == "factorising 154 686 displacements: about 31 s\n"
 
 
@@ -77,7 +77,7 @@ def test_never_silent_for_long(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
     monkeypatch.setattr(progress, "PATIENCE", 0.1)
     monkeypatch.setattr(progress, "REFRESH", 0.02)
     with Progress() as show:
-        show(Stage("step 2 of 3", None, 1, 3))
+        show(Phase("step 2 of 3", None, 1, 3))
         show(Iteration(2, 7, 1, 0, 0.0, 0.0, 0.0, 0.0))
         time.sleep(1.0)
     waiting = [line for line in capsys.readouterr().out.splitlines() if line.startswith("...")]
@@ -89,9 +89,9 @@ def test_time_left_goes_by_the_steps_of_this_run() -> None:
     """Two of four steps took 20 s, 3 s of the next are over: 17 s are left. A restart does not count the steps before."""
     for before in (0, 10):
         show = Progress(silent=True)
-        show(Stage("step", None, before, before + 4))
+        show(Phase("step", None, before, before + 4))
         began = show._first
-        show(Stage("step", None, before + 2, before + 4))
+        show(Phase("step", None, before + 2, before + 4))
         show._since = began + 20.0
         assert "about 17 s left" in show.status(began + 23.0)
 
@@ -100,7 +100,7 @@ def test_stages_come_in_order(tmp_path: Path) -> None:
     seen: list[str] = []
 
     def observe(item: object) -> None:
-        if isinstance(item, Stage):
+        if isinstance(item, Phase):
             seen.append(item.name)
 
     abut.solve(load_job(job(tmp_path)).model, observe)

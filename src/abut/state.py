@@ -35,7 +35,7 @@ class Iteration:
 
 
 @dataclass(frozen=True)
-class Stage:
+class Phase:
     """A stage of the run begins. ``seconds``: how long it will take, from its size (None: not known); ``done`` of
     ``total`` load steps lie behind."""
 
@@ -187,5 +187,5 @@ class Solution:
         return self.steps[-1].displacement
 
 
-Observer = Callable[[Iteration | Stage | str], None]  # gets each iteration, stages that begin, and notes as text
+Observer = Callable[[Iteration | Phase | str], None]  # gets each iteration, stages that begin, and notes as text
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it

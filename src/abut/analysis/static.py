@@ -23,7 +23,7 @@ from abut.solvers.active_set import Outcome, System, solve_step, start
 from abut.solvers.blocks import newton_step
 from abut.solvers.iterative import NotConverged
 from abut.solvers.linear import Prepared, choose, expected_seconds, prepare
-from abut.state import Observer, OnStep, Saved, Solution, Stage, Step
+from abut.state import Observer, OnStep, Phase, Saved, Solution, Step
 
 ABSURD = 1e6  # displacement over model size that no units explain
 
@@ -37,7 +37,7 @@ def solve(
 ) -> Solution:
     """Solve a model step by step.
 
-    ``observer`` is called with every iteration (``abut.state.Iteration``), with stages that begin (``abut.state.Stage``)
+    ``observer`` is called with every iteration (``abut.state.Iteration``), with stages that begin (``abut.state.Phase``)
     and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the solution so far after each
     converged step, and what it takes to go on from there; ``resume``: such records of all steps done before, in order,
     of the same model: the run goes on after the last of them.
@@ -53,7 +53,7 @@ def solve(
         observe(text)
 
     clock = _Clock()
-    observe(Stage("assembling the stiffness"))
+    observe(Phase("assembling the stiffness"))
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
     full_stiffness = stiffness(model.mesh, materials, model.plane)
@@ -61,11 +61,11 @@ def solve(
     load = applied + strain_load(model)
     resultant = applied.reshape(-1, model.dim).sum(axis=0)
     clock.mark("assembly")
-    observe(Stage("cutting and integrating the interface"))
+    observe(Phase("cutting and integrating the interface"))
     every = pairs(model, held)
     _describe(every, note)
     clock.mark("interface")
-    observe(Stage("looking for motions that nothing holds"))
+    observe(Phase("looking for motions that nothing holds"))
     held_by: Holding = holding(model.mesh, held, every)
     held_by.check()
     reduced = held.reduce(full_stiffness)
@@ -87,7 +87,7 @@ def solve(
     def linear_solver(kind: str) -> Prepared:
         what = "factorising" if kind == "direct" else "setting up multigrid for"
         size = f"{n_free:,}".replace(",", " ")
-        observe(Stage(f"{what} {size} displacements", expected_seconds(kind, n_free, model.dim)))
+        observe(Phase(f"{what} {size} displacements", expected_seconds(kind, n_free, model.dim)))
         result = prepare(kind, system, held.free, held_by.rigid.together, held_by.free, model.dim)
         note(result.note)
         return result
@@ -109,7 +109,7 @@ def solve(
     state = start(solver.system)
     steps: list[Step] = []
     if resume:
-        observe(Stage("restoring the steps done before"))
+        observe(Phase("restoring the steps done before"))
         steps += [result(restored(saved), saved.number, saved.factor) for saved in resume]
         state = begin_after(resume[-1], state, note)
         times = [t for t in times if t > resume[-1].factor * (1.0 + 1e-12)]
@@ -117,7 +117,7 @@ def solve(
     first = len(steps) + 1
     count = len(steps) + len(times)
     for number, factor in enumerate(times, start=first):
-        observe(Stage(f"step {number} of {count}", None, number - 1, count))
+        observe(Phase(f"step {number} of {count}", None, number - 1, count))
         try:
             outcome = solve_step(solver.system, state, factor, number, model.solve.max_iterations, observe)
         except NotConverged as reason:
@@ -130,7 +130,7 @@ def solve(
         state = outcome.unknowns
         outcome = solver.finish(outcome, factor)
         clock.mark("solve")
-        observe(Stage(f"stresses and checks of step {number}", None, number - 1, count))
+        observe(Phase(f"stresses and checks of step {number}", None, number - 1, count))
         steps.append(result(outcome, number, factor))
         clock.mark("results")
         if not outcome.converged:

@@ -9,7 +9,7 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from abut.state import Iteration, Stage
+from abut.state import Iteration, Phase
 
 if TYPE_CHECKING:
     from rich.status import Status
@@ -32,7 +32,7 @@ class Progress:
     def __init__(self, silent: bool = False) -> None:
         self._silent = silent
         self._live: Status | None = None
-        self._stage: Stage | None = None
+        self._stage: Phase | None = None
         self._lock = threading.Lock()
         self._closed = threading.Event()
         self._began = self._spoke = self._first = self._since = time.monotonic()
@@ -40,8 +40,8 @@ class Progress:
         self._step = self._iteration = 0
         self._before = self._done = self._total = 0  # load steps: done before this run, by now, to be done
 
-    def __call__(self, item: Iteration | Stage | str) -> None:
-        if isinstance(item, Stage):
+    def __call__(self, item: Iteration | Phase | str) -> None:
+        if isinstance(item, Phase):
             self._enter_stage(item)
         elif isinstance(item, str):
             self.line(item)
@@ -71,7 +71,7 @@ class Progress:
                 print(text, flush=True)
         self._spoke = time.monotonic()
 
-    def _enter_stage(self, stage: Stage) -> None:
+    def _enter_stage(self, stage: Phase) -> None:
         now = time.monotonic()
         with self._lock:
             if stage.total and not self._total:

@@ -13,7 +13,7 @@ from abut.errors import ConvergenceError, Stopped
 if TYPE_CHECKING:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
-    from abut.state import Iteration, Solution, Stage
+    from abut.state import Iteration, Phase, Solution
 
 DONE = 0
 STATUS = """exit status:
@@ -74,9 +74,9 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
     from abut.io import restart
     from abut.io.stream import Stream
     from abut.job import load_job
-    from abut.state import Stage
+    from abut.state import Phase
 
-    progress(Stage(f"reading {arguments.job}"))
+    progress(Phase(f"reading {arguments.job}"))
     job = load_job(arguments.job)
     directory = arguments.output or job.directory
     model = restart.description(job.model)
@@ -85,7 +85,7 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
         progress(restart.last(before))
     with Stream(directory, model, before) as stream:
 
-        def observe(item: Iteration | Stage | str) -> None:
+        def observe(item: Iteration | Phase | str) -> None:
             stream.observe(item)
             progress(item)
             interrupt.check()
@@ -94,7 +94,7 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
             solution = solve(job.model, observe, stream.step, before)
         except Stopped:
             raise Stopped(_left(stream.steps, directory)) from None
-        progress(Stage("writing results"))
+        progress(Phase("writing results"))
         stream.finish(solution)
     return solution, directory
 

@@ -25,6 +25,7 @@ from abut.mesh.surface import Surface
 from abut.state import ContactResult, Solution, Step
 
 NOT_COVERED, OPEN, CLOSED = 0, 1, 2
+TOUCHING = 1e-9  # pressure over the largest from which on a facet is shown as closed: less is rounding
 
 
 def write(solution: Solution, directory: str | Path, steps: Sequence[Step] | None = None) -> Path:
@@ -213,7 +214,7 @@ def _write_contact(folder: Path, step: Step, contact: ContactResult) -> None:
     unsettled_facets[step.cycling.get(contact.name, [])] = 1
     sides = ((contact.contactor, contact.pressure, contact.gap, 0), (contact.target, contact.target_pressure, None, 1))
     for surface, pressure, gap, side in sides:
-        closed = np.nan_to_num(pressure).max(axis=1) > 0.0
+        closed = np.nan_to_num(pressure).max(axis=1) > TOUCHING * np.nan_to_num(contact.pressure).max(initial=0.0)
         if side == 0:
             status = np.where(contact.covered, np.where(closed, CLOSED, OPEN), NOT_COVERED)
         else:

@@ -12,7 +12,7 @@ from abut.errors import InputError
 from abut.io.atomic import make_directory, remove_leftovers
 from abut.io.restart import clear, save_step
 from abut.io.results import step_files, write, write_index, write_steps
-from abut.state import Iteration, Saved, Solution, Stage, Step
+from abut.state import Iteration, Phase, Saved, Solution, Step
 
 LOG = "run.jsonl.part"
 
@@ -49,9 +49,9 @@ class Stream:
         """How many steps the directory holds."""
         return max(self._resumed, *self._written, 0)
 
-    def observe(self, item: Iteration | Stage | str) -> None:
+    def observe(self, item: Iteration | Phase | str) -> None:
         """Append an iteration or a note to the log."""
-        if isinstance(item, Stage):
+        if isinstance(item, Phase):
             return
         line = {"note": item} if isinstance(item, str) else dict(vars(item))
         try:
