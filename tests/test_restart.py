@@ -313,3 +313,17 @@ def test_ctrl_c_before_the_first_step_writes_nothing(tmp_path: Path, capsys: pyt
         assert main(["run", str(path)]) == 130
     assert "stopped before the first step converged: nothing is written" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["job.toml"]
+
+
+def test_restart_of_a_load_history(tmp_path: Path) -> None:
+    """Loaded, partly unloaded and loaded again at uneven times: what is rounding is judged by the steps before, too."""
+    supports = [line for line in BALL.splitlines() if line.replace(" ", "").startswith("z=-")]
+    assert supports
+    history = "amplitude = [[0.0, 0.0], [0.4, 1.0], [0.6, 0.1], [1.0, 0.8]]"
+    text = BALL.replace(supports[0], f"{supports[0]}\n{history}")
+    options = {"times": [0.2, 0.4, 0.6, 0.9, 1.0], "steps": 1}
+    whole, parts = job(tmp_path / "whole", text, **options), job(tmp_path / "parts", text, **options)
+    assert main(["run", "--quiet", str(whole)]) == 0
+    stop_in(parts, 4)
+    assert main(["run", "--quiet", "--restart", str(parts)]) == 0
+    assert_same_results(whole.parent / "results", parts.parent / "results")

@@ -9,16 +9,19 @@ import numpy as np
 
 from abut.errors import InputError
 from abut.interface.laws import Linearisation
-from abut.solvers.active_set import Outcome, System, Unknowns
+from abut.solvers.active_set import Outcome, Stage, System, Unknowns
 from abut.state import Saved
 
 
-def saved_step(outcome: Outcome, own: Unknowns, number: int, factor: float, linear: str) -> Saved:
-    """outcome: of the step in all free displacements; own: its state in the unknowns of the linear solver."""
+def saved_step(outcome: Outcome, own: Unknowns, after: Stage, time: float, linear: str) -> Saved:
+    """outcome: of the step in all free displacements; own: its state in the unknowns of the linear solver; after: the stage
+    that follows."""
     u = outcome.unknowns
     return Saved(
-        number, factor, linear, u.displacement, u.pressure, u.active, own.displacement, own.pressure, outcome.iterations
-    )
+        number=after.number - 1, factor=time, linear=linear, largest_force=after.force, largest_pressure=after.pressure,
+        displacement=u.displacement, pressure=u.pressure, active=u.active,
+        own_displacement=own.displacement, own_pressure=own.pressure, iterations=outcome.iterations,
+    )  # fmt: skip
 
 
 def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> None:

@@ -11,15 +11,16 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.holding import Holding, holding
-from abut.analysis.loads import applied_load, strain_load
+from abut.analysis.loads import loads
 from abut.analysis.results import step_result
 from abut.analysis.resume import begin_after, check_order, restored, saved_step
+from abut.conditions import weights
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
 from abut.errors import InputError, SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
-from abut.solvers.active_set import Outcome, System, solve_step, start
+from abut.solvers.active_set import Outcome, Stage, System, following, solve_step, start
 from abut.solvers.blocks import newton_step
 from abut.solvers.iterative import NotConverged
 from abut.solvers.linear import Prepared, choose, expected_seconds, prepare
@@ -57,9 +58,7 @@ def solve(
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
     full_stiffness = stiffness(model.mesh, materials, model.plane)
-    applied = applied_load(model)
-    load = applied + strain_load(model)
-    resultant = applied.reshape(-1, model.dim).sum(axis=0)
+    loaded = loads(model)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     every = pairs(model, held)
@@ -71,10 +70,10 @@ def solve(
     reduced = held.reduce(full_stiffness)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
-    _check_finite(reduced.data, load)
+    _check_finite(reduced.data, loaded.forces)
     system = System(
         stiffness=reduced,
-        load=held.free.T @ (load - full_stiffness @ held.prescribed),  # theory (F9)
+        load=held.free.T @ (loaded.forces - full_stiffness @ held.prescribed),  # theory (F9)
         pairs=every,
         operator=operator,
         complete=held_by.complete,
@@ -92,15 +91,15 @@ def solve(
         note(result.note)
         return result
 
-    def result(outcome: Outcome, number: int, factor: float) -> Step:
-        displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
+    def result(outcome: Outcome, stage: Stage, time_: float) -> Step:
+        displacement = held.free @ outcome.unknowns.displacement + held.prescribed @ stage.weights
         _check_size(model, displacement, note)
-        return step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor)
+        return step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps)
 
     def so_far(complete: bool) -> Solution:
         return Solution(model, tuple(steps), n_free, solver.name, tuple(notes), dict(clock.timings), complete)
 
-    times = [k / model.solve.steps for k in range(1, model.solve.steps + 1)]
+    times = [t for t in model.solve.ends if not resume or t > resume[-1].factor * (1.0 + 1e-12)]
     check_order(resume, n_free, operator.shape[0])
     kind = choose(model.solve.linear, system, model.mesh)
     if resume and model.solve.linear == "auto":
@@ -108,35 +107,38 @@ def solve(
     solver = linear_solver(kind)
     state = start(solver.system)
     steps: list[Step] = []
+    force = pressure = 0.0
     if resume:
         observe(Phase("restoring the steps done before"))
-        steps += [result(restored(saved), saved.number, saved.factor) for saved in resume]
+        for saved in resume:
+            stage = Stage(saved.number, weights(model.histories, saved.factor), force, pressure)
+            steps.append(result(restored(saved), stage, saved.factor))
+            force, pressure = saved.largest_force, saved.largest_pressure
         state = begin_after(resume[-1], state, note)
-        times = [t for t in times if t > resume[-1].factor * (1.0 + 1e-12)]
         clock.mark("results")
-    first = len(steps) + 1
     count = len(steps) + len(times)
-    for number, factor in enumerate(times, start=first):
+    for number, time_ in enumerate(times, start=len(steps) + 1):
         observe(Phase(f"step {number} of {count}", None, number - 1, count))
+        stage = Stage(number, weights(model.histories, time_), force, pressure)
         try:
-            outcome = solve_step(solver.system, state, factor, number, model.solve.max_iterations, observe)
+            outcome = solve_step(solver.system, state, stage, model.solve.max_iterations, observe)
         except NotConverged as reason:
             note(f"step {number}: {reason}: going on with the direct solver")
             kind = "direct"
             solver = linear_solver(kind)
-            outcome = solve_step(
-                solver.system, start(solver.system), factor, number, model.solve.max_iterations, observe
-            )
+            outcome = solve_step(solver.system, start(solver.system), stage, model.solve.max_iterations, observe)
         state = outcome.unknowns
-        outcome = solver.finish(outcome, factor)
+        after = following(solver.system, stage, outcome, stage.weights)
+        force, pressure = after.force, after.pressure
+        outcome = solver.finish(outcome, stage.weights)
         clock.mark("solve")
         observe(Phase(f"stresses and checks of step {number}", None, number - 1, count))
-        steps.append(result(outcome, number, factor))
+        steps.append(result(outcome, stage, time_))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
             break
-        keep(so_far(complete=False), saved_step(outcome, state, number, factor, kind))
+        keep(so_far(complete=False), saved_step(outcome, state, after, time_, kind))
         clock.mark("writing")
     if solver.count is not None:
         note(f"{solver.count.iterations} linear iterations in all")

@@ -62,6 +62,7 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
         "number": saved.number,
         "factor": saved.factor,
         "linear": saved.linear,
+        "largest": [saved.largest_force, saved.largest_pressure],
         "iterations": [vars(row) for row in saved.iterations],
         "model": dict(model),
     }
@@ -97,6 +98,8 @@ def _load(path: Path, model: Mapping[str, str]) -> Saved:
                 number=head["number"],
                 factor=head["factor"],
                 linear=head["linear"],
+                largest_force=head["largest"][0],
+                largest_pressure=head["largest"][1],
                 iterations=tuple(Iteration(**row) for row in head["iterations"]),
                 **arrays,
             )
