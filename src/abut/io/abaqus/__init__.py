@@ -2,7 +2,8 @@
 
 The parser is abut's own: meshio's reads the mesh only and is no longer maintained."""
 
+from abut.io.abaqus.groups import read_abaqus
 from abut.io.abaqus.reader import read_deck
 from abut.io.abaqus.record import Deck
 
-__all__ = ["Deck", "read_deck"]
+__all__ = ["Deck", "read_abaqus", "read_deck"]

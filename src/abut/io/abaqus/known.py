@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from abut.errors import InputError, nearest
 from abut.io.abaqus.cards import Card, key
+from abut.io.abaqus.elements import ELEMENTS, refusal
 
 # Cards that are read, with the parameters that are read or change nothing in small-displacement statics.
 READ: dict[str, tuple[str, ...]] = {
@@ -126,20 +127,22 @@ REFUSED: dict[str, str] = {
     "SYSTEM": f"nodes in a system of their own are not read{_WRITE}",
     "USER MATERIAL": f"user materials are not supported{_MATERIAL}",
     "VISCOELASTIC": f"viscosity is not supported{_MATERIAL}",
-} | {name: f"{words} is not supported; abut solves *STATIC steps" for name, words in PROCEDURES.items()}
+} | {name: f"abut solves *STATIC steps only, not {words}" for name, words in PROCEDURES.items()}
 
 _PARAMETERS = {  # reasons for parameters that are refused
-    ("STEP", "NLGEOM"): "large displacements are not supported; abut's displacements are small. To solve the deck with small "
-    "displacements",
-    ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step. To solve it as "
-    "an ordinary step",
-    ("STATIC", "RIKS"): "arc-length steps are not supported. To solve it as an ordinary step",
-    ("STATIC", "STABILIZE"): "artificial damping is not supported; hold every body. To solve it without",
-    ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement. To read it without",
-    ("TIE", "MULTISTAGE"): "multistage ties are not supported. To read it as an ordinary tie",
-    ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED, or "
-    "contact that opens. For the latter",
+    ("STEP", "NLGEOM"): "large displacements are not supported; abut's displacements are small",
+    ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
+    ("STATIC", "RIKS"): "arc-length steps are not supported",
+    ("STATIC", "STABILIZE"): "artificial damping is not supported; hold every body",
+    ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
+    ("TIE", "MULTISTAGE"): "multistage ties are not supported",
+    ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
 }
+NEEDED = {  # leaving these out would leave no deck
+    key(name)
+    for name in ("ASSEMBLY", "BEAM SECTION", "ELCOPY", "ELGEN", "INSTANCE", "MEMBRANE SECTION", "NCOPY", "NFILL", "NGEN",
+                 "PART", "SHELL SECTION", "SYSTEM")
+}  # fmt: skip
 
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
@@ -160,28 +163,51 @@ class Sifted:
 def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     """The cards to read. ``ignore`` names cards and parameters to leave out although they change the result.
 
-    Raises InputError for a card or parameter that abut does not honour, with its place and the cure, and for names in
-    ``ignore`` that are no card or must be read."""
+    Raises InputError for cards, parameters and element types that abut does not honour, all of them with place and cure,
+    and for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
     cards = _without_steps(tuple(cards), asked)
     _check_asked(ignore, cards)
     kept: list[Card] = []
     quiet: dict[str, None] = {}
     ignored: dict[str, None] = {}
+    found: dict[str, _Refusal] = {}
     for card in cards:
         if isinstance(card, str):
             ignored[card] = None
-            continue
-        if card.key in _QUIET:
+        elif card.key in _QUIET:
             quiet[card.title] = None
         elif card.key in _READ:
-            kept.append(_without_parameters(card, asked, ignored))
+            _parameters(card, asked, ignored, found)
+            own = {name: value for name, value in card.parameters.items() if name in _READ[card.key]}
+            kept.append(Card(card.key, card.title, own, card.lines, card.place))
+            code = key(card.get("TYPE") or "")
+            if card.key == "ELEMENT" and code and code not in ELEMENTS:
+                found.setdefault(f"ELEMENT {code}", _Refusal(card, refusal(code), ""))
         elif card.key in asked:
             ignored[f"{card.title} ({card.place})"] = None
         else:
             _, reason = _REFUSED.get(card.key, ("", "abut does not know this card; take it out if it is not needed"))
-            raise card.error(f"{reason}. To solve without it: --ignore {_quoted(card.title[1:])}")
+            found.setdefault(card.key, _Refusal(card, reason, "" if card.key in NEEDED else card.title[1:]))
+    _refuse(list(found.values()))
     return Sifted(tuple(kept), tuple(quiet), tuple(ignored))
+
+
+@dataclass(frozen=True)
+class _Refusal:
+    card: Card
+    reason: str
+    name: str  # what --ignore would take, "" where leaving it out makes no sense
+
+
+def _refuse(found: list[_Refusal]) -> None:
+    """One error for all that is refused, each with its place."""
+    if not found:
+        return
+    texts = [f"{r.card.place}: {r.card.title}: {r.reason}" for r in found]
+    options = " ".join(f"--ignore {_quoted(r.name)}" for r in found if r.name)
+    cure = "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
+    raise InputError("\n  ".join(texts) + cure)
 
 
 def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | str, ...]:
@@ -203,24 +229,21 @@ def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | str
 
 def _step(step: list[Card], asked: set[str]) -> list[Card | str]:
     for card in step:
-        if card.key in _PROCEDURES and card.key in asked:
-            return [f"the step with {card.title} ({card.place})"]
+        if card.key in _PROCEDURES:  # refused alone: what else the step holds goes with it
+            return [f"the step with {card.title} ({card.place})" if card.key in asked else card]
     return list(step)
 
 
-def _without_parameters(card: Card, asked: set[str], ignored: dict[str, None]) -> Card:
-    known, parameters = _READ[card.key], {}
+def _parameters(card: Card, asked: set[str], ignored: dict[str, None], found: dict[str, _Refusal]) -> None:
+    """Sort out the parameters that are not read."""
     for name, value in card.parameters.items():
-        if name in known:
-            parameters[name] = value
-        elif name == "NLGEOM" and value is not None and key(value) == "NO":
+        if name in _READ[card.key] or (name == "NLGEOM" and value is not None and key(value) == "NO"):
             continue
-        elif name in asked:
+        if name in asked:
             ignored[f"{name} of {card.title} ({card.place})"] = None
         else:
-            reason = _PARAMETERS.get((_name(card), name), f"abut does not know the parameter {name}. To read the card without it")
-            raise card.error(f"{reason}: --ignore {_quoted(name)}")
-    return Card(card.key, card.title, parameters, card.lines, card.place)
+            reason = _PARAMETERS.get((_name(card), name), "abut does not know this parameter")
+            found.setdefault(f"{card.key} {name}", _Refusal(card, f"{name}: {reason}", name))
 
 
 def _name(card: Card) -> str:

@@ -67,14 +67,14 @@ def _row(card: Card, columns: int, what: str) -> Line:
     return line
 
 
-def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material]) -> tuple[Section, ...]:
-    """Solid sections; later ones override earlier ones for elements that stand in both, as in Abaqus and CalculiX."""
+def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None) -> tuple[Section, ...]:
+    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     for card in of(cards, "SOLID SECTION"):
         name, material = card.need("ELSET"), card.need("MATERIAL")
         if name.upper() not in mesh.element_sets.sets:
             raise card.error(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
-        if material.upper() not in known:
+        if known is not None and material.upper() not in known:
             raise card.error(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
         if card.has("NODAL THICKNESS"):
             raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
@@ -86,7 +86,8 @@ def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Materia
             Section(s.name, np.setdiff1d(s.elements, elements), s.material, s.thickness, s.place) for s in result
         ]
         spelled = mesh.element_sets.spelled[name.upper()]
-        result.append(Section(spelled, elements, known[material.upper()], thickness, card.place))
+        own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0)
+        result.append(Section(spelled, elements, own, thickness, card.place))
     return tuple(s for s in result if len(s.elements))
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from abut.errors import InputError
 from abut.io.abaqus.cards import Card, key, read_cards
-from abut.io.abaqus.known import sift
+from abut.io.abaqus.known import NEEDED, sift
 from abut.io.abaqus.mesh_cards import MeshCards, mesh_cards
 from abut.io.abaqus.model_cards import (
     cyclic_symmetry,
@@ -21,6 +20,8 @@ from abut.io.abaqus.model_cards import (
 )
 from abut.io.abaqus.record import Deck, Prescribed
 from abut.io.abaqus.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
+
+MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
 
 
 def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
@@ -54,7 +55,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         transforms=transforms(sifted.cards, mesh),
         cyclic=cyclic_symmetry(sifted.cards, mesh),
         pretension=pretension_sections(sifted.cards, mesh),
-        fixed=_fixed(outside, mesh),
+        fixed=_fixed(outside, mesh, notes),
         initial=initial_temperature(sifted.cards, mesh),
         amplitudes=known,
         steps=steps(groups, mesh, known),
@@ -64,8 +65,21 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     )
 
 
-def _fixed(outside: Sequence[Card], mesh: MeshCards) -> tuple[Prescribed, ...]:
-    """Supports outside the steps, which must hold at zero."""
+def read_mesh_only(path: Path) -> Deck:
+    """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
+
+    Raises InputError as ``read_deck`` does, for these cards only."""
+    cards = sift([card for card in read_cards(path) if card.key in MESH or card.key in NEEDED]).cards
+    mesh = mesh_cards(cards)
+    return Deck(
+        str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
+        {surface.name: surface for surface in mesh.surfaces.values()}, sections(cards, mesh, None),
+        (), (), (), (), (), (), (), {}, {}, (), (), (), (),
+    )  # fmt: skip
+
+
+def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str]) -> tuple[Prescribed, ...]:
+    """Supports outside the steps."""
     result = []
     for card in outside:
         if card.key in KIND and card.key != "BOUNDARY":
@@ -73,11 +87,8 @@ def _fixed(outside: Sequence[Card], mesh: MeshCards) -> tuple[Prescribed, ...]:
         if card.key != "BOUNDARY":
             continue
         for value in prescribed(card, mesh, {}):
-            if value.value != 0.0:
-                raise InputError(
-                    f"{value.place}: {card.title}: a displacement other than zero stands inside a step; move it between "
-                    "*STEP and *END STEP"
-                )
+            if value.value != 0.0 and not any("outside the steps" in note for note in notes):
+                notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
             result.append(value)
     return tuple(result)
 
