@@ -34,32 +34,38 @@ def pieces(deck: Deck) -> tuple[Piece, ...]:
     if len(left):
         more = f" and {len(left) - 1} more" if len(left) > 1 else ""
         raise InputError(f"{deck.path}: element {left[0]}{more} without *SOLID SECTION; give their set a section")
+    part = _parts(deck)
     result: list[Piece] = []
     for section in deck.sections:
-        parts = _split(deck, section.elements)
+        parts = _split(deck, section.elements, part)
         for i, (integration, codes, elements) in enumerate(parts, start=1):
             name = section.name if len(parts) == 1 else f"{section.name}-{i}"
             result.append(Piece(name, section, integration, codes, elements))
     return tuple(result)
 
 
-def _split(deck: Deck, elements: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
-    """Connected elements that integrate alike, in the order of their lowest numbers: (integration, types, elements)."""
-    own = [(block, np.intersect1d(elements, block.ids)) for block in deck.blocks]
-    own = [(block, ids) for block, ids in own if len(ids)]
+def _parts(deck: Deck) -> Numbers:
+    """Node number -> number of the connected part it is in."""
     size = int(deck.nodes.max(initial=0)) + 1
-    ends = [(nodes[:, :1].repeat(nodes.shape[1], 1).ravel(), nodes.ravel()) for nodes in (element_nodes(b, i) for b, i in own)]
-    a, b = (np.concatenate(part) for part in zip(*ends))
-    _, label = connected_components(csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)
+    ends = [(b.nodes[:, :1].repeat(b.nodes.shape[1], 1).ravel(), b.nodes.ravel()) for b in deck.blocks]
+    a, b = (np.concatenate(end) for end in zip(*ends))
+    return connected_components(csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)[1]
+
+
+def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
+    """Connected elements that integrate alike, in the order of their lowest numbers: (integration, types, elements)."""
     parts: dict[tuple[int, str], tuple[set[str], list[Numbers]]] = {}
-    for block, ids in own:
-        at = label[element_nodes(block, ids)[:, 0]]
-        for part in np.unique(at).tolist():
-            codes, members = parts.setdefault((part, block.type.integration), (set(), []))
+    for block in deck.blocks:
+        own = np.intersect1d(elements, block.ids)
+        if not len(own):
+            continue
+        at = part[element_nodes(block, own)[:, 0]]
+        for number in np.unique(at).tolist():
+            codes, members = parts.setdefault((number, block.type.integration), (set(), []))
             codes.add(block.code)
-            members.append(ids[at == part])
+            members.append(own[at == number])
     result = [(i, tuple(sorted(codes)), np.sort(np.concatenate(m))) for (_, i), (codes, m) in parts.items()]
-    return sorted(result, key=lambda part: int(part[2][0]))
+    return sorted(result, key=lambda own: int(own[2][0]))
 
 
 class Groups:

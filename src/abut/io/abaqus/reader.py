@@ -69,11 +69,14 @@ def read_mesh_only(path: Path) -> Deck:
     """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
 
     Raises InputError as ``read_deck`` does, for these cards only."""
-    cards = sift([card for card in read_cards(path) if card.key in MESH or card.key in NEEDED]).cards
+    every = read_cards(path)
+    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED]).cards
     mesh = mesh_cards(cards)
+    inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
     return Deck(
         str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
-        {surface.name: surface for surface in mesh.surfaces.values()}, sections(cards, mesh, None),
+        {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
+        sections(cards, mesh, None),
         (), (), (), (), (), (), (), {}, {}, (), (), (), (),
     )  # fmt: skip
 
