@@ -65,7 +65,7 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
 def translate(deck: Deck) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
     if not deck.steps:
-        raise InputError("the deck has no *STEP with *STATIC; add one")
+        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
         raise InputError("the deck has no *ELEMENT cards")
     deck = cut(deck)

@@ -43,12 +43,13 @@ class Bonds:
 
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
-    local = _local_axes(deck)
     used = set(groups.used.tolist())
     apart = {r.reference for r in deck.rigid} | {r.turning for r in deck.rigid}
     axes = 2 if plane else 3
     held = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if d <= 3 and n not in apart}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
+    named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
+    local = _local_axes(deck, named)
     supports, oblique = _supports({p: c for p, c in held.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
     equations = [
@@ -87,11 +88,11 @@ def coordinates(deck: Deck, nodes: Numbers) -> Vector:
     return np.asarray(deck.points[np.searchsorted(deck.nodes, nodes)])
 
 
-def _local_axes(deck: Deck) -> dict[int, Vector]:
-    """Node -> its own axes as rows (3, 3)."""
+def _local_axes(deck: Deck, named: set[int]) -> dict[int, Vector]:
+    """Node -> its own axes as rows (3, 3), for those that something is said of."""
     result: dict[int, Vector] = {}
     for transform in deck.transforms:
-        nodes = np.intersect1d(transform.nodes, deck.nodes)
+        nodes = np.intersect1d(np.intersect1d(transform.nodes, deck.nodes), np.array(sorted(named), np.int64))
         for node, x in zip(nodes.tolist(), coordinates(deck, nodes)):
             result[node] = _axes(transform, x)
     return result
