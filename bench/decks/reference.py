@@ -16,14 +16,22 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-
 from cards import Card, read, write
 from frd import Displacements, displacements
 
 EXAMPLES = Path("/usr/share/doc/calculix-ccx-test/examples/test")
 SETTLED = 1e-3  # change of displacement over the largest one, when the contact stiffness is raised tenfold
 STIFF = (1e2, 1e3, 1e4, 1e5, 1e6, 1e7)  # contact stiffness times element size over Young's modulus
-OUTPUT = ("NODE FILE", "EL FILE", "CONTACT FILE", "NODE PRINT", "EL PRINT", "CONTACT PRINT", "NODE OUTPUT", "SECTION PRINT")
+OUTPUT = (
+    "NODE FILE",
+    "EL FILE",
+    "CONTACT FILE",
+    "NODE PRINT",
+    "EL PRINT",
+    "CONTACT PRINT",
+    "NODE OUTPUT",
+    "SECTION PRINT",
+)
 FRICTION = ("FRICTION", "CHANGE FRICTION")
 PLANE = ("CPS", "CPE", "CAX")
 

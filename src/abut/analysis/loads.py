@@ -34,4 +34,4 @@ def strain_load(model: Model) -> NDArray[np.float64]:
     """Nodal forces of thermal strains, (dim n_points,)."""
     materials = {solid.body: solid.material for solid in model.solids}
     temperatures = {solid.body: solid.temperature for solid in model.solids}
-    return thermal_load(model.mesh, materials, temperatures, model.plane)
+    return thermal_load(model.mesh, materials, temperatures, model.plane, model.integration)

@@ -52,7 +52,7 @@ def step_result(
         converged=outcome.converged,
         iterations=outcome.iterations,
         displacement=nodal,
-        stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane),
+        stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane, model.integration),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
             on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0)

@@ -48,7 +48,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     clock = _Clock()
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
-    full_stiffness = stiffness(model.mesh, materials, model.plane)
+    full_stiffness = stiffness(model.mesh, materials, model.plane, model.integration)
     applied = applied_load(model)
     load = applied + strain_load(model)
     resultant = applied.reshape(-1, model.dim).sum(axis=0)
