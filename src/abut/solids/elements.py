@@ -45,7 +45,8 @@ def stiffness(
     integration: Mapping[str, str] = FULL,
 ) -> Any:
     """Stiffness matrix of all bodies, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; force per
-    length (2D: per unit thickness; axisymmetric: all round). ``integration`` by body as in ``Solid``, (F11), (F12)."""
+    length (2D: per unit thickness; axisymmetric: all round). ``integration`` by body as in ``Solid``,
+    theory (F10), (F11), (F12)."""
     points = np.ascontiguousarray(mesh.points)
     dim = points.shape[1]
     counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])
