@@ -167,3 +167,16 @@ def test_refusals(kind: str, how: str, of: str | None, message: str) -> None:
     with pytest.raises(InputError) as caught:
         abut.Model(regular(kind), [abut.Solid("body", MATERIAL, integration=how)], plane=of)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", BBAR)
+def test_mean_dilatation_gives_each_cell_one_pressure(kind: str) -> None:
+    """Of a unit cell: bulk modulus times what its faces displace outward on average, which is all it depends on."""
+    mesh = (rectangle if kind == "quad4" else box)(cells=(1,) * CELLS[kind].dim, cell=kind)
+    u = np.random.default_rng(4).uniform(-1, 1, mesh.points.shape)
+    dilatation = sum(
+        u[mesh.points[:, a] == 1.0, a].mean() - u[mesh.points[:, a] == 0.0, a].mean() for a in range(mesh.dim)
+    )
+    stress = nodal_stress(mesh, {"body": MATERIAL}, {}, u, plane(mesh), {"body": "b-bar"})
+    mean = stress[:, :3].sum(axis=1) / 3.0
+    assert mean == pytest.approx(2.0 / (3 * (1 - 2 * 0.3)) * dilatation, abs=1e-13)
