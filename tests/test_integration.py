@@ -52,7 +52,7 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
     lam, mu = 2.0 * 0.3 / (1.3 * 0.4), 2.0 / 2.6
     stress = lam * np.trace(strain) * np.eye(3) + 2 * mu * strain
     solids, rule = dict.fromkeys(mesh.bodies, MATERIAL), dict.fromkeys(mesh.bodies, how)
-    got = nodal_stress(mesh, solids, {}, u, plane(mesh), rule)
+    got = nodal_stress(mesh, solids, {}, u, plane(mesh), integration=rule)
     assert np.abs(got - stress[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]).max() < 1e-12
 
 
@@ -62,9 +62,9 @@ def test_free_expansion_has_no_stress(kind: str, how: str) -> None:
     u = 5.0 * 1e-3 * (1.3 if mesh.dim == 2 else 1.0) * mesh.points
     solids, rule = dict.fromkeys(mesh.bodies, MATERIAL), dict.fromkeys(mesh.bodies, how)
     change = dict.fromkeys(mesh.bodies, 5.0)
-    load = thermal_load(mesh, solids, change, plane(mesh), rule)
+    load = thermal_load(mesh, solids, change, plane(mesh), integration=rule)
     assert np.abs(system(mesh, how, plane(mesh)) @ u.ravel() - load).max() < 1e-15
-    stress = nodal_stress(mesh, solids, change, u, plane(mesh), rule)
+    stress = nodal_stress(mesh, solids, change, u, plane(mesh), integration=rule)
     assert np.abs(stress[:, [0, 1, 3, 4, 5]]).max() < 1e-13
 
 
@@ -177,6 +177,6 @@ def test_mean_dilatation_gives_each_cell_one_pressure(kind: str) -> None:
     dilatation = sum(
         u[mesh.points[:, a] == 1.0, a].mean() - u[mesh.points[:, a] == 0.0, a].mean() for a in range(mesh.dim)
     )
-    stress = nodal_stress(mesh, {"body": MATERIAL}, {}, u, plane(mesh), {"body": "b-bar"})
+    stress = nodal_stress(mesh, {"body": MATERIAL}, {}, u, plane(mesh), integration={"body": "b-bar"})
     mean = stress[:, :3].sum(axis=1) / 3.0
     assert mean == pytest.approx(2.0 / (3 * (1 - 2 * 0.3)) * dilatation, abs=1e-13)
