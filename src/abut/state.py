@@ -121,6 +121,7 @@ class Solution:
     solver: str
     notes: tuple[str, ...]
     timings: Mapping[str, float]
+    ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
 
     @property
     def converged(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,10 +21,11 @@ def add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="solve a job",
-        description="Solve a job file (TOML) and write its results.",
+        description="Solve a job file (TOML), or an Abaqus or CalculiX deck (.inp), and write its results.",
         epilog="exit status: 0 done; 2 bad input; 3 not converged (last state written); 4 the model has no unique solution",
     )
-    run.add_argument("job", type=Path, help="the job file")
+    run.add_argument("job", type=Path, help="the job file or deck")
+    add_ignore(run)
     run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
@@ -31,15 +33,30 @@ def add_run(commands: Any) -> None:
     run.set_defaults(command=_run)
 
 
+def add_ignore(parser: argparse.ArgumentParser) -> None:
+    """What a deck asks for and the user does without."""
+    parser.add_argument(
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="CARD",
+        help="leave a card (FRICTION) or parameter (NLGEOM) of a deck out that abut does not do; may be repeated",
+    )
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from abut.analysis import solve
     from abut.io.results import summary, write
     from abut.job import load_job
 
-    job = load_job(arguments.job)
+    job = load_job(arguments.job, ignore=arguments.ignore)
     silent = arguments.quiet or arguments.json
+    if not silent:
+        for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
+            print(text, flush=True)
     directory = arguments.output or job.directory
     solution = solve(job.model, None if silent else _Table())
+    solution = replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored)
     write(solution, directory)
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))
