@@ -61,7 +61,7 @@ static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t>
 // For the rows of points first .. last - 1: adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to
 // the values of a block pattern. shapes (q, n), derivatives (q, n, dim), weights (q): the rule on the reference cell;
 // lame (cells, 2): lambda, mu of each cell. Axisymmetric: coordinates are (r, z), the hoop strain is u_r / r and the
-// integral runs round the axis. mean_dilatation: div u is replaced by its mean over the cell (B-bar), theory (F12).
+// integral runs round the axis. mean_dilatation: div u is replaced by its mean over the cell (B-bar), theory (E3).
 template <int dim, bool axisymmetric>
 static void add_stiffness(const double *points, const std::int32_t *nodes, std::size_t cells, std::size_t n,
                           const double *shapes, const double *derivatives, const double *weights, std::size_t rule,

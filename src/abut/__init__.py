@@ -11,16 +11,22 @@ if TYPE_CHECKING:
     from abut.io.results import write
     from abut.mesh.mesh import Mesh
     from abut.model import (
+        Amplitude,
         BodyForce,
         Contact,
+        Equation,
         Force,
         Gravity,
         Integration,
         Model,
+        NodalForce,
         Pressure,
+        Rigid,
         Solid,
         SolveOptions,
         Support,
+        Temperature,
+        Term,
         Traction,
     )
     from abut.solids.materials import LinearElastic
@@ -31,16 +37,16 @@ __version__ = "0.1.0"
 _HOME = {
     "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
     "LinearElastic": "abut.solids.materials", **dict.fromkeys(
-        ("BodyForce", "Contact", "Force", "Gravity", "Integration", "Model", "Pressure", "Solid", "SolveOptions",
-         "Support", "Traction"),
+        ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
+         "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
         "abut.model",
     ),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "BodyForce", "Contact", "ConvergenceError", "Force", "Gravity", "InputError", "Integration",
-    "LinearElastic", "Mesh", "Model", "Pressure", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support",
-    "Traction", "solve", "write",
+    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "Gravity", "InputError",
+    "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Rigid", "SingularModelError", "Solid",
+    "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "solve", "write",
 ]  # fmt: skip
 
 

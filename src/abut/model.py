@@ -4,17 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from abut import checks
 from abut.cells import CELLS
+from abut.conditions import (
+    Amplitude,
+    BodyForce,
+    Equation,
+    Force,
+    Gravity,
+    History,
+    Load,
+    NodalForce,
+    Pressure,
+    Rigid,
+    Support,
+    Temperature,
+    Term,
+    Traction,
+)
 from abut.errors import InputError, nearest
-from abut.fields import Field
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import BBAR, REDUCED
 from abut.solids.materials import LinearElastic
+
+__all__ = [
+    "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model",
+    "NodalForce", "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+]  # fmt: skip
 
 PLANES = ("strain", "stress", "axisymmetric")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
@@ -43,100 +64,6 @@ class Solid:
 
 
 @dataclass(frozen=True)
-class Support:
-    """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); what is left out stays free. Values in the mesh's length unit, ramped over the load steps; x, y and z
-    may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
-
-    on: str
-    x: float | Field | None = None
-    y: float | Field | None = None
-    z: float | Field | None = None
-    normal: float | None = None
-
-    def __post_init__(self) -> None:
-        given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
-        for name, value in given.items():
-            if name == "normal" or not callable(value):
-                checks.finite(value, f"support on '{self.on}': {name}")
-        if not given:
-            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
-        if "normal" in given and len(given) > 1:
-            raise InputError(f"support on '{self.on}': give either normal or components, not both")
-
-
-@dataclass(frozen=True)
-class Pressure:
-    """Pressure on a surface, force per area, positive into the body."""
-
-    on: str
-    value: float
-
-    def __post_init__(self) -> None:
-        checks.finite(self.value, f"pressure on '{self.on}': value")
-
-
-def _vector(values: Any, name: str) -> tuple[float, ...]:
-    try:
-        result = tuple(checks.finite(value, name) for value in values)
-    except TypeError:
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
-    if len(result) not in (2, 3):
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
-    return result
-
-
-@dataclass(frozen=True)
-class Traction:
-    """Traction vector on a surface, force per area; numbers or a function of position, points (n, dim) -> (n, dim)."""
-
-    on: str
-    value: tuple[float, ...] | Field
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
-
-
-@dataclass(frozen=True)
-class Force:
-    """Total force (2D: per unit thickness), spread evenly over a surface."""
-
-    on: str
-    value: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
-
-
-@dataclass(frozen=True)
-class Gravity:
-    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
-
-    value: tuple[float, ...]
-    on: str | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
-
-
-@dataclass(frozen=True)
-class BodyForce:
-    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
-    function of position, points (n, dim) -> (n, dim)."""
-
-    value: tuple[float, ...] | Field
-    on: str | None = None
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, "body force: value"))
-
-
-Load = Pressure | Traction | Force | Gravity | BodyForce
-
-
-@dataclass(frozen=True)
 class Integration:
     """Quadrature on segments: ``points`` per direction, or "auto" (exact on straight facets)."""
 
@@ -157,8 +84,10 @@ class Integration:
 @dataclass(frozen=True)
 class Contact:
     """A contact pair. The contactor carries the pressure; ``offset`` is added to the geometric gap (negative:
-    interference), in the mesh's length unit; ``epsilon`` smooths the constraint function (dimensionless, relative to
-    the square of a reference pressure); ``method``: the node-to-segment ones are there for comparison only."""
+    interference), in the mesh's length unit, in full from the start or times ``amplitude``; ``adjust`` (length): initial
+    gaps and overlaps up to this size count as zero, before the offset is added; ``epsilon`` smooths the constraint
+    function (dimensionless, relative to the square of a reference pressure); ``method``: the node-to-segment ones are
+    there for comparison only."""
 
     contactor: str
     target: str
@@ -170,6 +99,8 @@ class Contact:
     method: str = "segment-to-segment"
     integration: Integration = field(default_factory=Integration)
     offset: float = 0.0
+    adjust: float = 0.0
+    amplitude: History = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -186,17 +117,23 @@ class Contact:
             )
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")
+        if checks.finite(self.adjust, f"{where}: adjust") < 0.0:
+            raise InputError(f"{where}: adjust: expected a length >= 0, got {self.adjust!r}")
+        if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):
+            raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
         if self.contactor == self.target:
             raise InputError(f"{where}: contactor and target are the same surface '{self.contactor}'")
 
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """How to solve: load steps (a linear ramp), linear solver, iterations allowed in a step."""
+    """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
+    time), linear solver, iterations allowed in a step."""
 
     steps: int = 1
     linear: str = "auto"
     max_iterations: int = 50
+    times: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         for name in ("steps", "max_iterations"):
@@ -204,6 +141,24 @@ class SolveOptions:
             if isinstance(value, bool) or not isinstance(value, int) or value < 1:
                 raise InputError(f"solve.{name}: expected a whole number >= 1, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
+        if self.times is not None:
+            self._check_times()
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Time at the end of each load step."""
+        return self.times or tuple(number / self.steps for number in range(1, self.steps + 1))
+
+    def _check_times(self) -> None:
+        try:
+            times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
+        except TypeError:
+            raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
+        if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
+            raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
+        if self.steps not in (1, len(times)):
+            raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
+        object.__setattr__(self, "times", times)
 
 
 @dataclass(frozen=True)
@@ -221,10 +176,14 @@ class Model:
     contacts: Sequence[Contact] = ()
     plane: str | None = None
     solve: SolveOptions = field(default_factory=SolveOptions)
+    equations: Sequence[Equation] = ()
+    rigid: Sequence[Rigid] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts"):
+        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        if self.equations or self.rigid:
+            raise InputError("model: equations and rigid bodies are not solved yet")
         self._check_plane()
         self._check_solids()
         self._check_names()
@@ -237,6 +196,12 @@ class Model:
     @property
     def dim(self) -> int:
         return int(self.mesh.points.shape[1])
+
+    @property
+    def histories(self) -> tuple[History, ...]:
+        """The different histories of everything prescribed, the ramp first."""
+        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
 
     def _check_plane(self) -> None:
         if self.dim == 2:
@@ -308,8 +273,8 @@ class Model:
                 if load.on is not None:
                     _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
             else:
-                _known(load.on, mesh.surfaces, f"loads[{i}].on", "surface")
-            if isinstance(load, Pressure) or callable(load.value):
+                self._check_place(load, f"loads[{i}].on")
+            if isinstance(load, (Pressure, Temperature)) or callable(load.value):
                 continue
             if len(load.value) != self.dim:
                 raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
@@ -320,7 +285,27 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
+        self._check_swapped()
         self._check_facets()
+
+    def _check_place(self, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
+        mesh = self.mesh
+        if isinstance(load, NodalForce):
+            _known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
+        elif isinstance(load, Temperature):
+            _known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
+        else:
+            _known(load.on, mesh.surfaces, where, "surface")
+
+    def _check_swapped(self) -> None:
+        sides = {(contact.contactor, contact.target): contact.name for contact in self.contacts}
+        for i, contact in enumerate(self.contacts):
+            other = sides.get((contact.target, contact.contactor))
+            if other is not None and i:
+                raise InputError(
+                    f"contacts[{i}]: '{contact.name}' is contact '{other}' with its sides swapped: the pressure between "
+                    "them would be determined twice; keep the one whose contactor is softer or has the coarser mesh"
+                )
 
     def _check_facets(self) -> None:
         """A facet that carries the pressure of one pair must not belong to another: it would be held twice."""

@@ -82,7 +82,8 @@ class ContactResult:
 
 @dataclass(frozen=True)
 class Step:
-    """The state at the end of a load step. ``factor`` in (0, 1] is the share of loads and displacements applied.
+    """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
+    displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
     reaction: (dim,) resultant of all supports; reactions: the same for each supported surface or node set (points that
@@ -101,14 +102,21 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+    earlier: float = (
+        0.0  # largest force of the steps before: what is left where the loads go back to nothing is rounding
+    )
 
     @property
     def balance_error(self) -> float:
         """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.largest_force)
+
+    @property
+    def largest_force(self) -> float:
+        """Largest component of any resultant, now or in a step before."""
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
-        size = max(*(float(np.abs(f).max(initial=0.0)) for f in forces), 1e-300)
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / size)
+        return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), self.earlier, 1e-300)
 
 
 @dataclass(frozen=True)

@@ -24,18 +24,20 @@ WHOLE = 1e-2  # a facet covered to within this share is fully covered
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
 COVERED_TWICE = 1e-3  # share of a facet
+NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after unloading
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 
 
 def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
-                residual: float) -> tuple[Check, ...]:  # fmt: skip
+                residual: float, reference: float = 0.0) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients; nodal: (n_facets, 9) pressure at the facets' nodes;
-    penetration: largest, a length; residual: of the contact law, relative to the largest pressure.
+    penetration: largest, a length; residual: of the contact law, relative to the largest pressure; reference: largest
+    pressure of the steps before.
     """
     name = pair.contact.name
-    largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), 1e-300)
+    largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), NOTHING * reference, 1e-300)
     checks = []
 
     def add(what: str, value: float, limit: float, meaning: str) -> None:

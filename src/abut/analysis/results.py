@@ -2,44 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
+from abut.analysis.loads import Loads
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
 from abut.solids.elements import nodal_stress
-from abut.solvers.active_set import Outcome, System
+from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, Step
 
 
 def step_result(
     model: Model,
     stiffness: Any,
-    load: NDArray[np.float64],
-    resultant: NDArray[np.float64],
+    loaded: Loads,
     displacement: NDArray[np.float64],
     system: System,
     outcome: Outcome,
-    number: int,
-    factor: float,
+    stage: Stage,
+    time: float,
+    before: Sequence[Step],
 ) -> Step:
-    """Collect displacement, stress, reactions and contact results at a share ``factor`` of the load.
-
-    load: (dim n_points,) nodal forces of loads and thermal strains, resultant: (dim,) of the loads, both at full size."""
+    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others."""
     dim = model.dim
     unknowns = outcome.unknowns
     pressures = system.split(unknowns.pressure)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    reaction = stiffness @ displacement - factor * load - contact_force
+    reaction = stiffness @ displacement - loaded.forces @ stage.weights - contact_force
     nodal = displacement.reshape(-1, dim)
-    temperatures = {solid.body: factor * solid.temperature for solid in model.solids}
+    temperatures = {solid.body: time * solid.temperature for solid in model.solids}
     materials = {solid.body: solid.material for solid in model.solids}
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
@@ -47,30 +47,39 @@ def step_result(
             rows = np.unique(pair.space.transfer[:, own].tocoo().row // 9)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return Step(
-        number=number,
-        factor=factor,
+        number=stage.number,
+        factor=time,
         converged=outcome.converged,
         iterations=outcome.iterations,
         displacement=nodal,
-        stress=nodal_stress(model.mesh, materials, temperatures, nodal, model.plane, model.integration),
+        stress=nodal_stress(
+            model.mesh, materials, temperatures, nodal, model.plane, loaded.temperature @ stage.weights, model.integration
+        ),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
             on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=factor * resultant,
+        load=loaded.resultant @ stage.weights,
         contacts=tuple(
-            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual)
-            for pair, pressure, gap, active in zip(
+            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference)
+            for pair, pressure, gap, active, reference in zip(
                 system.pairs,
                 pressures,
-                system.split(system.gap(unknowns, factor)),
+                system.split(system.gap(unknowns, stage.weights)),
                 system.split(unknowns.active),
+                _largest_pressures(len(system.pairs), before),
             )
         ),
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
+        earlier=max((step.largest_force for step in before), default=0.0),
     )
+
+
+def _largest_pressures(n_pairs: int, steps: Sequence[Step]) -> list[float]:
+    """Of each pair, over some steps."""
+    return [max((abs(step.contacts[i].max_pressure) for step in steps), default=0.0) for i in range(n_pairs)]
 
 
 def _contact(
@@ -79,6 +88,7 @@ def _contact(
     gap: NDArray[np.float64],
     active: NDArray[np.bool_],
     residual: float,
+    reference: float,
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -111,7 +121,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, values),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference),
     )
 
 

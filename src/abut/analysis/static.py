@@ -11,14 +11,15 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.holding import Holding, holding
-from abut.analysis.loads import applied_load, strain_load
+from abut.analysis.loads import loads
 from abut.analysis.results import step_result
+from abut.conditions import weights
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import supports
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solids.elements import stiffness
-from abut.solvers.active_set import System, solve_step, start
+from abut.solvers.active_set import Stage, System, following, solve_step, start
 from abut.solvers.blocks import newton_step
 from abut.solvers.iterative import NotConverged
 from abut.solvers.linear import Prepared, choose, prepare
@@ -49,9 +50,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
     full_stiffness = stiffness(model.mesh, materials, model.plane, model.integration)
-    applied = applied_load(model)
-    load = applied + strain_load(model)
-    resultant = applied.reshape(-1, model.dim).sum(axis=0)
+    loaded = loads(model)
     clock.mark("assembly")
     every = pairs(model, held)
     _describe(every, note)
@@ -63,7 +62,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
     system = System(
         stiffness=reduced,
-        load=held.free.T @ (load - full_stiffness @ held.prescribed),  # theory (F9)
+        load=held.free.T @ (loaded.forces - full_stiffness @ held.prescribed),  # theory (F9)
         pairs=every,
         operator=operator,
         complete=held_by.complete,
@@ -81,27 +80,27 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     solver = linear_solver(choose(model.solve.linear, system, model.mesh))
     state = start(solver.system)
     steps: list[Step] = []
-    count = model.solve.steps
-    for number in range(1, count + 1):
-        factor = number / count
+    times = model.solve.ends
+    stage = Stage(1, weights(model.histories, times[0]))
+    for time_, then in zip(times, [*times[1:], times[-1]]):
         try:
-            outcome = solve_step(solver.system, state, factor, number, model.solve.max_iterations, observe)
+            outcome = solve_step(solver.system, state, stage, model.solve.max_iterations, observe)
         except NotConverged as reason:
-            note(f"step {number}: {reason}: going on with the direct solver")
+            note(f"step {stage.number}: {reason}: going on with the direct solver")
             solver = linear_solver("direct")
-            outcome = solve_step(
-                solver.system, start(solver.system), factor, number, model.solve.max_iterations, observe
-            )
+            outcome = solve_step(solver.system, start(solver.system), stage, model.solve.max_iterations, observe)
         state = outcome.unknowns
-        outcome = solver.finish(outcome, factor)
-        displacement = held.free @ outcome.unknowns.displacement + factor * held.prescribed
+        after = following(solver.system, stage, outcome, weights(model.histories, then))
+        outcome = solver.finish(outcome, stage.weights)
+        displacement = held.free @ outcome.unknowns.displacement + held.prescribed @ stage.weights
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, load, resultant, displacement, system, outcome, number, factor))
+        steps.append(step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps))
         clock.mark("results")
         if not outcome.converged:
-            note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
+            note(f"step {stage.number} did not converge in {len(outcome.iterations)} iterations")
             break
+        stage = after
     if solver.count is not None:
         note(f"{solver.count.iterations} linear iterations in all")
     return Solution(model, tuple(steps), n_free, solver.name, tuple(notes), clock.timings)

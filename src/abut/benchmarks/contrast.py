@@ -11,6 +11,7 @@ import numpy as np
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.patch import shaken
 from abut.benchmarks.record import Benchmark, Reference
+from abut.conditions import support_along
 from abut.mesh.make import half_disc, join, rectangle
 from abut.model import Contact, Force, Model, Pressure, Solid, Support
 from abut.solids.materials import LinearElastic
@@ -28,7 +29,9 @@ def _patch(stiffness: str, size: str) -> Benchmark:
     def model(level: int) -> Model:
         lower, upper = SIZES[size]
         parts = {"lower": shaken(0, 1, lower, "hex8", 5), "upper": shaken(1, 2, upper, "hex8", 6)}
-        sides = [Support(f"{b}.{side}", **{axis: 0.0}) for b in parts for side, axis in (("left", "x"), ("front", "y"))]
+        sides = [
+            support_along(f"{b}.{side}", axis, 0.0) for b in parts for side, axis in (("left", "x"), ("front", "y"))
+        ]
         return Model(
             join(parts),
             [Solid(body, LinearElastic(young[body], POISSON)) for body in parts],

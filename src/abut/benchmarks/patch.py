@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.record import Benchmark, Reference
+from abut.conditions import support_along
 from abut.mesh.make import block, join
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model, Pressure, Solid, Support
@@ -95,11 +96,11 @@ def _ssnp170(dim: int, cells: tuple[str, str]) -> Benchmark:
         parts = {"lower": shaken(0, 1, grids[0], cells[0], 3), "upper": shaken(1, 2, grids[1], cells[1], 4)}
         material = LinearElastic(2000.0, 0.3)
         sides = [("left", "x"), ("front", "y")][: dim - 1]
-        supports = [Support(f"{body}.{side}", **{axis: 0.0}) for body in parts for side, axis in sides]
+        supports = [support_along(f"{body}.{side}", axis, 0.0) for body in parts for side, axis in sides]
         return Model(
             join(parts),
             [Solid(body, material) for body in parts],
-            [Support("lower.bottom", **{"xyz"[dim - 1]: 0.0}), *supports],
+            [support_along("lower.bottom", "xyz"[dim - 1], 0.0), *supports],
             [Pressure("upper.top", 25.0)],
             [Contact("lower.top", "upper.bottom")],
             plane="strain" if dim == 2 else None,

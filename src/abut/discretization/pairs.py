@@ -27,8 +27,8 @@ NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative
 
 @dataclass(frozen=True)
 class PairPoints:
-    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, prescribed, stiffness
-    (n_points,); operator (n_points, n_free) change of the gap by the free displacements."""
+    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, stiffness (n_points,);
+    operator (n_points, n_free) change of the gap by the free displacements; prescribed (n_points, n_histories)."""
 
     test: Any
     weight: NDArray[np.float64]
@@ -42,8 +42,9 @@ class PairPoints:
 class Pair:
     """One contact pair on the free displacements.
 
-    operator: (n, n_free) sparse; prescribed: (n,) operator times the prescribed displacement at full load, theory (F9);
-    gap: (n,) weighted geometric gap with the offset; scale: (n,) weighted gap per pressure, weight h / E.
+    operator: (n, n_free) sparse; prescribed: (n, n_histories) change of the gap by prescribed displacements and offsets that
+    follow a history, theory (F9); gap: (n,) weighted geometric gap with the constant offset; scale: (n,) weighted gap per
+    pressure, weight h / E.
     size: typical facet length; stiffness: E / size, pressure per length. For tied pairs the n rows hold all components
     (dim in turn) and the gap is zero.
     """
@@ -114,13 +115,14 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
         space = reduce(space, coupling, moved)
         rows = (space.transfer.T @ coupling.operator).tocsr()
         free = (rows @ held.free).tocsr()
+    constant, varying = _offsets(model, contact)
     return Pair(
         contact, contactor, target, coupling, space, rows, free,
-        prescribed=rows @ held.prescribed,
-        gap=space.transfer.T @ coupling.gap + contact.offset * space.weight,
+        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         compliance=_compliance(model, contactor, target),
-        points=_points(contact, coupling, space, held, modulus / sizes),
+        points=_points(coupling, space, held, modulus / sizes, constant, varying),
     )  # fmt: skip
 
 
@@ -128,7 +130,7 @@ def _couple(contact: Contact, contactor: Surface, target: Surface, reach: float)
     """The coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
-        coupling, space = node_to_segment(contactor, target, reach)
+        coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
     else:
         name, degree = resolve(contact.pressure, contactor)
         tied = contact.kind == "tied"
@@ -141,6 +143,7 @@ def _couple(contact: Contact, contactor: Surface, target: Surface, reach: float)
             componentwise=tied,
             keep_points=contact.law == "constraint-function" and not tied,
             reach=reach,
+            adjust=contact.adjust,
         )
         space = pressure_space(name, contactor, coupling) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():
@@ -151,9 +154,19 @@ def _couple(contact: Contact, contactor: Surface, target: Surface, reach: float)
     return coupling, space
 
 
+def _offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
+    """The offset that is there from the start, and that of each history (n_histories,)."""
+    varying = np.zeros(len(model.histories))
+    if contact.amplitude is None:
+        return contact.offset, varying
+    varying[model.histories.index(contact.amplitude)] = contact.offset
+    return 0.0, varying
+
+
 def _points(
-    contact: Contact, coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64]
-) -> PairPoints | None:
+    coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64],
+    constant: float, varying: NDArray[np.float64],
+) -> PairPoints | None:  # fmt: skip
     if coupling.points is None:
         return None
     at = coupling.points
@@ -161,9 +174,9 @@ def _points(
         test=(at.pressure @ space.transfer).tocsr(),
         weight=at.weight,
         stiffness=SHARPNESS * stiffness[at.facet],
-        gap=at.gap + contact.offset,
+        gap=at.gap + constant,
         operator=(at.gap_operator @ held.free).tocsr(),
-        prescribed=at.gap_operator @ held.prescribed,
+        prescribed=at.gap_operator @ held.prescribed + varying,
     )
 
 
@@ -227,7 +240,7 @@ def _row_norms(matrix: Any) -> NDArray[np.float64]:
 
 
 def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
-    return default_reach(contactor, target) + 2.0 * float(np.abs(held.prescribed).max(initial=0.0))
+    return default_reach(contactor, target) + 2.0 * held.largest
 
 
 def _compliance(model: Model, contactor: Surface, target: Surface) -> float:

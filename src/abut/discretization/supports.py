@@ -23,10 +23,12 @@ SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count
 
 @dataclass(frozen=True)
 class Supports:
-    """free: (dim n_points, n_free) sparse with orthonormal columns; prescribed: (dim n_points,) at full load."""
+    """free: (dim n_points, n_free) sparse with orthonormal columns; prescribed: (dim n_points, n_histories);
+    largest: displacement prescribed at any time."""
 
     free: Any
     prescribed: NDArray[np.float64]
+    largest: float = 0.0
 
     def reduce(self, matrix: Any) -> Any:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
@@ -52,7 +54,7 @@ def supports(model: Model) -> Supports:
     functions that do not return a finite number for each node."""
     mesh, dim = model.mesh, model.dim
     node, direction, value, origin = _conditions(model)
-    prescribed = np.zeros((len(mesh.points), dim))
+    prescribed = np.zeros((len(mesh.points), dim, value.shape[1]))
     slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
     order = np.lexsort((np.abs(direction).argmax(axis=1), node))
     node, direction, value, origin = node[order], direction[order], value[order], origin[order]
@@ -85,15 +87,17 @@ def supports(model: Model) -> Supports:
         shape=(dim * len(mesh.points), column),
     )
     free.eliminate_zeros()
-    return Supports(free, prescribed.ravel())
+    factors = [1.0 if history is None else history.largest for history in model.histories]
+    flat = prescribed.reshape(free.shape[0], -1)
+    return Supports(free, flat, float((np.abs(flat) @ factors).max(initial=0.0)))
 
 
 def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Basis (dim, n_free) of the directions left free, and the displacement of the held ones."""
+    """Basis (dim, n_free) of the directions left free, and the displacement of the held ones (dim, n_histories)."""
     axis = np.abs(matrix).argmax(axis=1)
     if np.array_equal(np.abs(matrix), np.eye(matrix.shape[1])[axis]):  # along the axes: keep zeros and ones exact
-        x = np.zeros(matrix.shape[1])
-        x[axis] = target * matrix[np.arange(len(axis)), axis]
+        x = np.zeros((matrix.shape[1], target.shape[1]))
+        x[axis] = target * matrix[np.arange(len(axis)), axis][:, None]
         return np.delete(np.eye(matrix.shape[1]), np.unique(axis), axis=1), x
     _, singular, vt = np.linalg.svd(matrix)
     rank = int((singular > SAME_DIRECTION * singular[0]).sum())
@@ -101,23 +105,23 @@ def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tup
 
 
 def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
-    """Every held direction: node, unit vector, value, number of its support."""
-    dim = model.dim
+    """Every held direction: node, unit vector, value by history (n, n_histories), number of its support."""
+    dim, histories = model.dim, model.histories
     nodes: list[NDArray[Any]] = [np.empty(0, np.int64)]
     directions: list[NDArray[Any]] = [np.empty((0, dim))]
-    values: list[NDArray[Any]] = [np.empty(0)]
+    values: list[NDArray[Any]] = [np.empty((0, len(histories)))]
     origins: list[NDArray[Any]] = [np.empty(0, np.int64)]
     for i, support in enumerate(model.supports):
         for where, vector, value in _directions(model.mesh, support, dim):
             nodes.append(where)
             directions.append(np.broadcast_to(vector, (len(where), dim)))
-            values.append(value)
+            values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(support.amplitude)]))
             origins.append(np.full(len(where), i))
     on_axis = points_on_axis(model.mesh)
     if len(on_axis):
         nodes.append(on_axis)
         directions.append(np.broadcast_to(np.eye(dim)[0], (len(on_axis), dim)))
-        values.append(np.zeros(len(on_axis)))
+        values.append(np.zeros((len(on_axis), len(histories))))
         origins.append(np.full(len(on_axis), AXIS))
     return tuple(np.concatenate(parts) for parts in (nodes, directions, values, origins))
 

@@ -76,6 +76,12 @@ def default_reach(contactor: Surface, target: Surface) -> float:
     return float(max(2.0 * facet, 0.1 * np.linalg.norm(extent)))
 
 
+def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
+    """Size up to which a gap counts as none: ``adjust``, or rounding of the coordinates."""
+    rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
+    return float(adjust + rounding)
+
+
 def couple(
     contactor: Surface,
     target: Surface,
@@ -86,6 +92,7 @@ def couple(
     reach: float | None = None,
     componentwise: bool = False,
     keep_points: bool = False,
+    adjust: float = 0.0,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
 
@@ -93,6 +100,7 @@ def couple(
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
+    adjust: gaps and overlaps up to this size count as zero, length.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
     if contactor.dim != target.dim:
@@ -113,7 +121,7 @@ def couple(
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
         degree, not componentwise, keep_points, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
-        ROUNDING * max(np.abs(s.points).max() for s in (contactor, target)),
+        no_gap(contactor, target, adjust),
     )  # fmt: skip
     offset, n_points = _columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)

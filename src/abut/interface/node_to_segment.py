@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.coupling import ROUNDING, Coupling, default_reach, surface_degree
+from abut.interface.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.interface.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.interface.pressure import PressureSpace, facet_functions, non_negative
 from abut.mesh.surface import Surface
@@ -24,8 +24,11 @@ from abut.mesh.surface import Surface
 INSIDE = 1e-9  # how far outside a facet, in reference coordinates, a foot still counts as on it
 
 
-def node_to_segment(contactor: Surface, target: Surface, reach: float | None = None) -> tuple[Coupling, PressureSpace]:
-    """Couple every contactor node with the point of the target that its normal meets.
+def node_to_segment(
+    contactor: Surface, target: Surface, reach: float | None = None, adjust: float = 0.0
+) -> tuple[Coupling, PressureSpace]:
+    """Couple every contactor node with the point of the target that its normal meets; gaps and overlaps up to ``adjust``
+    (length) count as zero.
 
     Returns the coupling (entries of a node stand in the row of one of its facets) and the space of nodal pressures; nodes
     that see no target within ``reach`` (a length) have no multiplier.
@@ -42,8 +45,7 @@ def node_to_segment(contactor: Surface, target: Surface, reach: float | None = N
     reach = default_reach(contactor, target) if reach is None else reach
     facet, shapes, gap = feet(contactor.points[ids], normal, target, reach)
     seen = np.flatnonzero(facet >= 0)
-    rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
-    gap = np.where(np.abs(gap) < rounding, 0.0, gap)
+    gap = np.where(np.abs(gap) < no_gap(contactor, target, adjust), 0.0, gap)
 
     dim, same = contactor.dim, contactor.points is target.points
     offset = 0 if same else len(contactor.points)

@@ -12,21 +12,27 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from abut.errors import InputError, nearest
-from abut.job.schema import JobFile, MaterialTable, MeshTable
+from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
+    Amplitude,
     Contact,
+    Equation,
     Force,
     Gravity,
     Integration,
     Load,
     Model,
+    NodalForce,
     Pressure,
+    Rigid,
     Solid,
     SolveOptions,
     Support,
+    Temperature,
+    Term,
     Traction,
 )
 from abut.solids.materials import LinearElastic
@@ -39,6 +45,11 @@ else:
 GENERATORS: Mapping[str, Callable[..., Mesh]] = {
     name.replace("_", "-"): getattr(make, name) for name in make.__all__ if name != "join"
 }
+
+LOADS: Mapping[str, Callable[..., Load]] = {
+    "pressure": Pressure, "traction": Traction, "force": Force, "nodal-force": NodalForce, "temperature": Temperature,
+    "gravity": Gravity,
+}  # fmt: skip
 
 
 DECK = ".inp"
@@ -111,17 +122,35 @@ def _model(file: JobFile, folder: Path, refine: int) -> Model:
         mesh=_mesh(file.mesh, folder, refine),
         plane=file.model.plane,
         solids=solids,
-        supports=[Support(**s.model_dump()) for s in file.supports],
-        loads=[_load(load) for load in file.loads],
+        supports=[Support(**_values(s, f"supports[{i}]")) for i, s in enumerate(file.supports)],
+        loads=[_load(load, f"loads[{i}]") for i, load in enumerate(file.loads)],
         contacts=[
-            Contact(
-                **{k: v for k, v in c.model_dump().items() if k != "integration"},
-                integration=Integration(**c.integration.model_dump()),
-            )
-            for c in file.contacts
+            Contact(**{**_values(c, f"contacts[{i}]"), "integration": Integration(**c.integration.model_dump())})
+            for i, c in enumerate(file.contacts)
         ],
         solve=SolveOptions(**file.solve.model_dump()),
+        equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
+        rigid=[Rigid(**_values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
     )
+
+
+def _values(table: BaseModel, where: str) -> dict[str, Any]:
+    """What a table gives to its record: lists as tuples, the amplitude as one."""
+    values = {key: tuple(value) if isinstance(value, list) else value for key, value in table.model_dump().items()}
+    if values["amplitude"] is not None:
+        try:
+            values["amplitude"] = Amplitude(values["amplitude"])
+        except InputError as error:
+            raise InputError(f"{where}.{error}") from None
+    return values
+
+
+def _equation(table: EquationTable, where: str) -> Equation:
+    try:
+        terms = tuple(Term(**term.model_dump()) for term in table.terms)
+        return Equation(**{**_values(table, where), "terms": terms})
+    except InputError as error:
+        raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
 def _material(name: str, table: MaterialTable) -> LinearElastic:
@@ -131,13 +160,9 @@ def _material(name: str, table: MaterialTable) -> LinearElastic:
         raise InputError(f"materials.{name}.{error}") from None
 
 
-def _load(table: BaseModel) -> Load:
-    values = table.model_dump()
-    kind = values.pop("kind")
-    if isinstance(values["value"], list):
-        values["value"] = tuple(values["value"])
-    record = {"pressure": Pressure, "traction": Traction, "force": Force, "gravity": Gravity}[kind]
-    return record(**values)
+def _load(table: BaseModel, where: str) -> Load:
+    values = _values(table, where)
+    return LOADS[values.pop("kind")](**values)
 
 
 def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:
@@ -177,7 +202,7 @@ def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: i
 
 def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
-    location = [part for part in error["loc"] if part not in ("pressure", "traction", "force", "gravity")]
+    location = [part for part in error["loc"] if part not in LOADS]
     place = ""
     for part in location:
         place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)

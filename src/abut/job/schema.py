@@ -18,6 +18,14 @@ class Table(BaseModel):
 Number = Annotated[float, Field(strict=False)]
 
 
+Points = Annotated[
+    list[Annotated[list[Number], Field(min_length=2, max_length=2)]],
+    Field(
+        description="pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
+    ),
+]
+
+
 class BodyTable(BaseModel):
     """A body meshed by abut; further keys are the arguments of its generator."""
 
@@ -55,33 +63,87 @@ class SupportTable(Table):
     y: Number | None = None
     z: Number | None = None
     normal: Number | None = None
+    amplitude: Points | None = None
+
+
+class TermTable(Table):
+    on: Annotated[str | int, Field(description="a node set of one node, or a point's index")]
+    component: Literal["x", "y", "z"]
+    coefficient: Number
+
+
+class EquationTable(Table):
+    """sum of coefficient times displacement component = value"""
+
+    terms: list[TermTable]
+    value: Number = 0.0
+    amplitude: Points | None = None
+
+
+class RigidTable(Table):
+    """translation of the reference (length) and small turns (radians); what is left out is free"""
+
+    body: str
+    reference: list[Number] | None = None
+    x: Number | None = None
+    y: Number | None = None
+    z: Number | None = None
+    rx: Number | None = None
+    ry: Number | None = None
+    rz: Number | None = None
+    amplitude: Points | None = None
 
 
 class PressureTable(Table):
     kind: Literal["pressure"]
     on: str
     value: Number
+    amplitude: Points | None = None
 
 
 class TractionTable(Table):
     kind: Literal["traction"]
     on: str
     value: list[Number]
+    amplitude: Points | None = None
 
 
 class ForceTable(Table):
     kind: Literal["force"]
     on: str
     value: list[Number]
+    amplitude: Points | None = None
+
+
+class NodalForceTable(Table):
+    """force at each node of the set"""
+
+    kind: Literal["nodal-force"]
+    on: str
+    value: list[Number]
+    amplitude: Points | None = None
+
+
+class TemperatureTable(Table):
+    """change of temperature at the nodes, degrees"""
+
+    kind: Literal["temperature"]
+    on: str
+    value: Number
+    amplitude: Points | None = None
 
 
 class GravityTable(Table):
     kind: Literal["gravity"]
     value: list[Number]
     on: str | None = None
+    amplitude: Points | None = None
 
 
-LoadTable = Annotated[PressureTable | TractionTable | ForceTable | GravityTable, Field(discriminator="kind")]
+LoadTable = Annotated[
+    PressureTable | TractionTable | ForceTable | NodalForceTable | TemperatureTable | GravityTable,
+    Field(discriminator="kind"),
+]
 
 
 class IntegrationTable(Table):
@@ -100,12 +162,15 @@ class ContactTable(Table):
     method: Literal["segment-to-segment", "node-to-segment", "node-to-segment-two-pass"] = "segment-to-segment"
     integration: IntegrationTable = IntegrationTable()
     offset: Number = 0.0
+    adjust: Annotated[Number, Field(description="gaps and overlaps up to this size count as zero, length")] = 0.0
+    amplitude: Points | None = None
 
 
 class SolveTable(Table):
     steps: int = SolveOptions.steps
     linear: Literal["auto", "direct", "amg"] = "auto"
     max_iterations: int = SolveOptions.max_iterations
+    times: list[Number] | None = None
 
 
 class OutputTable(Table):
@@ -123,6 +188,8 @@ class JobFile(Table):
     supports: list[SupportTable] = []
     loads: list[LoadTable] = []
     contacts: list[ContactTable] = []
+    equations: list[EquationTable] = []
+    rigid: list[RigidTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
 

@@ -85,7 +85,7 @@ def stiffness_rule(kind: str) -> Rule:
     }[kind]()
 
 
-# Types of second order whose smaller rule leaves no motion without energy that neighbours could share (theory (F11)).
+# Types of second order whose smaller rule leaves no motion without energy that neighbours could share (theory (E2)).
 REDUCED: dict[str, Callable[[], Rule]] = {
     "tri6": lambda: _triangle(3),
     "quad8": lambda: _cube(2, 2),

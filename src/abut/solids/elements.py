@@ -46,7 +46,7 @@ def stiffness(
 ) -> Any:
     """Stiffness matrix of all bodies, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; force per
     length (2D: per unit thickness; axisymmetric: all round). ``integration`` by body as in ``Solid``,
-    theory (F10), (F11), (F12)."""
+    theory (E1), (E2), (E3)."""
     points = np.ascontiguousarray(mesh.points)
     dim = points.shape[1]
     counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])
@@ -75,15 +75,18 @@ def thermal_load(
     materials: Mapping[str, LinearElastic],
     temperatures: Mapping[str, float],
     plane: str | None = None,
+    nodal: NDArray[np.float64] | None = None,
     integration: Mapping[str, str] = FULL,
 ) -> NDArray[np.float64]:
-    """int B^T D eps_thermal for a uniform temperature change of each body, (dim n_points,), by the rule of the stiffness:
-    free expansion stays free of stress. Means over cells, as in (F12), change nothing for a uniform temperature."""
+    """int B^T D eps_thermal, theory (F10), (dim n_points,), for a uniform temperature change of each body and another,
+    ``nodal`` (n_points,), that the shape functions interpolate. Integrated like the stiffness, so that a temperature whose
+    strain the elements can follow leaves no stress; "b-bar" takes the mean over each cell, as for the dilatation."""
     load = np.zeros(mesh.points.shape)
-    pressure = _by_cell(
-        mesh, {body: (_thermal_pressure(m, temperatures.get(body, 0.0), plane),) for body, m in materials.items()}
+    nodal = np.zeros(len(mesh.points)) if nodal is None else nodal
+    table = _by_cell(
+        mesh, {body: (_thermal_pressure(m, plane), temperatures.get(body, 0.0)) for body, m in materials.items()}
     )
-    if not pressure.any():
+    if not (table[:, 0].any() and (table[:, 1].any() or nodal.any())):
         return load.ravel()
     for kind, nodes, cells, rule in group_chunks(mesh, integration):
         xi, weights = cell_rule(kind, rule)
@@ -93,15 +96,17 @@ def thermal_load(
         if mesh.axisymmetric:
             slopes[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
         det = det * around(at, mesh.axisymmetric)
-        np.add.at(load, nodes, np.einsum("c,cq,q,cqna->cna", pressure[cells, 0], det, weights, slopes))
+        change = table[cells, 1][:, None] + nodal[nodes] @ shapes.T
+        if rule == "b-bar":
+            change = ((change * det) @ weights / (det @ weights))[:, None]
+        np.add.at(load, nodes, np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], np.broadcast_to(change, det.shape), det, weights, slopes))
     return load.ravel()
 
 
-def _thermal_pressure(material: LinearElastic, change: float, plane: str | None) -> float:
-    """Stress that a blocked thermal strain would cause in the plane (all directions in 3D)."""
+def _thermal_pressure(material: LinearElastic, plane: str | None) -> float:
+    """Stress per degree that a blocked expansion would cause in the plane (all directions in 3D)."""
     young, poisson = material.young, material.poisson
-    strain = material.expansion * change
-    return young * strain / (1.0 - poisson) if plane == "stress" else young * strain / (1.0 - 2.0 * poisson)
+    return young * material.expansion / (1.0 - poisson if plane == "stress" else 1.0 - 2.0 * poisson)
 
 
 def body_load(
@@ -130,17 +135,23 @@ def nodal_stress(
     temperatures: Mapping[str, float],
     displacement: NDArray[np.float64],
     plane: str | None = None,
+    nodal: NDArray[np.float64] | None = None,
     integration: Mapping[str, str] = FULL,
 ) -> NDArray[np.float64]:
     """Stress xx yy zz xy yz zx at the points, (n_points, 6): taken at the reduced integration points, carried linearly
     to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average).
-    Axisymmetric: xx radial, yy axial, zz hoop. Integration "b-bar": with the mean dilatation of (F12)."""
+    Axisymmetric: xx radial, yy axial, zz hoop. ``temperatures`` of bodies and ``nodal`` ones as in ``thermal_load``.
+    Integration "b-bar": with the mean dilatation of (E3)."""
     dim = mesh.points.shape[1]
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     constants = _by_cell(
         mesh,
-        {body: (*lame(m, None), m.poisson, m.expansion * temperatures.get(body, 0.0)) for body, m in materials.items()},
+        {
+            body: (*lame(m, None), m.poisson, m.expansion, temperatures.get(body, 0.0), 1.0)
+            for body, m in materials.items()
+        },
     )
+    nodal = np.zeros(len(mesh.points)) if nodal is None else nodal
     for kind, nodes, cells, rule in group_chunks(mesh, integration):
         xi, weights = stress_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
@@ -148,7 +159,8 @@ def nodal_stress(
         slope = np.matmul(displacement[nodes].transpose(0, 2, 1)[:, None], slopes)
         strain = np.zeros((*slope.shape[:2], 3, 3))
         strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
-        lambda_, mu, poisson, thermal = (v[:, None] for v in constants[cells].T)
+        lambda_, mu, poisson, expansion, uniform, deforms = (v[:, None] for v in constants[cells].T)
+        thermal = expansion * (uniform + nodal[nodes] @ shapes.T)
         if plane == "axisymmetric":
             radius = mesh.points[nodes][..., 0] @ shapes.T
             det = det * radius
@@ -166,7 +178,7 @@ def nodal_stress(
         voigt = stress[..., [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
         at_nodes = np.einsum("nq,cqs->cns", _to_nodes(kind, xi), voigt)
         np.add.at(total, nodes, at_nodes)
-        np.add.at(count, nodes, 1.0)
+        np.add.at(count, nodes, deforms)
     return total / np.maximum(count, 1.0)[:, None]
 
 

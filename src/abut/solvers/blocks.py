@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.solvers import direct
-from abut.solvers.active_set import Rows
+from abut.solvers.newton import Rows
 
 
 def newton_step(

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from abut.discretization.pairs import Pair
 from abut.errors import SingularModelError
 from abut.solvers import direct
-from abut.solvers.active_set import Laws, Rows, System, Unknowns
 from abut.solvers.blocks import store_diagonal
+from abut.solvers.newton import Laws, Rows, System, Unknowns
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
@@ -30,19 +30,19 @@ class Condensed:
     system: System
     kept: NDArray[np.int64]
     factorization: direct.PartialFactorization
-    load: NDArray[np.float64]  # free displacements, then multipliers, after forward substitution
+    load: NDArray[np.float64]  # of free displacements, then multipliers, after forward substitution; by history
     whole: System
 
-    def expand(self, state: Unknowns, factor: float, laws: Laws) -> Unknowns:
+    def expand(self, state: Unknowns, weights: NDArray[np.float64], laws: Laws) -> Unknowns:
         """All free displacements. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the
         whole system are met anew by refinement."""
         n = len(self.whole.load)
-        inner = factor * self.load
+        inner, load = self.load @ weights, self.whole.load @ weights
         inner[self.kept], inner[n:] = state.displacement, state.pressure
         state = replace(state, displacement=self.factorization.backward(inner)[:n])
         for _ in range(REFINEMENTS):
             p = state.pressure
-            miss = factor * self.whole.load + self.whole.operator.T @ p - self.whole.stiffness @ state.displacement
+            miss = load + self.whole.operator.T @ p - self.whole.stiffness @ state.displacement
             inner = self.factorization.forward(np.concatenate([miss, np.zeros(len(p))]))
             linear = laws(self.whole, state)
             opened = [law.residual for law in linear]
@@ -112,7 +112,8 @@ def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
     factorization = direct.partial_factorization(store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)]))
     if factorization is None:
         return None
-    load = factorization.forward(np.concatenate([system.load, np.zeros(n_p)]))
+    none = np.zeros(n_p)
+    load = np.column_stack([factorization.forward(np.concatenate([own, none])) for own in system.load.T])
     n_u = len(kept)
     schur = factorization.schur
     stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]  # theory (V3)

@@ -23,11 +23,11 @@ LARGE = {1: 60_000, 2: 120_000}  # free displacements in 3D, by degree of the ce
 
 @dataclass(frozen=True)
 class Prepared:
-    """system: with its linear solver; finish: what a step's outcome still needs at its load factor; name: for the summary;
-    note: for the log; count: linear iterations of an iterative solver."""
+    """system: with its linear solver; finish: what a step's outcome still needs, at its histories' weights; name: for the
+    summary; note: for the log; count: linear iterations of an iterative solver."""
 
     system: System
-    finish: Callable[[Outcome, float], Outcome]
+    finish: Callable[[Outcome, NDArray[np.float64]], Outcome]
     name: str
     note: str
     count: Count | None = None
@@ -61,8 +61,8 @@ def prepare(
     if condensed is None:
         return Prepared(system, lambda outcome, _: outcome, name, f"direct solver {solver_name()}")
 
-    def finish(outcome: Outcome, factor: float) -> Outcome:
-        return replace(outcome, unknowns=condensed.expand(outcome.unknowns, factor, outcome.laws))
+    def finish(outcome: Outcome, weights: NDArray[np.float64]) -> Outcome:
+        return replace(outcome, unknowns=condensed.expand(outcome.unknowns, weights, outcome.laws))
 
     note = f"direct solver {solver_name()}; all displacements eliminated but {len(condensed.kept)}, the rest is dense"
     return Prepared(condensed.system, finish, name, note)

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import BALANCE, balance
+from abut.conditions import support_along
 from abut.discretization.pairs import Pair, pair
 from abut.discretization.rigid import rigid_modes
 from abut.discretization.supports import supports
@@ -21,12 +22,12 @@ from abut.interface.recover import facet_node_values
 from abut.mesh.facets import facet_keys, number_keys
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
-from abut.model import Contact, Model, Solid, Support
+from abut.model import Contact, Model, Solid
 from abut.solids.elements import stiffness
 from abut.solids.loads import stress_load
 from abut.solids.materials import LinearElastic
-from abut.solvers.active_set import Rows
 from abut.solvers.blocks import newton_step
+from abut.solvers.newton import Rows
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
 FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane
@@ -89,7 +90,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     own = pair(pinned, contact, held)
     load = _load(model.mesh, own.contactor, own.target, stress)
     full = stiffness(pinned.mesh, {s.body: s.material for s in pinned.solids}, model.plane, model.integration)
-    displacement, pressure = _solve(full, load, held.free, held.prescribed, own)
+    displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
     values = own.space.transfer @ pressure
     nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]
     force, moment = balance(own, values)
@@ -140,7 +141,7 @@ def _pinned(model: Model, exact: NDArray[np.float64]) -> Model:
         for dof in candidates[chosen]:
             node, axis = divmod(int(dof), dim)
             sets[f"pin {dof}"] = np.array([node])
-            pins.append(Support(f"pin {dof}", **{"xyz"[axis]: float(exact[node, axis])}))
+            pins.append(support_along(f"pin {dof}", "xyz"[axis], float(exact[node, axis])))
     return replace(model, mesh=replace(mesh, node_sets={**mesh.node_sets, **sets}), supports=pins)
 
 
@@ -172,7 +173,7 @@ def _solve(
     """Displacement at all points, (dim n_points,), and pressure with every multiplier in contact and no initial gap."""
     n = len(own)
     rows = Rows(
-        residual=-own.prescribed,
+        residual=-own.prescribed[:, 0],
         by_displacement=-own.operator,
         by_pressure=sp.csr_matrix((n, n)),
         decoupled=np.zeros(n, dtype=bool),

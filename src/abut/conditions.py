@@ -1,0 +1,263 @@
+"""What is prescribed: supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut import checks
+from abut.errors import InputError
+from abut.fields import Field
+
+COMPONENTS = ("x", "y", "z")
+TURNS = ("rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class Amplitude:
+    """A history: factor over time as ``points`` (time, factor), times increasing; linear between, constant outside.
+
+    Time runs from 0 to 1 over the load steps. Raises InputError for points that are no such list."""
+
+    points: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        try:
+            points = tuple((float(time), float(factor)) for time, factor in self.points)
+        except (TypeError, ValueError):
+            raise InputError(f"amplitude: expected pairs of time and factor, got {self.points!r}") from None
+        for number in (value for point in points for value in point):
+            checks.finite(number, "amplitude")
+        if not points:
+            raise InputError("amplitude: expected at least one pair of time and factor")
+        for (before, _), (after, _) in pairwise(points):
+            if not before < after:
+                raise InputError(f"amplitude: times must increase, but {after:g} follows {before:g}")
+        object.__setattr__(self, "points", points)
+
+    def __call__(self, time: float) -> float:
+        """The factor at a time."""
+        times, factors = np.array(self.points).T
+        return float(np.interp(time, times, factors))
+
+    @property
+    def largest(self) -> float:
+        """Largest factor at any time, regardless of sign."""
+        return max(abs(factor) for _, factor in self.points)
+
+
+History = Amplitude | None  # None: the ramp, a factor equal to time
+
+
+def weights(histories: Sequence[History], time: float) -> NDArray[np.float64]:
+    """Factor of each history at a time, (n_histories,)."""
+    return np.array([time if history is None else history(time) for history in histories])
+
+
+def _amplitude(value: Any, where: str) -> None:
+    if value is not None and not isinstance(value, Amplitude):
+        raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(value).__name__}")
+
+
+@dataclass(frozen=True)
+class Support:
+    """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
+    outward normal); what is left out stays free. Values in the mesh's length unit, times ``amplitude``; x, y and z
+    may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
+
+    on: str
+    x: float | Field | None = None
+    y: float | Field | None = None
+    z: float | Field | None = None
+    normal: float | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
+        for name, value in given.items():
+            if name == "normal" or not callable(value):
+                checks.finite(value, f"support on '{self.on}': {name}")
+        if not given:
+            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
+        if "normal" in given and len(given) > 1:
+            raise InputError(f"support on '{self.on}': give either normal or components, not both")
+        _amplitude(self.amplitude, f"support on '{self.on}'")
+
+
+def support_along(on: str, component: str, value: float) -> Support:
+    """A support of one component by its name."""
+    given: dict[str, Any] = {component: value}
+    return Support(on, **given)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A displacement component of one point, times ``coefficient``: ``on`` is a node set of one node, or a point's index."""
+
+    on: str | int
+    component: str
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        if isinstance(self.on, bool) or not isinstance(self.on, (str, int, np.integer)):
+            raise InputError(f"term.on: expected a node set or a point's index, got {self.on!r}")
+        checks.choice(self.component, f"term on {self.on!r}: component", COMPONENTS)
+        checks.finite(self.coefficient, f"term on {self.on!r}: coefficient")
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A linear constraint: the sum of all terms is ``value`` (length, if coefficients are numbers), times ``amplitude``."""
+
+    terms: tuple[Term, ...]
+    value: float = 0.0
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", tuple(self.terms))
+        checks.finite(self.value, "equation: value")
+        if not any(term.coefficient for term in self.terms):
+            raise InputError("equation: no term with a coefficient other than zero; give at least one")
+        _amplitude(self.amplitude, "equation")
+
+
+@dataclass(frozen=True)
+class Rigid:
+    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and turns
+    rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``; components
+    left out are free. Reference: the mean of the body's points, where left out. The body needs no material."""
+
+    body: str
+    reference: tuple[float, ...] | None = None
+    x: float | None = None
+    y: float | None = None
+    z: float | None = None
+    rx: float | None = None
+    ry: float | None = None
+    rz: float | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        where = f"rigid '{self.body}'"
+        for name in (*COMPONENTS, *TURNS):
+            if getattr(self, name) is not None:
+                checks.finite(getattr(self, name), f"{where}: {name}")
+        if self.reference is not None:
+            object.__setattr__(self, "reference", _vector(self.reference, f"{where}: reference"))
+        _amplitude(self.amplitude, where)
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """Pressure on a surface, force per area, positive into the body."""
+
+    on: str
+    value: float
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        checks.finite(self.value, f"pressure on '{self.on}': value")
+        _amplitude(self.amplitude, f"pressure on '{self.on}'")
+
+
+def _vector(values: Any, name: str) -> tuple[float, ...]:
+    try:
+        result = tuple(checks.finite(value, name) for value in values)
+    except TypeError:
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
+    if len(result) not in (2, 3):
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
+    return result
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Traction vector on a surface, force per area; numbers or a function of position, points (n, dim) -> (n, dim)."""
+
+    on: str
+    value: tuple[float, ...] | Field
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
+        _amplitude(self.amplitude, f"traction on '{self.on}'")
+
+
+@dataclass(frozen=True)
+class Force:
+    """Total force (2D: per unit thickness), spread evenly over a surface."""
+
+    on: str
+    value: tuple[float, ...]
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
+        _amplitude(self.amplitude, f"force on '{self.on}'")
+
+
+@dataclass(frozen=True)
+class NodalForce:
+    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the whole turn)."""
+
+    on: str
+    value: tuple[float, ...]
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, f"nodal force on '{self.on}': value"))
+        _amplitude(self.amplitude, f"nodal force on '{self.on}'")
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """Change of temperature at the nodes of a node set or body (degrees), a number or a function of position, points
+    (n, dim) -> (n,). It strains bodies by their expansion; between nodes the shape functions interpolate, zero at nodes
+    without one, so that neighbours glued to a heated body are warm in their first row of cells. Several add up, also
+    with ``Solid.temperature``."""
+
+    on: str
+    value: float | Field
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            checks.finite(self.value, f"temperature on '{self.on}': value")
+        _amplitude(self.amplitude, f"temperature on '{self.on}'")
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
+
+    value: tuple[float, ...]
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
+        _amplitude(self.amplitude, "gravity")
+
+
+@dataclass(frozen=True)
+class BodyForce:
+    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
+    function of position, points (n, dim) -> (n, dim)."""
+
+    value: tuple[float, ...] | Field
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            object.__setattr__(self, "value", _vector(self.value, "body force: value"))
+        _amplitude(self.amplitude, "body force")
+
+
+Load = Pressure | Traction | Force | NodalForce | Temperature | Gravity | BodyForce
