@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gzip
+import tempfile
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -59,6 +61,18 @@ def _card(head: str, data: list[str], line: int) -> Card:
         if key.strip():
             options[key.strip().upper()] = value.strip()
     return Card(" ".join(name.upper().split()), options, tuple(data), line)
+
+
+@contextmanager
+def plain(path: Path) -> Iterator[Path]:
+    """The deck as a plain text file, while the context lasts."""
+    if path.suffix != ".gz":
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        result = Path(folder) / path.stem
+        result.write_bytes(gzip.decompress(path.read_bytes()))
+        yield result
 
 
 def write(cards: Iterable[Card], path: Path) -> None:
