@@ -49,7 +49,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     clock = _Clock()
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
-    full_stiffness = stiffness(model.mesh, materials, model.plane)
+    full_stiffness = stiffness(model.mesh, materials, model.plane, model.integration)
     loaded = loads(model)
     clock.mark("assembly")
     every = pairs(model, held)

@@ -71,6 +71,7 @@ def translate(deck: Deck) -> Translation:
     deck = cut(deck)
     plane = _plane(deck)
     notes = list(deck.notes)
+    notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     groups = Groups(deck)
     parts = {groups.body(piece.name, piece.elements): piece for piece in pieces(deck)}
     contacts = [_contact(deck, groups, pair, notes) for pair in deck.pairs]
@@ -126,9 +127,7 @@ def _solid(name: str, piece: Piece) -> Solid:
         elastic = LinearElastic(material.young, material.poisson, material.density, material.expansion)
     except InputError as error:
         raise InputError(f"*MATERIAL '{material.name}': {error}") from None
-    if "integration" in Solid.__dataclass_fields__:
-        return Solid(name, elastic, integration=piece.integration)
-    return Solid(name, elastic)
+    return Solid(name, elastic, integration=piece.integration)
 
 
 def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
@@ -138,7 +137,9 @@ def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
     values = {section.thickness: section for section in deck.sections}
     if len(values) > 1:
         place = next(reversed(values.values())).place
-        raise InputError(f"{place}: *SOLID SECTION: sections of different thickness are not supported; give all the same")
+        raise InputError(
+            f"{place}: *SOLID SECTION: sections of different thickness are not supported; give all the same"
+        )
     value = next(iter(values))
     if value != 1.0:
         notes.append(f"forces in the results are those of unit thickness: times {value:g} gives the deck's")
@@ -233,9 +234,13 @@ def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Loa
             if not inside.any():
                 continue
             if not inside.all():
-                raise InputError(f"{place}: *DLOAD: gravity on a part of body '{name}' only; give it to all of the body")
+                raise InputError(
+                    f"{place}: *DLOAD: gravity on a part of body '{name}' only; give it to all of the body"
+                )
             if piece.section.material.density == 0.0:
-                raise InputError(f"{place}: *DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'")
+                raise InputError(
+                    f"{place}: *DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'"
+                )
             value = tuple(size * x for x in vector[: 2 if plane else 3])
             result.append(Gravity(value, name, amplitude))
     return result

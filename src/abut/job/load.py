@@ -117,7 +117,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> Model:
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
-        solids.append(Solid(s.body, materials[s.material], s.temperature))
+        solids.append(Solid(s.body, materials[s.material], s.temperature, s.integration))
     return Model(
         mesh=_mesh(file.mesh, folder, refine),
         plane=file.model.plane,

@@ -10,33 +10,44 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ElementType:
-    """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration: "full",
-    "reduced", or "b-bar" for the mean dilatation that Abaqus and CalculiX give fully integrated linear quadrilaterals
-    and hexahedra."""
+    """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
+    ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
+    its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
+    element's own formulation, "" where it is the same."""
 
     kind: str
     plane: str | None
     integration: str
+    instead: str = ""
+
+
+_HOURGLASS = "instead of one point with hourglass control; stiffer in bending"
 
 
 def _types() -> dict[str, ElementType]:
     result = {
         "C3D4": ElementType("tet4", None, "full"),
-        "C3D10": ElementType("tet10", None, "full"),
-        "C3D6": ElementType("wedge6", None, "full"),
-        "C3D15": ElementType("wedge15", None, "full"),
-        "C3D8": ElementType("hex8", None, "b-bar"),
-        "C3D8I": ElementType("hex8", None, "b-bar"),
-        "C3D8R": ElementType("hex8", None, "reduced"),
+        "C3D10": ElementType("tet10", None, "reduced"),
+        "C3D6": ElementType("wedge6", None, "full", "full integration (6 points) instead of 2 points"),
+        "C3D15": ElementType("wedge15", None, "reduced"),
+        "C3D8": ElementType("hex8", None, "full"),
+        "C3D8I": ElementType(
+            "hex8", None, "b-bar", "mean dilatation (b-bar) instead of incompatible modes; stiffer in bending"
+        ),
+        "C3D8R": ElementType("hex8", None, "b-bar", f"mean dilatation (b-bar) {_HOURGLASS}"),
         "C3D20": ElementType("hex20", None, "full"),
         "C3D20R": ElementType("hex20", None, "reduced"),
     }
     for prefix, plane in (("CPE", "strain"), ("CPS", "stress"), ("CAX", "axisymmetric")):
+        stress = plane == "stress"
+        replaced = (
+            ("full", f"full integration {_HOURGLASS}") if stress else ("b-bar", f"mean dilatation (b-bar) {_HOURGLASS}")
+        )
         result |= {
             f"{prefix}3": ElementType("tri3", plane, "full"),
-            f"{prefix}6": ElementType("tri6", plane, "full"),
-            f"{prefix}4": ElementType("quad4", plane, "full" if plane == "stress" else "b-bar"),
-            f"{prefix}4R": ElementType("quad4", plane, "reduced"),
+            f"{prefix}6": ElementType("tri6", plane, "reduced"),
+            f"{prefix}4": ElementType("quad4", plane, "full"),
+            f"{prefix}4R": ElementType("quad4", plane, *replaced),
             f"{prefix}8": ElementType("quad8", plane, "full"),
             f"{prefix}8R": ElementType("quad8", plane, "reduced"),
         }
