@@ -317,10 +317,9 @@ def test_ctrl_c_before_the_first_step_writes_nothing(tmp_path: Path, capsys: pyt
 
 def test_restart_of_a_load_history(tmp_path: Path) -> None:
     """Loaded, partly unloaded and loaded again at uneven times: what is rounding is judged by the steps before, too."""
-    supports = [line for line in BALL.splitlines() if line.replace(" ", "").startswith("z=-")]
-    assert supports
+    load = next(line for line in BALL.splitlines() if line.startswith("value"))
     history = "amplitude = [[0.0, 0.0], [0.4, 1.0], [0.6, 0.1], [1.0, 0.8]]"
-    text = BALL.replace(supports[0], f"{supports[0]}\n{history}")
+    text = BALL.replace(load, f"{load}\n{history}")
     options = {"times": [0.2, 0.4, 0.6, 0.9, 1.0], "steps": 1}
     whole, parts = job(tmp_path / "whole", text, **options), job(tmp_path / "parts", text, **options)
     assert main(["run", "--quiet", str(whole)]) == 0

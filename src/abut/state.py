@@ -168,6 +168,7 @@ class Solution:
     notes: tuple[str, ...]
     timings: Mapping[str, float]
     complete: bool = True
+    ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
 
     @property
     def converged(self) -> bool:

@@ -57,7 +57,7 @@ def solve(
     observe(Phase("assembling the stiffness"))
     materials = {solid.body: solid.material for solid in model.solids}
     held = supports(model)
-    full_stiffness = stiffness(model.mesh, materials, model.plane)
+    full_stiffness = stiffness(model.mesh, materials, model.plane, model.integration)
     loaded = loads(model)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))

@@ -1,4 +1,4 @@
-"""The command line: abut run, verify, infsup, schema."""
+"""The command line: abut run, convert, verify, infsup, schema."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
+from abut.cli.convert import add_convert
 from abut.cli.run import add_run
 from abut.cli.verify import add_infsup, add_verify
 from abut.errors import AbutError, InputError
@@ -59,6 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add_run(commands)
+    add_convert(commands)
     add_verify(commands)
     add_infsup(commands)
     schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from abut.errors import ConvergenceError, Stopped
 if TYPE_CHECKING:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
-    from abut.state import Iteration, Phase, Solution
+    from abut.state import Iteration, Phase, Saved, Solution
 
 DONE = 0
 STATUS = """exit status:
@@ -31,17 +32,30 @@ def add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="solve a job",
-        description="Solve a job file (TOML) and write its results, each load step as soon as it has converged.",
+        description="Solve a job file (TOML), or an Abaqus or CalculiX deck (.inp), and write the results of each load "
+        "step as soon as it has converged.",
         epilog=STATUS,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    run.add_argument("job", type=Path, help="the job file")
+    run.add_argument("job", type=Path, help="the job file or deck")
+    add_ignore(run)
     run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
     run.add_argument("--restart", action="store_true", help="go on after the last step that an earlier run has written")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
     run.set_defaults(command=_run)
+
+
+def add_ignore(parser: argparse.ArgumentParser) -> None:
+    """What a deck asks for and the user does without."""
+    parser.add_argument(
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="CARD",
+        help="leave a card (FRICTION) or parameter (NLGEOM) of a deck out that abut does not do; may be repeated",
+    )
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -77,7 +91,9 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
     from abut.state import Phase
 
     progress(Phase(f"reading {arguments.job}"))
-    job = load_job(arguments.job)
+    job = load_job(arguments.job, ignore=arguments.ignore)
+    for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
+        progress(text)
     directory = arguments.output or job.directory
     model = restart.description(job.model)
     before = restart.load_steps(directory, model) if arguments.restart else []
@@ -85,13 +101,19 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
         progress(restart.last(before))
     with Stream(directory, model, before) as stream:
 
+        def told(solution: Solution) -> Solution:
+            return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored)
+
+        def keep(solution: Solution, saved: Saved) -> None:
+            stream.step(told(solution), saved)
+
         def observe(item: Iteration | Phase | str) -> None:
             stream.observe(item)
             progress(item)
             interrupt.check()
 
         try:
-            solution = solve(job.model, observe, stream.step, before)
+            solution = told(solve(job.model, observe, keep, before))
         except Stopped:
             raise Stopped(_left(stream.steps, directory)) from None
         progress(Phase("writing results"))

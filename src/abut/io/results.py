@@ -89,6 +89,7 @@ def summary(solution: Solution) -> dict[str, Any]:
         },
         "remedies": [str(remedy) for remedy in remedies(solution)],
         "notes": list(solution.notes),
+        "ignored": list(solution.ignored),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
         "versions": {
             "abut": abut.__version__,

@@ -16,7 +16,10 @@ from abut.errors import InputError
 from abut.io.atomic import write_file
 from abut.io.raw import RawMesh
 
-VTK_KIND = {cell.vtk: cell.name for cell in CELLS.values()}
+VERTEX = 1  # of VTK: the points of node sets
+VTK_KIND = {VERTEX: "point"} | {cell.vtk: cell.name for cell in CELLS.values()}
+VTK_CODE = {kind: code for code, kind in VTK_KIND.items()}
+NODES = {"point": 1} | {cell.name: cell.nodes for cell in CELLS.values()}
 
 
 def write_vtu(
@@ -27,7 +30,8 @@ def write_vtu(
     cell_data: Mapping[str, NDArray[Any]] | None = None,
     names: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Write points (n, 2 or 3), cells by type (kind, connectivity) and data; quadratic cells stay quadratic.
+    """Write points (n, 2 or 3), cells by type (kind, or "point" for vertices, and connectivity) and data; quadratic cells
+    stay quadratic.
 
     point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks; names: lists of strings
     for the whole file (VTK's field data).
@@ -50,7 +54,7 @@ def write_vtu(
         numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), deep=True),
         numpy_to_vtkIdTypeArray(np.concatenate([n.ravel() for _, n in blocks]).astype(np.int64), deep=True),
     )
-    kinds = np.concatenate([np.full(len(nodes), CELLS[kind].vtk, np.uint8) for kind, nodes in blocks])
+    kinds = np.concatenate([np.full(len(nodes), VTK_CODE[kind], np.uint8) for kind, nodes in blocks])
     grid.SetCells(numpy_to_vtk(kinds, deep=True), cells)
     for data, target in ((point_data, grid.GetPointData()), (cell_data or {}, grid.GetCellData())):
         for name, values in data.items():
@@ -81,7 +85,7 @@ def read_vtu(path: Path) -> RawMesh:
 
     An integer cell array ``region`` numbers the groups, and the string array ``region_names`` in the field data gives
     the name of region 0, 1, ...; a region without a name there is called ``region_<number>``. Regions of the highest
-    cells are bodies, those of facet cells surfaces. A cell in several groups stands in the file once for each. Without
+    cells are bodies, those of facet cells surfaces, those of vertices node sets. A cell in several groups stands in the file once for each. Without
     ``region`` there are no surfaces, and every connected set of cells is a body ``body_1``, ``body_2``, ...
 
     Raises InputError for files that VTK cannot read or that hold cells abut does not know.
@@ -107,7 +111,7 @@ def read_vtu(path: Path) -> RawMesh:
     unknown = sorted(set(kinds.tolist()) - set(VTK_KIND))
     if unknown:
         raise InputError(f"{path}: VTK cell types {unknown} are not supported; supported: {', '.join(CELLS)}")
-    want = np.array([CELLS[VTK_KIND[int(k)]].nodes for k in kinds])
+    want = np.array([NODES[VTK_KIND[int(k)]] for k in kinds])
     bad = np.flatnonzero((np.diff(offsets) != want) | (offsets[:-1] < 0) | (offsets[1:] > len(nodes)))
     if len(bad):
         raise InputError(f"{path}: cell {bad[0]} has a wrong number of points for its type; write it again")
@@ -116,7 +120,7 @@ def read_vtu(path: Path) -> RawMesh:
     for code in np.unique(kinds):
         own = np.flatnonzero(kinds == code)
         kind = VTK_KIND[int(code)]
-        rows = nodes[offsets[own][:, None] + np.arange(CELLS[kind].nodes)].astype(np.int64)
+        rows = nodes[offsets[own][:, None] + np.arange(NODES[kind])].astype(np.int64)
         if value is None:
             groups.setdefault("", {}).setdefault(kind, []).append(rows)
             continue

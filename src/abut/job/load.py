@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,21 +52,32 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 }  # fmt: skip
 
 
+DECK = ".inp"
+
+
 @dataclass(frozen=True)
 class Job:
-    """A loaded job: the model, where its results go, the file and its text."""
+    """A loaded job: the model, where its results go, the file and its text; what a deck asked for that is done otherwise
+    (notes) or, as the user said so, left out (ignored)."""
 
     model: Model
     directory: Path
     path: Path
     text: str
+    notes: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
 
 
-def load_job(path: str | Path, refine: int = 0) -> Job:
-    """Read a job file. Raises InputError that lists every problem with its place.
+def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) -> Job:
+    """Read a job file, or an Abaqus or CalculiX deck (.inp). Raises InputError that lists every problem with its place.
 
-    refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file)."""
+    refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file).
+    ignore: cards and parameters of a deck to leave out although they change the result."""
     path = Path(path)
+    if path.suffix.lower() == DECK:
+        return _deck(path, refine, ignore)
+    if ignore:
+        raise InputError(f"{path}: --ignore is for decks ({DECK}); a job file has no cards")
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -93,13 +104,22 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
     return Job(model, path.parent / file.output.directory, path, text)
 
 
+def _deck(path: Path, refine: int, ignore: Collection[str]) -> Job:
+    from abut.job.deck import load_deck
+
+    if refine:
+        raise InputError(f"{path}: only meshes that abut makes can be refined; leave --levels out")
+    deck = load_deck(path, ignore)
+    return Job(deck.model, path.parent / f"{path.stem}-results", path, "", deck.notes, deck.ignored)
+
+
 def _model(file: JobFile, folder: Path, refine: int) -> Model:
     materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
-        solids.append(Solid(s.body, materials[s.material], s.temperature))
+        solids.append(Solid(s.body, materials[s.material], s.temperature, s.integration))
     return Model(
         mesh=_mesh(file.mesh, folder, refine),
         plane=file.model.plane,

@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from abut.cells import CELLS
 from abut.checks import LARGEST
 from abut.errors import InputError
+from abut.io.abaqus import read_abaqus
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
@@ -19,7 +20,7 @@ from abut.mesh.check import check_mesh, inside
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
 from abut.mesh.mesh import CellBlock, Mesh
 
-READERS = {".msh": read_gmsh, ".vtu": read_vtu}
+READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 
 
 def read_mesh(path: Path) -> Mesh:
