@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from fuzz.harness import make, run_all
+from abut.cli import main
+from fuzz.harness import SEEDS, make, run_all
 
 FAST, MANY = 300, 10_000
 
@@ -46,3 +47,15 @@ def test_the_harness_sees_what_it_should(tmp_path: Path) -> None:
     assert judge(2, "abut: error: expected a number", tmp_path) == ""
     (tmp_path / ".fields.vtu.1.tmp.vtu").write_text("")
     assert "left behind" in judge(4, "abut: error: singular", tmp_path)
+
+
+def test_facet_without_a_normal_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A hexahedron collapsed at an edge is sound where stiffness is integrated, but its side has no normal there."""
+    text = (SEEDS / "solid-22-ascii.msh").read_text()
+    assert "12 1 2 1\n" in text  # a corner of the upper block's underside; 9 is the next one
+    (tmp_path / "mesh.msh").write_text(text.replace("12 1 2 1\n", "12 1 1 1\n"))
+    (tmp_path / "job.toml").write_text((SEEDS / "solid-mesh.toml").read_text())
+    assert main(["run", str(tmp_path / "job.toml")]) == 2
+    error = capsys.readouterr().err
+    assert "surface 'under': facet 0 has no normal at its point [1.0, 1.0, 1.0]" in error
+    assert "prism instead of a collapsed hexahedron" in error

@@ -256,13 +256,14 @@ def wait_for_step(process: subprocess.Popen[str], number: int) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
-def test_ctrl_c_keeps_the_steps_done(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("sent", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+def test_ctrl_c_keeps_the_steps_done(sent: str, status: int, tmp_path: Path) -> None:
     path = job(tmp_path, steps=400)
     process = abut_run(path)
     wait_for_step(process, 3)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(getattr(signal, sent))
     _, error = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == status
     assert "stopping after the current iteration" in error
     assert "abut run --restart" in error
     assert "Traceback" not in error

@@ -57,8 +57,8 @@ def make(seed: int, number: int) -> Input:
     others = [path.read_bytes() for path in meshes + decks if path.suffix == source.suffix]
     data = damaged(source.read_bytes(), others, chance)
     name = f"mesh{source.suffix}"
-    if source.suffix == ".inp" and chance.random() < 0.7:
-        return Input(".inp job", {name: data}, name)
+    if source.suffix == ".inp":
+        return Input(".inp", {"deck.inp": data}, "deck.inp")
     job = (SEEDS / f"{source.name.split('-')[0].split('.')[0]}-mesh.toml").read_text().replace("mesh.msh", name)
     return Input(source.suffix, {"job.toml": job.encode(), name: data}, "job.toml")
 

@@ -19,11 +19,14 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--first", type=int, default=0, help="number of the first input")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=["job", ".msh", ".vtu", ".inp"], help="inputs of this kind only")
     parser.add_argument("--only", type=int, metavar="NUMBER", help="one input; its files are kept")
     arguments = parser.parse_args()
     numbers = (
         [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)
     )
+    if arguments.kind:
+        numbers = [n for n in numbers if make(arguments.seed, n).kind == arguments.kind]
     ends: Counter[tuple[str, int | None]] = Counter()
     bad = 0
     began = time.monotonic()
