@@ -81,7 +81,9 @@ class Progress:
             self._total = stage.total or self._total
             self._stage, self._began, self._iteration = stage, now, 0
             self._patience = PATIENCE
-            if not self._silent and self._live is None and (stage.seconds or 0.0) >= LONG:
+            if self._live is not None:
+                self._live.update(self.status(now))
+            elif not self._silent and (stage.seconds or 0.0) >= LONG:
                 self._print(str(stage))
 
     def status(self, now: float) -> str:
