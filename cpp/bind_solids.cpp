@@ -61,19 +61,22 @@ static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t>
 // For the rows of points first .. last - 1: adds int lambda div v div u + 2 mu eps(v) : eps(u) of cells of one type to
 // the values of a block pattern. shapes (q, n), derivatives (q, n, dim), weights (q): the rule on the reference cell;
 // lame (cells, 2): lambda, mu of each cell. Axisymmetric: coordinates are (r, z), the hoop strain is u_r / r and the
-// integral runs round the axis.
+// integral runs round the axis. mean_dilatation: div u is replaced by its mean over the cell (B-bar), theory (E3).
 template <int dim, bool axisymmetric>
 static void add_stiffness(const double *points, const std::int32_t *nodes, std::size_t cells, std::size_t n,
                           const double *shapes, const double *derivatives, const double *weights, std::size_t rule,
                           const double *lame, const std::int64_t *indptr, const std::int32_t *indices, double *values,
-                          std::int32_t first, std::int32_t last) {
-  std::vector<double> gradient(n * dim), hoop(n), block(n * n * dim * dim);
+                          bool mean_dilatation, std::int32_t first, std::int32_t last) {
+  std::vector<double> gradient(n * dim), hoop(n), block(n * n * dim * dim), dilatation(n * dim);
   for (std::size_t c = 0; c < cells; ++c) {
     const std::int32_t *own = nodes + c * n;
     if (std::none_of(own, own + n, [&](std::int32_t i) { return i >= first && i < last; }))
       continue;
-    const double lambda = lame[2 * c], mu = lame[2 * c + 1];
+    const double mu = lame[2 * c + 1], bulk = lame[2 * c] + 2 * mu / 3; // bulk modulus
+    const double lambda = mean_dilatation ? -2 * mu / 3 : lame[2 * c];  // what is left at the points is deviatoric
+    double volume = 0;
     std::fill(block.begin(), block.end(), 0.0);
+    std::fill(dilatation.begin(), dilatation.end(), 0.0);
     for (std::size_t q = 0; q < rule; ++q) {
       const double *d = derivatives + q * n * dim;
       double j[dim][dim] = {{0}}, inverse[dim][dim], det;
@@ -112,6 +115,15 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
             sum += d[i * dim + b] * inverse[b][a];
           gradient[i * dim + a] = sum;
         }
+      if (mean_dilatation) {
+        volume += w;
+        for (std::size_t i = 0; i < n; ++i) {
+          for (int a = 0; a < dim; ++a)
+            dilatation[i * dim + a] += w * gradient[i * dim + a];
+          if constexpr (axisymmetric)
+            dilatation[i * dim] += w * hoop[i];
+        }
+      }
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = i; k < n; ++k) {
           const double *g = &gradient[i * dim], *h = &gradient[k * dim];
@@ -131,6 +143,13 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
           }
         }
     }
+    if (mean_dilatation)
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = i; k < n; ++k)
+          for (int a = 0; a < dim; ++a)
+            for (int b = 0; b < dim; ++b)
+              block[((i * n + k) * dim + a) * dim + b] +=
+                  bulk / volume * dilatation[i * dim + a] * dilatation[k * dim + b];
     for (std::size_t i = 0; i < n; ++i) {
       if (own[i] < first || own[i] >= last)
         continue;
@@ -150,7 +169,8 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
 
 static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes, Matrix<double> shapes,
                                Tensor3<double> derivatives, Vector<double> weights, Matrix<double> lame,
-                               bool axisymmetric, Vector<std::int64_t> indptr, Vector<std::int32_t> indices,
+                               bool axisymmetric, bool mean_dilatation, Vector<std::int64_t> indptr,
+                               Vector<std::int32_t> indices,
                                nb::ndarray<double, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu> values) {
   const std::size_t dim = points.shape(1), n = nodes.shape(1);
   if (shapes.shape(1) != n || derivatives.shape(1) != n || derivatives.shape(2) != dim ||
@@ -163,8 +183,8 @@ static void assemble_stiffness(Matrix<double> points, Matrix<std::int32_t> nodes
   const std::size_t rows = points.shape(0), parts = nodes.shape(0) < FEW_CELLS ? 1 : thread_count();
   run_parts(parts, [&](std::size_t part) {
     add(points.data(), nodes.data(), nodes.shape(0), n, shapes.data(), derivatives.data(), weights.data(),
-        weights.shape(0), lame.data(), indptr.data(), indices.data(), values.data(), std::int32_t(rows * part / parts),
-        std::int32_t(rows * (part + 1) / parts));
+        weights.shape(0), lame.data(), indptr.data(), indices.data(), values.data(), mean_dilatation,
+        std::int32_t(rows * part / parts), std::int32_t(rows * (part + 1) / parts));
   });
 }
 
@@ -175,7 +195,7 @@ void bind_solids(nb::module_ &m) {
         "The same pattern with dim x dim blocks.");
   m.def("assemble_stiffness", &assemble_stiffness, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(),
         nb::arg("shapes").noconvert(), nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(),
-        nb::arg("lame").noconvert(), nb::arg("axisymmetric"), nb::arg("indptr").noconvert(),
+        nb::arg("lame").noconvert(), nb::arg("axisymmetric"), nb::arg("mean_dilatation"), nb::arg("indptr").noconvert(),
         nb::arg("indices").noconvert(), nb::arg("values").noconvert(),
         "Adds the stiffness of all cells of one type to the values of a block pattern, in place.");
 }

@@ -11,15 +11,21 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError, nearest
 
+LARGEST = 1e60  # size of a number that no units need; products of several stay within what a computer can hold
+
 
 def finite(value: float, name: str) -> float:
-    """Return ``value`` as a float; raise InputError unless it is a finite number."""
+    """Return ``value`` as a float; raise InputError unless it is a finite number of a size that units can explain."""
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: expected a number, got {value!r}") from None
     if isinstance(value, bool) or not math.isfinite(number):
         raise InputError(f"{name}: expected a finite number, got {value!r}")
+    if number != 0.0 and not 1.0 / LARGEST <= abs(number) <= LARGEST:
+        raise InputError(
+            f"{name}: expected a number between 1e-60 and 1e60 in size, or 0, got {value!r}; check the units"
+        )
     return number
 
 
@@ -53,4 +59,7 @@ def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int
     if np.issubdtype(result.dtype, np.floating) and not np.isfinite(result).all():
         where = np.argwhere(~np.isfinite(result))[0].tolist()
         raise InputError(f"{name}: entry {where} is not a finite number")
+    if np.issubdtype(result.dtype, np.floating) and np.abs(result).max(initial=0.0) > LARGEST:
+        where = np.argwhere(np.abs(result) > LARGEST)[0].tolist()
+        raise InputError(f"{name}: entry {where} is larger than {LARGEST:g}; check the units")
     return result

@@ -30,6 +30,12 @@ class SingularModelError(AbutError, RuntimeError):
     exit_status = 4
 
 
+class Stopped(AbutError):
+    """The user asked a run to stop. Raised by an observer, it passes through ``solve`` unchanged."""
+
+    exit_status = 130  # 128 + SIGINT, as shells have it
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the closest known name, else the list of what exists."""
     known = sorted(known)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from abut import checks
+from abut.cells import CELLS
 from abut.conditions import (
     COMPONENTS,
     TURNS,
@@ -30,6 +31,7 @@ from abut.conditions import (
 )
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import BBAR, REDUCED
 from abut.solids.materials import LinearElastic
 
 __all__ = [
@@ -42,18 +44,25 @@ PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
+MOST_STEPS = 1_000_000  # load steps, and iterations in one
+INTEGRATIONS = ("full", "reduced", "b-bar")
 LINEAR = ("auto", "direct", "amg")
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees)."""
+    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
+
+    ``integration`` of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
+    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5)."""
 
     body: str
     material: LinearElastic
     temperature: float = 0.0
+    integration: str = "full"
 
     def __post_init__(self) -> None:
+        checks.choice(self.integration, f"solid '{self.body}': integration", INTEGRATIONS)
         checks.finite(self.temperature, f"solid '{self.body}': temperature")
 
 
@@ -132,8 +141,8 @@ class SolveOptions:
     def __post_init__(self) -> None:
         for name in ("steps", "max_iterations"):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-                raise InputError(f"solve.{name}: expected a whole number >= 1, got {value!r}")
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
+                raise InputError(f"solve.{name}: expected a whole number from 1 to {MOST_STEPS}, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
         if self.times is not None:
             self._check_times()
@@ -184,6 +193,11 @@ class Model:
         self._check_equations()
 
     @property
+    def integration(self) -> dict[str, str]:
+        """Integration of each body."""
+        return {solid.body: solid.integration for solid in self.solids}
+
+    @property
     def dim(self) -> int:
         """2 or 3, the mesh's."""
         return int(self.mesh.points.shape[1])
@@ -223,6 +237,7 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
+            self._check_integration(solid, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(
@@ -269,6 +284,28 @@ class Model:
                     raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(self.mesh.points)}, from 0")
                 if term.component not in COMPONENTS[: self.dim]:
                     raise InputError(f"{where}.component: the model is 2D; z does not exist")
+
+    def _check_integration(self, solid: Solid, where: str) -> None:
+        kinds = sorted({kind for kind, _, _ in self.mesh.cells_of(solid.body)})
+        if solid.integration == "reduced":
+            for kind in kinds:
+                if CELLS[kind].corners == CELLS[kind].dim + 1 and CELLS[kind].degree == 1:
+                    raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
+                if kind not in REDUCED:
+                    raise InputError(
+                        f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread "
+                        f"through the mesh; use 'full'{' or b-bar' if kind in BBAR else ''}, or {', '.join(REDUCED)} cells"
+                    )
+        elif solid.integration == "b-bar":
+            for kind in kinds:
+                if kind not in BBAR:
+                    raise InputError(
+                        f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'"
+                    )
+            if self.plane == "stress":
+                raise InputError(
+                    f"{where}: 'b-bar' has no effect to offer in plane stress, which does not lock; use 'full'"
+                )
 
     def _check_names(self) -> None:
         mesh = self.mesh

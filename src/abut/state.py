@@ -37,6 +37,20 @@ class Iteration:
 
 
 @dataclass(frozen=True)
+class Phase:
+    """A stage of the run begins. ``seconds``: how long it will take, from its size (None: not known); ``done`` of
+    ``total`` load steps lie behind."""
+
+    name: str
+    seconds: float | None = None
+    done: int = 0
+    total: int = 0
+
+    def __str__(self) -> str:
+        return self.name if self.seconds is None else f"{self.name}: about {max(self.seconds, 1.0):.2g} s"
+
+
+@dataclass(frozen=True)
 class Check:
     """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words."""
 
@@ -143,8 +157,32 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Saved:
+    """What it takes to go on after a converged step, and to have its results again.
+
+    displacement: (n_free,), pressure, active: (n,) the state; own_displacement, own_pressure: the same in the unknowns of
+    the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
+    largest_pressure: up to here, against which rounding is judged later.
+    """
+
+    number: int
+    factor: float
+    linear: str
+    largest_force: float
+    largest_pressure: float
+    displacement: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    active: NDArray[np.bool_]
+    own_displacement: NDArray[np.float64]
+    own_pressure: NDArray[np.float64]
+    iterations: tuple[Iteration, ...]
+
+
+@dataclass(frozen=True)
 class Solution:
-    """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state)."""
+    """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state).
+
+    ``complete`` is False while steps are still to come, or where the run was stopped before them."""
 
     model: Model
     steps: tuple[Step, ...]
@@ -152,6 +190,8 @@ class Solution:
     solver: str
     notes: tuple[str, ...]
     timings: Mapping[str, float]
+    complete: bool = True
+    ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
 
     @property
     def converged(self) -> bool:
@@ -199,4 +239,5 @@ class Solution:
         return abut.plot(self, what, **options)
 
 
-Observer = Callable[[Iteration | str], None]  # gets each iteration, and notes as text
+Observer = Callable[[Iteration | Phase | str], None]  # gets each iteration, stages that begin, and notes as text
+OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it

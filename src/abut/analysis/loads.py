@@ -64,7 +64,7 @@ def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.fl
     uniform = [{solid.body: solid.temperature for solid in model.solids}, *({} for _ in model.histories[1:])]
     return np.column_stack(
         [
-            thermal_load(model.mesh, materials, bodies, model.plane, nodal)
+            thermal_load(model.mesh, materials, bodies, model.plane, nodal, model.integration)
             for bodies, nodal in zip(uniform, temperature.T)
         ]
     )

@@ -1,24 +1,27 @@
-"""The command line: abut run, check, verify, infsup, schema."""
+"""The command line: abut run, check, convert, verify, infsup, schema."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
 from abut.cli.check import add_check
+from abut.cli.convert import add_convert
 from abut.cli.run import add_run
 from abut.cli.verify import add_infsup, add_verify
-from abut.errors import AbutError
+from abut.errors import AbutError, InputError
 
-DONE, BUG, INTERRUPTED = 0, 1, 130
+DONE, BUG, INTERRUPTED, NO_READER = 0, 1, 130, 141
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution."""
+    """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
+    130 stopped by Ctrl-C (143 by SIGTERM), 1 a bug."""
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
@@ -26,6 +29,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except AbutError as error:
         print(f"abut: error: {error}", file=sys.stderr)
         return error.exit_status
+    except MemoryError:
+        print(
+            "abut: error: not enough memory for this model; choose a coarser mesh, or a larger machine (a mesh file that "
+            "is small may be damaged)",
+            file=sys.stderr,
+        )
+        return InputError.exit_status
+    except BrokenPipeError:  # whoever read the output has gone, as in `abut run JOB | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NO_READER
     except KeyboardInterrupt:
         print("abut: stopped", file=sys.stderr)
         return INTERRUPTED
@@ -49,6 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add_run(commands)
     add_check(commands)
+    add_convert(commands)
     add_verify(commands)
     add_infsup(commands)
     schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")

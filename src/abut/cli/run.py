@@ -4,16 +4,27 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.errors import ConvergenceError
+from abut.errors import ConvergenceError, Stopped
 
 if TYPE_CHECKING:
-    from abut.state import Iteration, Solution
+    from abut.cli.interrupt import Interrupt
+    from abut.cli.progress import Progress
+    from abut.state import Iteration, Phase, Saved, Solution
 
 DONE = 0
+STATUS = """exit status:
+  0    done
+  2    bad input: the message says what, where, and how to mend it
+  3    not converged: the last state is written, the message names facets and remedies
+  4    the model has no unique solution
+  130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
+       --restart goes on from there
+  1    a bug in abut"""
 
 
 def add_run(commands: Any) -> None:
@@ -21,65 +32,117 @@ def add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="solve a job",
-        description="Solve a job file (TOML) and write its results.",
-        epilog="exit status: 0 done; 2 bad input; 3 not converged (last state written); 4 the model has no unique solution",
+        description="Solve a job file (TOML), or an Abaqus or CalculiX deck (.inp), and write the results of each load "
+        "step as soon as it has converged.",
+        epilog=STATUS,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    run.add_argument("job", type=Path, help="the job file")
+    run.add_argument("job", type=Path, help="the job file or deck")
+    add_ignore(run)
     run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
+    run.add_argument("--restart", action="store_true", help="go on after the last step that an earlier run has written")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
     run.set_defaults(command=_run)
 
 
-def _run(arguments: argparse.Namespace) -> int:
-    from abut.analysis import solve
-    from abut.io.results import summary, write
-    from abut.job import load_job
-    from abut.report import read_origin
+def add_ignore(parser: argparse.ArgumentParser) -> None:
+    """What a deck asks for and the user does without."""
+    parser.add_argument(
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="CARD",
+        help="leave a card (FRICTION) or parameter (NLGEOM) of a deck out that abut does not do; may be repeated",
+    )
 
-    job = load_job(arguments.job)
-    silent = arguments.quiet or arguments.json
-    directory = arguments.output or job.directory
-    if not silent:
-        print(*job.notes, sep="\n", end="\n" if job.notes else "")
-    solution = solve(job.model, None if silent else _Table())
-    solution = replace(solution, notes=(*job.notes, *solution.notes))
-    write(solution, directory, read_origin(job.path, job.text))
+
+def _run(arguments: argparse.Namespace) -> int:
+    from abut.cli.interrupt import Interrupt
+    from abut.cli.progress import Progress
+    from abut.io.results import summary
+
+    with (
+        Progress(silent=arguments.quiet or arguments.json) as progress,
+        Interrupt(_say, leave=progress.close) as interrupt,
+    ):
+        try:
+            solution, directory = _solve(arguments, progress, interrupt)
+        except Stopped as reason:
+            progress.close()
+            _say(str(reason))
+            return interrupt.exit_status
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
         _print_result(solution, directory)
     if not solution.converged:
-        where = "; ".join(
-            f"contact '{name}': facets {facets[:8].tolist()} do not settle"
-            for name, facets in solution.steps[-1].cycling.items()
-        )
-        raise ConvergenceError(
-            f"step {solution.steps[-1].number} did not converge ({where or 'residual too large'}); the last state is in "
-            f"{directory}. Try more load steps, more iterations (solve.max_iterations) or a finer contactor"
-        )
+        raise ConvergenceError(_failure(solution, directory))
     return DONE
 
 
-class _Table:
-    """One line an iteration, notes as they come."""
+def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interrupt) -> tuple[Solution, Path]:
+    """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
+    from abut.analysis import solve
+    from abut.io import restart
+    from abut.io.stream import Stream
+    from abut.job import load_job
+    from abut.report import read_origin
+    from abut.state import Phase
 
-    def __init__(self) -> None:
-        self._step = 0
+    progress(Phase(f"reading {arguments.job}"))
+    job = load_job(arguments.job, ignore=arguments.ignore)
+    for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
+        progress(text)
+    directory = arguments.output or job.directory
+    model = restart.description(job.model)
+    before = restart.load_steps(directory, model) if arguments.restart else []
+    if before:
+        progress(restart.last(before))
+    with Stream(directory, model, before) as stream:
 
-    def __call__(self, item: Iteration | str) -> None:
-        if isinstance(item, str):
-            print(item, flush=True)
-            return
-        if item.step != self._step:
-            self._step = item.step
-            print("step  iter   active  changed   residual    contact  penetration   seconds")
-        print(
-            f"{item.step:4d}  {item.iteration:4d}  {item.active:7d}  {item.changed:7d}  {item.residual:9.2e}  "
-            f"{item.contact_residual:9.2e}    {item.penetration:9.2e}  {item.seconds:8.2f}",
-            flush=True,
-        )
+        def told(solution: Solution) -> Solution:
+            return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored)
+
+        def keep(solution: Solution, saved: Saved) -> None:
+            stream.step(told(solution), saved)
+
+        def observe(item: Iteration | Phase | str) -> None:
+            stream.observe(item)
+            progress(item)
+            interrupt.check()
+
+        try:
+            solution = told(solve(job.model, observe, keep, before))
+        except Stopped:
+            raise Stopped(_left(stream.steps, directory)) from None
+        progress(Phase("writing results"))
+        stream.finish(solution, read_origin(job.path, job.text))
+    return solution, directory
+
+
+def _say(text: str) -> None:
+    print(f"abut: {text}", file=sys.stderr, flush=True)
+
+
+def _left(steps: int, directory: Path) -> str:
+    """What a run that was stopped leaves behind."""
+    if not steps:
+        return "stopped before the first step converged: nothing is written"
+    some = "step 1 is" if steps == 1 else f"steps 1 to {steps} are"
+    return f"stopped: {some} in {directory}; go on with abut run --restart"
+
+
+def _failure(solution: Solution, directory: Path) -> str:
+    """Where a run did not converge, and what to try."""
+    from abut.analysis.remedies import remedies, unsettled
+
+    step = solution.steps[-1]
+    places = [str(place) for place in unsettled(step)]
+    where = "; ".join(places) or f"equilibrium is missed by {step.iterations[-1].residual:.1e} of the forces"
+    tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
+    return f"step {step.number} did not converge: {where}. The last state is in {directory}. Try{tries}"
 
 
 def _print_result(solution: Solution, directory: Path) -> None:

@@ -7,10 +7,12 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.errors import InputError
 from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 
 CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge
+FLAT = 1e-9  # area element at a facet's node over the largest at its nodes, from which down the normal is lost
 
 _CORNER_XI = {
     1: np.array([[-1.0], [1.0]]),
@@ -65,7 +67,8 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded; theory (S1).
 
     At each node the area-weighted normals of the surface's own facets are averaged, leaving out facets that meet
-    this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges.
+    this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges. Raises InputError for
+    a facet without a normal at one of its nodes.
     """
     own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
     for kind, facets in by_kind(surface):
@@ -75,7 +78,15 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     facet, local = np.nonzero(valid)
     node = surface.nodes[facet, local]
     vector = own[facet, local]
-    unit = vector / np.linalg.norm(vector, axis=1, keepdims=True)
+    length = np.linalg.norm(vector, axis=1, keepdims=True)
+    flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(own, axis=2).max(axis=1)[facet])
+    if len(flat):
+        raise InputError(
+            f"surface '{surface.name}': facet {facet[flat[0]]} has no normal at its point "
+            f"{surface.points[node[flat[0]]].tolist()}: points of it coincide or lie on a line; give the cell "
+            "distinct points (a prism instead of a collapsed hexahedron)"
+        )
+    unit = vector / length
     total = np.zeros_like(unit)
     order = np.argsort(node, kind="stable")
     counts = np.bincount(node)

@@ -74,7 +74,8 @@ def _foot(
         miss = np.einsum("pn,pnd->pd", shape, x) - points
         tangent = np.einsum("pna,pnd->pda", derivative, x)
         normal = np.einsum("pda,pdb->pab", tangent, tangent)
-        step = np.linalg.solve(normal, np.einsum("pda,pd->pa", tangent, miss)[..., None])[..., 0]
+        # Far from a bent facet its map may be singular; a step along what is left of it does no harm there.
+        step = np.einsum("pab,pb->pa", np.linalg.pinv(normal, hermitian=True), np.einsum("pda,pd->pa", tangent, miss))
         xi = np.clip(xi - step, -3.0, 3.0)
     if triangle:
         outside = np.max(np.column_stack([-xi, xi.sum(axis=1) - 1.0]), axis=1)

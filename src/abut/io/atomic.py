@@ -39,3 +39,23 @@ def make_directory(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot create the output directory {path}: {error.strerror}; choose another") from None
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove temporary files of runs that were killed; those of processes still alive stay."""
+    for path in folder.glob(".*.tmp*"):
+        process = path.name.rpartition(".tmp")[0].rpartition(".")[2]
+        if process.isdigit() and not _alive(int(process)):
+            path.unlink(missing_ok=True)
+
+
+def _alive(process: int) -> bool:
+    if process == os.getpid() or os.name != "posix":  # elsewhere asking is not free of side effects
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True

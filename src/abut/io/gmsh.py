@@ -180,7 +180,7 @@ def _entities(source: _Source) -> dict[tuple[int, int], list[int]]:
                 try:
                     tag, n = int(parts[0]), int(parts[skip])
                     physical = np.array([int(p) for p in parts[skip + 1 : skip + 1 + n]], dtype=np.int64)
-                except (IndexError, ValueError):
+                except (IndexError, ValueError, OverflowError):
                     source.fail("cannot read an entity")
             result[dim, tag] = [abs(int(p)) for p in physical]
     return result
@@ -274,10 +274,9 @@ def _elements_2(source: _Source) -> list[tuple[int, list[tuple[int, int]], NDArr
         try:
             parts = [int(p) for p in source.line().split()]
             code, tags = parts[1], parts[2]
-            nodes = _type(source, code)[1]
-            if len(parts) != 3 + tags + nodes:
-                raise ValueError
         except (ValueError, IndexError):
+            source.fail(f"cannot read element {done + 1}")
+        if tags < 0 or len(parts) != 3 + tags + _type(source, code)[1] or max(map(abs, parts)) >= 2**62:
             source.fail(f"cannot read element {done + 1}")
         rows[code, parts[3] if tags else 0].append(parts[3 + tags :])
         done += 1

@@ -16,6 +16,7 @@ from abut.state import ContactResult, Step
 
 NOT_COVERED, OPEN, CLOSED = 0, 1, 2
 CONTACTOR, TARGET = 0, 1
+TOUCHING = 1e-9  # pressure over the largest from which on a facet is shown as closed: less is rounding
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,10 @@ def _side(
     """The facets of one side by type: kind, points, arrays over points, arrays over cells."""
     surface: Surface = contact.contactor if side == CONTACTOR else contact.target
     pressure = contact.pressure if side == CONTACTOR else contact.target_pressure
-    closed = np.nan_to_num(pressure).max(axis=1) > 0.0
+    closed = np.nan_to_num(pressure).max(axis=1) > TOUCHING * np.nan_to_num(contact.pressure).max(initial=0.0)
+    unsettled = np.zeros(len(surface), dtype=np.int32)
+    if side == CONTACTOR:
+        unsettled[step.cycling.get(contact.name, [])] = 1
     covered = contact.covered if side == CONTACTOR else np.ones(len(surface), dtype=bool)
     status = np.where(covered, np.where(closed, CLOSED, OPEN), NOT_COVERED).astype(np.int32)
     result = []
@@ -91,6 +95,8 @@ def _side(
             "gap": contact.gap[own, : kind.nodes].ravel() if side == CONTACTOR else np.full(len(nodes), np.nan),
             "displacement": vectors(step.displacement[nodes]),
         }
-        cells = {"status": status[own], "side": np.full(len(own), side, dtype=np.int32)}
+        cells = {
+            "status": status[own], "side": np.full(len(own), side, dtype=np.int32), "unsettled": unsettled[own],
+        }  # fmt: skip
         result.append((kind.name, surface.points[nodes], values, cells))
     return result

@@ -7,11 +7,13 @@ import io
 import json
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from abut.analysis.remedies import remedies, unsettled
 from abut.io.atomic import make_directory, write_text
 from abut.io.grids import Grid, contact_grid, field_grid
 from abut.io.versions import versions
@@ -20,28 +22,41 @@ from abut.report import Origin, write_report
 from abut.state import Solution, Step
 
 
-def write(solution: Solution, directory: str | Path, origin: Origin | None = None) -> Path:
+def write(
+    solution: Solution, directory: str | Path, origin: Origin | None = None, steps: Sequence[Step] | None = None
+) -> Path:
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
     report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
-    each contact. origin: what the report says of the job (its name, its text, what theory expects).
+    each contact. origin: what the report says of the job (its name, its text, what theory expects); steps: those whose
+    VTU files are still to be written, all of them by default.
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
     make_directory(folder)
-    for step in solution.steps:
+    write_steps(folder, solution, solution.steps if steps is None else steps)
+    write_index(folder, solution)
+    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
+    return folder
+
+
+def write_steps(folder: Path, solution: Solution, steps: Sequence[Step]) -> None:
+    """The VTU files of some steps."""
+    for step in steps:
         _write_grid(folder / f"fields_{step.number:04d}.vtu", field_grid(solution.model, step))
         for contact in step.contacts:
             stem = f"contact_{file_name(contact.name)}"
             _write_grid(folder / f"{stem}_{step.number:04d}.vtu", contact_grid(step, contact))
+
+
+def write_index(folder: Path, solution: Solution) -> None:
+    """The files that tell of all steps."""
     _write_collection(folder, "fields", solution)
     for contact in solution.contacts:
         _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
-    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
-    return folder
 
 
 def file_name(name: str) -> str:
@@ -53,7 +68,7 @@ def summary(solution: Solution) -> dict[str, Any]:
     """What summary.json holds: plain numbers, lists and text; None where a number does not exist."""
     return {
         "schema": 1,
-        "status": "converged" if solution.converged else "not converged",
+        "status": status(solution),
         "dofs": solution.dofs,
         "solver": solution.solver,
         "steps": [_step_summary(step) for step in solution.steps],
@@ -71,10 +86,25 @@ def summary(solution: Solution) -> dict[str, Any]:
                 for check in solution.certificate
             ],
         },
+        "remedies": [str(remedy) for remedy in remedies(solution)],
         "notes": list(solution.notes),
+        "ignored": list(solution.ignored),
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
         "versions": versions(),
     }
+
+
+def status(solution: Solution) -> str:
+    """ "converged", "not converged", or "incomplete" where steps are still to come."""
+    if not solution.converged:
+        return "not converged"
+    return "converged" if solution.complete else "incomplete"
+
+
+def step_files(step: Step) -> list[str]:
+    """Names of the files that hold one step."""
+    stems = ["fields", *(f"contact_{file_name(contact.name)}" for contact in step.contacts)]
+    return [f"{stem}_{step.number:04d}.vtu" for stem in stems]
 
 
 def _step_summary(step: Step) -> dict[str, Any]:
@@ -110,6 +140,15 @@ def _step_summary(step: Step) -> dict[str, Any]:
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
+        "unsettled": [
+            {
+                "contact": place.contact,
+                "facets": place.facets.tolist(),
+                "nodes": place.nodes.tolist(),
+                "coordinates": place.coordinates.tolist(),
+            }
+            for place in unsettled(step)
+        ],
     }
 
 

@@ -16,7 +16,10 @@ from abut.errors import InputError
 from abut.io.atomic import write_file
 from abut.io.raw import RawMesh
 
-VTK_KIND = {cell.vtk: cell.name for cell in CELLS.values()}
+VERTEX = 1  # of VTK: the points of node sets
+VTK_KIND = {VERTEX: "point"} | {cell.vtk: cell.name for cell in CELLS.values()}
+VTK_CODE = {kind: code for code, kind in VTK_KIND.items()}
+NODES = {"point": 1} | {cell.name: cell.nodes for cell in CELLS.values()}
 
 
 def write_vtu(
@@ -27,7 +30,8 @@ def write_vtu(
     cell_data: Mapping[str, NDArray[Any]] | None = None,
     names: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Write points (n, 2 or 3), cells by type (kind, connectivity) and data; quadratic cells stay quadratic.
+    """Write points (n, 2 or 3), cells by type (kind, or "point" for vertices, and connectivity) and data; quadratic cells
+    stay quadratic.
 
     point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks; names: lists of strings
     for the whole file (VTK's field data).
@@ -50,7 +54,7 @@ def write_vtu(
         numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), deep=True),
         numpy_to_vtkIdTypeArray(np.concatenate([n.ravel() for _, n in blocks]).astype(np.int64), deep=True),
     )
-    kinds = np.concatenate([np.full(len(nodes), CELLS[kind].vtk, np.uint8) for kind, nodes in blocks])
+    kinds = np.concatenate([np.full(len(nodes), VTK_CODE[kind], np.uint8) for kind, nodes in blocks])
     grid.SetCells(numpy_to_vtk(kinds, deep=True), cells)
     for data, target in ((point_data, grid.GetPointData()), (cell_data or {}, grid.GetCellData())):
         for name, values in data.items():
@@ -81,7 +85,7 @@ def read_vtu(path: Path) -> RawMesh:
 
     An integer cell array ``region`` numbers the groups, and the string array ``region_names`` in the field data gives
     the name of region 0, 1, ...; a region without a name there is called ``region_<number>``. Regions of the highest
-    cells are bodies, those of facet cells surfaces. A cell in several groups stands in the file once for each. Without
+    cells are bodies, those of facet cells surfaces, those of vertices node sets. A cell in several groups stands in the file once for each. Without
     ``region`` there are no surfaces, and every connected set of cells is a body ``body_1``, ``body_2``, ...
 
     Raises InputError for files that VTK cannot read or that hold cells abut does not know.
@@ -107,7 +111,7 @@ def read_vtu(path: Path) -> RawMesh:
     unknown = sorted(set(kinds.tolist()) - set(VTK_KIND))
     if unknown:
         raise InputError(f"{path}: VTK cell types {unknown} are not supported; supported: {', '.join(CELLS)}")
-    want = np.array([CELLS[VTK_KIND[int(k)]].nodes for k in kinds])
+    want = np.array([NODES[VTK_KIND[int(k)]] for k in kinds])
     bad = np.flatnonzero((np.diff(offsets) != want) | (offsets[:-1] < 0) | (offsets[1:] > len(nodes)))
     if len(bad):
         raise InputError(f"{path}: cell {bad[0]} has a wrong number of points for its type; write it again")
@@ -116,7 +120,7 @@ def read_vtu(path: Path) -> RawMesh:
     for code in np.unique(kinds):
         own = np.flatnonzero(kinds == code)
         kind = VTK_KIND[int(code)]
-        rows = nodes[offsets[own][:, None] + np.arange(CELLS[kind].nodes)].astype(np.int64)
+        rows = nodes[offsets[own][:, None] + np.arange(NODES[kind])].astype(np.int64)
         if value is None:
             groups.setdefault("", {}).setdefault(kind, []).append(rows)
             continue
@@ -138,26 +142,37 @@ def _check_counts(path: Path, data: bytes) -> None:
                 f"{path}: not a readable VTU file: {key.decode()} = {value.decode('utf-8', 'replace').strip()!r} cannot be "
                 "right; write it again"
             )
+    order = ">" if b"BigEndian" in head else "<"
+    word = np.dtype(order + ("u8" if b"UInt64" in head.partition(b"header_type")[2][:20] else "u4"))
+    count = 3 if b"compressor" in head else 1  # blocks, size of a block, size of the last; or the size alone
+    size = count * word.itemsize
+    length = 4 * -(-size // 3)  # in base64
+    for inline in re.finditer(rb"<(?:Data)?Array\b[^>]*\bbinary\b[^>]*>\s*([^<\s]*)", head):
+        _check_sizes(path, _decoded(inline[1][:length])[:size], word, count, limit)
     begin = data.find(b"_", start)
     if start < 0 or begin < 0:
         return
-    order = ">" if b"BigEndian" in head else "<"
-    word = np.dtype(order + ("u8" if b'header_type="UInt64"' in head else "u4"))
-    count = 3 if b"compressor=" in head else 1  # blocks, size of a block, size of the last; or the size alone
-    encoded = b'encoding="base64"' in data[start:begin]
+    encoded = b"base64" in data[start:begin]
     for offset in re.findall(rb'offset\s*=\s*"\s*(\d+)', head):
-        at, size = begin + 1 + int(offset), count * word.itemsize
-        own = data[at : at + (4 * -(-size // 3) if encoded else size)]
-        try:
-            words = np.frombuffer((base64.b64decode(own) if encoded else own)[:size], word)
-        except ValueError:
-            words = np.empty(0, word)
-        if len(words) and words[0] == 0:
-            continue  # an empty array
-        if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
-            raise InputError(
-                f"{path}: not a readable VTU file: the data at offset {int(offset)} is damaged; write it again"
-            )
+        at = begin + 1 + int(offset)
+        own = _decoded(data[at : at + length]) if encoded else data[at : at + size]
+        _check_sizes(path, own[:size], word, count, limit)
+
+
+def _decoded(text: bytes) -> bytes:
+    try:
+        return base64.b64decode(text)
+    except ValueError:
+        return b""
+
+
+def _check_sizes(path: Path, own: bytes, word: Any, count: int, limit: int) -> None:
+    """Refuse the sizes ``own`` that stand before the data of an array where they cannot be right."""
+    words = np.frombuffer(own[: len(own) // word.itemsize * word.itemsize], word)
+    if len(words) and words[0] == 0:
+        return  # an empty array
+    if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:
+        raise InputError(f"{path}: not a readable VTU file: the sizes of an array are damaged; write it again")
 
 
 def _load(path: Path) -> Any:
@@ -186,7 +201,8 @@ def _regions(path: Path, grid: Any) -> tuple[NDArray[np.int64] | None, list[str]
     texts = grid.GetFieldData().GetAbstractArray("region_names")
     if texts is not None and not texts.IsA("vtkStringArray"):
         raise InputError(f"{path}: the field data 'region_names' must be strings; write it as a string array")
-    names = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())] if texts is not None else []
+    found = [texts.GetValue(i) for i in range(texts.GetNumberOfValues())] if texts is not None else []
+    names = [name.decode("utf-8", "replace") if isinstance(name, bytes) else name for name in found]
     region = grid.GetCellData().GetAbstractArray("region")
     if region is None:
         return None, names

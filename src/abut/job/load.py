@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -51,9 +51,13 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 }  # fmt: skip
 
 
+DECK = ".inp"
+
+
 @dataclass(frozen=True)
 class Job:
-    """A loaded job: the model, where its results go, the file and its text; what was found and chosen, in words."""
+    """A loaded job: the model, where its results go, the file and its text; in words what was found and chosen, or what a
+    deck asked for that is done otherwise (notes), and what of it was left out because the user said so (ignored)."""
 
     model: Model
     directory: Path
@@ -61,13 +65,19 @@ class Job:
     text: str
     notes: tuple[str, ...] = ()
     entries: tuple[int, ...] = ()  # which [[contacts]] each contact of the model comes from
+    ignored: tuple[str, ...] = ()
 
 
-def load_job(path: str | Path, refine: int = 0) -> Job:
-    """Read a job file. Raises InputError that lists every problem with its place.
+def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) -> Job:
+    """Read a job file, or an Abaqus or CalculiX deck (.inp). Raises InputError that lists every problem with its place.
 
-    refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file)."""
+    refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file).
+    ignore: cards and parameters of a deck to leave out although they change the result."""
     path = Path(path)
+    if path.suffix.lower() == DECK:
+        return _deck(path, refine, ignore)
+    if ignore:
+        raise InputError(f"{path}: --ignore is for decks ({DECK}); a job file has no cards")
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -76,8 +86,10 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
         raise InputError(f"{path}: not a text file in UTF-8; is it a job file?") from None
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError is one, and so is a number of too many digits
         raise InputError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: not valid TOML: lists or tables nested too deeply") from None
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
@@ -92,13 +104,22 @@ def load_job(path: str | Path, refine: int = 0) -> Job:
     return Job(model, path.parent / file.output.directory, path, text, resolved.notes, resolved.entries)
 
 
+def _deck(path: Path, refine: int, ignore: Collection[str]) -> Job:
+    from abut.job.deck import load_deck
+
+    if refine:
+        raise InputError(f"{path}: only meshes that abut makes can be refined; leave --levels out")
+    deck = load_deck(path, ignore)
+    return Job(deck.model, path.parent / f"{path.stem}-results", path, "", deck.notes, ignored=deck.ignored)
+
+
 def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     materials = {name: _material(name, table) for name, table in file.materials.items()}
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
-        solids.append(Solid(s.body, materials[s.material], s.temperature))
+        solids.append(Solid(s.body, materials[s.material], s.temperature, s.integration))
     resolved = resolve_contacts(file.contacts, _mesh(file.mesh, folder, refine), solids)
     model = Model(
         mesh=resolved.mesh,

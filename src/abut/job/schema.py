@@ -55,6 +55,7 @@ class SolidTable(Table):
     body: str
     material: str
     temperature: Number = 0.0
+    integration: Literal["full", "reduced", "b-bar"] = "full"
 
 
 class SupportTable(Table):

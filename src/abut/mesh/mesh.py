@@ -43,7 +43,7 @@ class Mesh:
 
     @staticmethod
     def read(path: str | Path) -> Mesh:
-        """Read a Gmsh ``.msh`` (2.2 or 4.1) or ``.vtu`` file and check it.
+        """Read a Gmsh ``.msh`` (2.2 or 4.1), ``.vtu``, or Abaqus or CalculiX ``.inp`` file and check it.
 
         Raises InputError for a file that is missing, truncated, of another kind, or whose mesh is unsound.
         """

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
@@ -81,6 +83,24 @@ def stiffness_rule(kind: str) -> Rule:
         "wedge6": lambda: _wedge(3, 2),
         "wedge15": lambda: _wedge(6, 3),
     }[kind]()
+
+
+# Types of second order whose smaller rule leaves no motion without energy that neighbours could share (theory (E2)).
+REDUCED: dict[str, Callable[[], Rule]] = {
+    "tri6": lambda: _triangle(3),
+    "quad8": lambda: _cube(2, 2),
+    "tet10": lambda: _tetrahedron(4),
+    "hex20": lambda: _cube(2, 3),
+    "wedge15": lambda: _wedge(3, 3),
+}
+
+
+BBAR = ("quad4", "hex8")  # types whose constant part of the dilatation is worth keeping alone
+
+
+def cell_rule(kind: str, integration: str) -> Rule:
+    """The rule of the stiffness of a cell: smaller for "reduced", else ``stiffness_rule``."""
+    return REDUCED[kind]() if integration == "reduced" else stiffness_rule(kind)
 
 
 def product_rule(kind: str) -> Rule:

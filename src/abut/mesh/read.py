@@ -10,7 +10,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from abut.cells import CELLS
+from abut.checks import LARGEST
 from abut.errors import InputError
+from abut.io.abaqus import read_abaqus
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
@@ -18,7 +20,7 @@ from abut.mesh.check import check_mesh, inside
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
 from abut.mesh.mesh import CellBlock, Mesh
 
-READERS = {".msh": read_gmsh, ".vtu": read_vtu}
+READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 
 
 def read_mesh(path: Path) -> Mesh:
@@ -59,6 +61,11 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
         bad = int(used[~np.isfinite(points).all(axis=1)][0])
         raise InputError(
             f"{where}: point {bad} (counted from 0) has a coordinate that is no number; write the mesh again"
+        )
+    if np.abs(points).max() > LARGEST:
+        bad = int(used[np.argmax(np.abs(points).max(axis=1))])
+        raise InputError(
+            f"{where}: point {bad} (counted from 0) has a coordinate beyond {LARGEST:g}; write the mesh again"
         )
     if top == 2:
         if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -15,21 +16,19 @@ from abut.mesh.mesh import Mesh
 
 
 def write_mesh(path: Path, mesh: Mesh) -> None:
-    """Write bodies and surfaces as cells with the arrays ``region`` and ``region_names`` (``abut.io.vtu.read_vtu``).
+    """Write bodies, surfaces and node sets (as vertices) as cells with the arrays ``region`` and ``region_names``
+    (``abut.io.vtu.read_vtu``).
 
-    Node sets have no place in that format: raises InputError where the mesh has some, rather than lose them, where a
-    body and a surface share a name, and where the file cannot be written.
+    Raises InputError where two of them share a name, which that format cannot hold, and where the file cannot be written.
     """
-    if mesh.node_sets:
-        raise InputError(
-            f"cannot write {path}: VTU files hold no node sets; take {', '.join(mesh.node_sets)} out first"
-        )
-    both = sorted(set(mesh.bodies) & set(mesh.surfaces))
+    names = [*mesh.bodies, *mesh.surfaces, *mesh.node_sets]
+    both = [name for name, count in Counter(names).items() if count > 1]
     if both:
-        raise InputError(f"cannot write {path}: a body and a surface are both named '{both[0]}'; rename one")
+        raise InputError(
+            f"cannot write {path}: two of a body, a surface and a node set are all named '{both[0]}'; rename one"
+        )
     parts: list[tuple[str, NDArray[Any]]] = []
     region: list[NDArray[np.int32]] = []
-    names = [*mesh.bodies, *mesh.surfaces]
     for name in mesh.bodies:
         parts += [(kind, nodes) for kind, nodes, _ in mesh.cells_of(name)]
         region += [np.full(len(nodes), names.index(name), np.int32) for _, nodes, _ in mesh.cells_of(name)]
@@ -40,4 +39,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
             own = surface.nodes[surface.kinds == code, : kind.nodes]
             parts.append((kind.name, own))
             region.append(np.full(len(own), names.index(name), np.int32))
+    for name, nodes in mesh.node_sets.items():
+        parts.append(("point", nodes[:, None]))
+        region.append(np.full(len(nodes), names.index(name), np.int32))
     write_vtu(path, mesh.points, parts, {}, {"region": np.concatenate(region)}, {"region_names": names})

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.fields import Field, evaluate
-from abut.mesh.integrals import body_chunks, chunks, gradients
+from abut.mesh.integrals import body_chunks, gradients, group_chunks, groups
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import field_rule, stiffness_rule, stress_rule
+from abut.mesh.quadrature import cell_rule, field_rule, stiffness_rule, stress_rule
 from abut.mesh.surface import around
 from abut.solids.materials import LinearElastic
+
+FULL: Mapping[str, str] = {}  # integration by body: "full" for bodies that are not named
 
 
 def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:
@@ -36,9 +38,15 @@ def _by_cell(mesh: Mesh, values: Mapping[str, tuple[float, ...]]) -> NDArray[np.
     return table
 
 
-def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | None = None) -> Any:
+def stiffness(
+    mesh: Mesh,
+    materials: Mapping[str, LinearElastic],
+    plane: str | None = None,
+    integration: Mapping[str, str] = FULL,
+) -> Any:
     """Stiffness matrix of all bodies, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; force per
-    length (2D: per unit thickness; axisymmetric: all round)."""
+    length (2D: per unit thickness; axisymmetric: all round). ``integration`` by body as in ``Solid``,
+    theory (E1), (E2), (E3)."""
     points = np.ascontiguousarray(mesh.points)
     dim = points.shape[1]
     counts = np.concatenate([np.full(len(b.nodes), b.nodes.shape[1]) for b in mesh.blocks])
@@ -47,16 +55,13 @@ def stiffness(mesh: Mesh, materials: Mapping[str, LinearElastic], plane: str | N
     node_start, node_columns = node_pattern(len(points), start, flat)
     constants = _by_cell(mesh, {body: lame(material, plane) for body, material in materials.items()})
     values = np.zeros(len(node_columns) * dim * dim)
-    first = 0
-    for block in mesh.blocks:
-        xi, weights = stiffness_rule(block.kind)
-        shapes, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
-        last = first + len(block.nodes)
+    for kind, nodes, cells, rule in groups(mesh, integration):
+        xi, weights = cell_rule(kind, rule)
+        shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         assemble_stiffness(
-            points, np.ascontiguousarray(block.nodes, dtype=np.int32), shapes, derivatives, weights,
-            np.ascontiguousarray(constants[first:last]), mesh.axisymmetric, node_start, node_columns, values,
+            points, np.ascontiguousarray(nodes, dtype=np.int32), shapes, derivatives, weights,
+            np.ascontiguousarray(constants[cells]), mesh.axisymmetric, rule == "b-bar", node_start, node_columns, values,
         )  # fmt: skip
-        first = last
     indptr, indices = block_pattern(node_start, node_columns, dim)
     if len(values) < 2**31:
         indptr = indptr.astype(np.int32)
@@ -71,10 +76,11 @@ def thermal_load(
     temperatures: Mapping[str, float],
     plane: str | None = None,
     nodal: NDArray[np.float64] | None = None,
+    integration: Mapping[str, str] = FULL,
 ) -> NDArray[np.float64]:
     """int B^T D eps_thermal, theory (F10), (dim n_points,), for a uniform temperature change of each body and another,
     ``nodal`` (n_points,), that the shape functions interpolate. Integrated like the stiffness, so that a temperature whose
-    strain the elements can follow leaves no stress."""
+    strain the elements can follow leaves no stress; "b-bar" takes the mean over each cell, as for the dilatation."""
     load = np.zeros(mesh.points.shape)
     nodal = np.zeros(len(mesh.points)) if nodal is None else nodal
     table = _by_cell(
@@ -82,8 +88,8 @@ def thermal_load(
     )
     if not (table[:, 0].any() and (table[:, 1].any() or nodal.any())):
         return load.ravel()
-    for kind, nodes, cells in chunks(mesh):
-        xi, weights = stiffness_rule(kind)
+    for kind, nodes, cells, rule in group_chunks(mesh, integration):
+        xi, weights = cell_rule(kind, rule)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         slopes, det = gradients(mesh.points, nodes, derivatives)
         at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
@@ -91,7 +97,13 @@ def thermal_load(
             slopes[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
         det = det * around(at, mesh.axisymmetric)
         change = table[cells, 1][:, None] + nodal[nodes] @ shapes.T
-        np.add.at(load, nodes, np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], change, det, weights, slopes))
+        if rule == "b-bar":
+            change = ((change * det) @ weights / (det @ weights))[:, None]
+        np.add.at(
+            load,
+            nodes,
+            np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], np.broadcast_to(change, det.shape), det, weights, slopes),
+        )
     return load.ravel()
 
 
@@ -128,10 +140,12 @@ def nodal_stress(
     displacement: NDArray[np.float64],
     plane: str | None = None,
     nodal: NDArray[np.float64] | None = None,
+    integration: Mapping[str, str] = FULL,
 ) -> NDArray[np.float64]:
     """Stress xx yy zz xy yz zx at the points, (n_points, 6): taken at the reduced integration points, carried linearly
     to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average).
-    Axisymmetric: xx radial, yy axial, zz hoop. ``temperatures`` of bodies and ``nodal`` ones as in ``thermal_load``."""
+    Axisymmetric: xx radial, yy axial, zz hoop. ``temperatures`` of bodies and ``nodal`` ones as in ``thermal_load``.
+    Integration "b-bar": with the mean dilatation of (E3)."""
     dim = mesh.points.shape[1]
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     constants = _by_cell(
@@ -142,10 +156,10 @@ def nodal_stress(
         },
     )
     nodal = np.zeros(len(mesh.points)) if nodal is None else nodal
-    for kind, nodes, cells in chunks(mesh):
-        xi, _ = stress_rule(kind)
+    for kind, nodes, cells, rule in group_chunks(mesh, integration):
+        xi, weights = stress_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        slopes, _ = gradients(mesh.points, nodes, derivatives)
+        slopes, det = gradients(mesh.points, nodes, derivatives)
         slope = np.matmul(displacement[nodes].transpose(0, 2, 1)[:, None], slopes)
         strain = np.zeros((*slope.shape[:2], 3, 3))
         strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
@@ -153,10 +167,15 @@ def nodal_stress(
         thermal = expansion * (uniform + nodal[nodes] @ shapes.T)
         if plane == "axisymmetric":
             radius = mesh.points[nodes][..., 0] @ shapes.T
+            det = det * radius
             strain[..., 2, 2] = displacement[nodes][..., 0] @ shapes.T / radius
         if plane == "stress":
             inplane = strain[..., 0, 0] + strain[..., 1, 1] - 2.0 * thermal
             strain[..., 2, 2] = thermal - poisson / (1.0 - poisson) * inplane
+        if rule == "b-bar":  # the points are those of the stiffness
+            dilatation = np.trace(strain, axis1=2, axis2=3)
+            mean = (dilatation * det * weights).sum(axis=1) / (det * weights).sum(axis=1)
+            strain = strain + ((mean[:, None] - dilatation) / 3.0)[..., None, None] * np.eye(3)
         strain = strain - thermal[..., None, None] * np.eye(3)
         trace = np.trace(strain, axis1=2, axis2=3)
         stress = 2.0 * mu[..., None, None] * strain + (lambda_ * trace)[..., None, None] * np.eye(3)

@@ -27,6 +27,7 @@ from abut.solvers.newton import (
 from abut.state import Iteration
 
 UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
+NO_PRESSURE = 1e-12  # over Young's modulus: a contact that presses less does not press at all
 TOLERANCE = 1e-8  # of the relative residuals
 
 
@@ -44,6 +45,9 @@ def finish_smooth(
     if not any(pair.smooth for pair in system.pairs):
         return Outcome(state, tuple(done), True, none, partial(active_laws, weights=stage.weights))
     reference = largest_pressure(state, stage)
+    if reference <= NO_PRESSURE * max(pair.stiffness * pair.size for pair in system.pairs):
+        # The function is smoothed over a share of the largest pressure: without one it is the complementarity law.
+        return Outcome(state, tuple(done), True, none, partial(active_laws, weights=stage.weights))
     smooth = partial(_smooth_laws, weights=stage.weights, reference=reference)
     violation = np.zeros(len(state.active))
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)

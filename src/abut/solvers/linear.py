@@ -23,6 +23,15 @@ from abut.solvers.multigrid import hierarchy
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
 
+SECONDS = {"direct": {2: 1.0, 3: 15.0}, "amg": {2: 2.0, 3: 3.0}}  # to set up 100 000 displacements on one core, by dim
+GROWTH = {"direct": {2: 1.5, 3: 1.7}, "amg": {2: 1.0, 3: 1.0}}  # powers of the size that fit 10 000 to 150 000
+
+
+def expected_seconds(linear: str, n_free: int, dim: int) -> float:
+    """How long ``prepare`` will take, roughly: measured once on one core and scaled by theory with the size."""
+    return float(SECONDS[linear][dim] * (n_free / 1e5) ** GROWTH[linear][dim])
+
+
 @dataclass(frozen=True)
 class Prepared:
     """system: with its linear solver; finish: what a step's outcome still needs, at its histories' weights; name: for the

@@ -75,7 +75,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     normal = _plane_normal(model, contact)
     bodies = Model(
         model.mesh,
-        [Solid(body, LinearElastic(1.0, POISSON)) for body in model.mesh.bodies],
+        [Solid(s.body, LinearElastic(1.0, POISSON), integration=s.integration) for s in model.solids],
         contacts=[contact],
         plane=model.plane,
     )
@@ -89,7 +89,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     held = supports(pinned)
     own = pair(pinned, contact, held)
     load = _load(model.mesh, own.contactor, own.target, stress)
-    full = stiffness(pinned.mesh, {solid.body: solid.material for solid in pinned.solids}, model.plane)
+    full = stiffness(pinned.mesh, {s.body: s.material for s in pinned.solids}, model.plane, model.integration)
     displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
     values = own.space.transfer @ pressure
     nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]

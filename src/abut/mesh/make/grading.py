@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.errors import InputError
 
+MOST = 100_000  # cells along a line
+
 
 def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[np.float64]:
     """Grid lines from 0 to ``total``: n equal ones up to ``fine``, then growing by ``growth``."""
-    if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or n < 1:
-        raise InputError(f"cells: expected a whole number >= 1, got {n!r}")
+    if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or not 1 <= n <= MOST:
+        raise InputError(f"cells: expected a whole number from 1 to {MOST}, got {n!r}")
     if checks.finite(growth, "growth") <= 1.0:  # the cells would never reach the other side
         raise InputError(f"growth: expected a number > 1, got {growth!r}")
     if not 0.0 < fine < total:
@@ -23,15 +25,25 @@ def graded(fine: float, n: int, total: float, growth: float = 1.25) -> NDArray[n
     lines = list(np.linspace(0.0, fine, n + 1))
     rest = total - fine
     count = 1
-    while step * growth * (growth**count - 1) / (growth - 1) < rest:
+    while step * _reach(growth, count) < rest:
         count += 1
+        if count > MOST:
+            raise InputError(
+                f"growth: {growth!r} makes more than {MOST} cells; choose a larger growth, or a larger fine"
+            )
     low, high = 1.0 + 1e-12, 2.0 * growth
     for _ in range(80):  # the growth with which ``count`` cells end at total
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if step * middle * (middle**count - 1) / (middle - 1) < rest else (low, middle)
+        low, high = (middle, high) if step * _reach(middle, count) < rest else (low, middle)
     lines += list(fine + np.cumsum(step * low ** np.arange(1, count + 1)))
     lines[-1] = total
     return np.array(lines)
+
+
+def _reach(growth: float, count: int) -> float:
+    """growth + growth^2 + ... + growth^count; infinite where that is too large a number."""
+    with np.errstate(over="ignore"):
+        return float(growth * (np.float64(growth) ** count - 1.0) / (growth - 1.0))
 
 
 def graded_axis(

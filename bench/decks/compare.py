@@ -1,0 +1,158 @@
+"""abut and CalculiX on the same deck, node by node.
+
+python bench/decks/compare.py [NAME ...] [--folder FOLDER] prints a line for each contact deck of CalculiX's own tests
+(Debian: apt install calculix-ccx calculix-ccx-test).
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shlex
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from cards import Card, plain, read
+from frd import Displacements
+
+import abut
+from abut.errors import AbutError, ConvergenceError, InputError
+from abut.io.abaqus import read_deck
+from abut.io.abaqus.courses import ends
+from abut.job.deck import translate
+from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, decks, difference, reference
+
+AGREES = 0.01  # largest difference of displacement over the largest displacement
+# What abut may be told to ignore here, because the reference run leaves it out too.
+IGNORABLE = (
+    "NLGEOM",
+    "PERTURBATION",
+    "FRICTION",
+    "CHANGE FRICTION",
+    "MODEL CHANGE",
+    "CHANGE SURFACE BEHAVIOR",
+    *PROCEDURES,
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One deck. status: "agrees", "differs", "refused" (by abut), "no reference" (CalculiX gives none), "failed" (abut
+    does not solve it). difference: largest, over the largest displacement; detail: why, or what was left out."""
+
+    name: str
+    cells: str
+    status: str
+    ignored: tuple[str, ...] = ()
+    largest: float = 0.0
+    difference: float = float("nan")
+    kind: str = ""
+    detail: str = ""
+
+
+def cells(cards: Sequence[Card]) -> str:
+    """Elements of a deck in words: "32 C3D20R, 2 C3D8"."""
+    count: Counter[str] = Counter()
+    for card in cards:
+        if card.name == "ELEMENT":
+            wanted = _numbers(card.options.get("TYPE", "").upper())
+            numbers = sum(len([x for x in line.split(",") if x.strip()]) for line in card.data)
+            count[card.options.get("TYPE", "").upper()] += numbers // wanted
+    return ", ".join(f"{n} {kind}" for kind, n in count.items())
+
+
+def _numbers(kind: str) -> int:
+    """Element number and nodes."""
+    if kind.startswith(("SPRING", "B31")):
+        return 1 + 2
+    if kind.startswith("B32"):
+        return 1 + 3
+    return 1 + int(re.findall(r"\d+", kind)[-1])
+
+
+def compare(name: str, path: Path, limit: float = 600.0) -> Outcome:
+    """Solve a deck with both."""
+    what = cells(read(path))
+    with plain(path) as text:
+        return _compare(name, text, what, limit)
+
+
+def _compare(name: str, path: Path, what: str, limit: float) -> Outcome:
+    try:
+        steps, ignored = _abut(path)
+    except AbutError as error:
+        reason = str(error).replace(f"{path}:", "line ").replace(str(path), "the deck").strip()
+        refused = isinstance(error, InputError)
+        return Outcome(name, what, "refused" if refused else "failed", detail=reason)
+    best: Outcome | None = None
+    for kind in TYPES:
+        try:
+            found = reference(path, ignored, limit, kind)
+        except NoReference as reason:
+            best = best or Outcome(name, what, "no reference", ignored, _largest(steps), kind=kind, detail=str(reason))
+            continue
+        error = difference(found.steps, steps)
+        status = "agrees" if error <= AGREES else "differs"
+        outcome = Outcome(name, what, status, ignored, _largest(found.steps), error, kind)
+        if best is None or best.status == "no reference" or status == "agrees":
+            best = outcome
+        if status == "agrees":
+            break
+    assert best is not None
+    return best
+
+
+def _abut(path: Path) -> tuple[list[Displacements], tuple[str, ...]]:
+    """Displacements at the end of each step of the deck, and what abut was told to ignore."""
+    ignored: list[str] = []
+    while True:
+        try:
+            deck = read_deck(path, ignored)
+            model = translate(deck).model
+            break
+        except InputError as error:
+            asked = [word.upper() for word in shlex.split(str(error).partition(": --ignore ")[2]) if word != "--ignore"]
+            if not asked or any(name in ignored or name not in IGNORABLE for name in asked):
+                raise
+            ignored += asked
+    solution = abut.solve(model)
+    if not solution.converged:
+        raise ConvergenceError("not converged")
+    at = ends(deck)
+    numbers = np.intersect1d(deck.nodes, np.concatenate([block.nodes.ravel() for block in deck.blocks]))
+    result = []
+    for step in solution.steps:
+        if min(abs(step.factor - time) for time in at) < 1e-9:
+            u = np.zeros((len(step.displacement), 3))
+            u[:, : model.dim] = step.displacement
+            result.append(dict(zip(numbers.tolist(), u)))  # a cut bolt has more points, at the end
+    return result, tuple(ignored)
+
+
+def _largest(steps: Sequence[Displacements]) -> float:
+    return max(float(np.linalg.norm(u)) for step in steps for u in step.values())
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--folder", type=Path, default=EXAMPLES)
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run of CalculiX")
+    arguments = parser.parse_args()
+    found = decks(arguments.folder)
+    for name in arguments.names or found:
+        print(line(compare(name, found[name], arguments.limit)), flush=True)
+
+
+def line(outcome: Outcome) -> str:
+    """An outcome on one line."""
+    numbers = "" if outcome.difference != outcome.difference else f"{outcome.difference:.3%} of {outcome.largest:.4g}"
+    words = [outcome.kind, f"without {', '.join(outcome.ignored)}" if outcome.ignored else "", outcome.detail]
+    return f"{outcome.name:20} {outcome.status:12} {numbers:24} {outcome.cells}; {'; '.join(w for w in words if w)}"
+
+
+if __name__ == "__main__":
+    main()

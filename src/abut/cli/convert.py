@@ -1,0 +1,54 @@
+"""abut convert: a deck to a job file with its mesh, a mesh to another format."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from abut.cli.run import add_ignore
+from abut.errors import InputError
+
+DONE = 0
+
+
+def add_convert(commands: Any) -> None:
+    """Add the command to the parser's ``commands``."""
+    convert = commands.add_parser(
+        "convert",
+        help="a deck to a job file with its mesh, a mesh to VTU",
+        description="Convert an Abaqus or CalculiX deck (.inp) to a job file (.toml) and a mesh beside it (.vtu), or a mesh "
+        "(.inp, .msh, .vtu) to VTU with its names.",
+        epilog="examples: abut convert deck.inp job.toml   abut convert punch.msh punch.vtu",
+    )
+    convert.add_argument("source", type=Path, help="deck or mesh")
+    convert.add_argument("target", type=Path, help="job file (.toml) or mesh (.vtu)")
+    add_ignore(convert)
+    convert.add_argument("--quiet", action="store_true", help="print errors only")
+    convert.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    convert.set_defaults(command=_convert)
+
+
+def _convert(arguments: argparse.Namespace) -> int:
+    from abut.job.convert import write_job
+    from abut.job.load import DECK, load_job
+    from abut.mesh.mesh import Mesh
+    from abut.mesh.write import write_mesh
+
+    source, target = arguments.source, arguments.target
+    written = [target]
+    if target.suffix.lower() == ".vtu":
+        write_mesh(target, Mesh.read(source))
+    elif target.suffix.lower() != ".toml":
+        raise InputError(f"{target}: expected a job file (.toml) or a mesh (.vtu) to write")
+    elif source.suffix.lower() != DECK:
+        raise InputError(f"{source}: only decks ({DECK}) become job files; a mesh becomes a .vtu")
+    else:
+        job = load_job(source, ignore=arguments.ignore)
+        written = write_job(target, job)
+        if not arguments.quiet:
+            for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
+                print(text)
+    if not arguments.quiet:
+        print(f"written: {', '.join(map(str, written))}")
+    return DONE

@@ -1,0 +1,118 @@
+"""Element types of Abaqus and CalculiX: the cell each becomes, its section, how it integrates, the faces S1, S2, ...
+
+Nodes run in the same order as in ``abut.cells`` for all of them (Abaqus Analysis User's Guide, "Solid elements";
+CalculiX CrunchiX manual, section 6.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ElementType:
+    """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
+    ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
+    its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
+    element's own formulation, "" where it is the same."""
+
+    kind: str
+    plane: str | None
+    integration: str
+    instead: str = ""
+
+
+_HOURGLASS = "instead of one point with hourglass control; stiffer in bending"
+
+
+def _types() -> dict[str, ElementType]:
+    result = {
+        "C3D4": ElementType("tet4", None, "full"),
+        "C3D10": ElementType("tet10", None, "reduced"),
+        "C3D6": ElementType("wedge6", None, "full", "full integration (6 points) instead of 2 points"),
+        "C3D15": ElementType("wedge15", None, "reduced"),
+        "C3D8": ElementType("hex8", None, "full"),
+        "C3D8I": ElementType(
+            "hex8", None, "b-bar", "mean dilatation (b-bar) instead of incompatible modes; stiffer in bending"
+        ),
+        "C3D8R": ElementType("hex8", None, "b-bar", f"mean dilatation (b-bar) {_HOURGLASS}"),
+        "C3D20": ElementType("hex20", None, "full"),
+        "C3D20R": ElementType("hex20", None, "reduced"),
+    }
+    for prefix, plane in (("CPE", "strain"), ("CPS", "stress"), ("CAX", "axisymmetric")):
+        stress = plane == "stress"
+        replaced = (
+            ("full", f"full integration {_HOURGLASS}") if stress else ("b-bar", f"mean dilatation (b-bar) {_HOURGLASS}")
+        )
+        result |= {
+            f"{prefix}3": ElementType("tri3", plane, "full"),
+            f"{prefix}6": ElementType("tri6", plane, "reduced"),
+            f"{prefix}4": ElementType("quad4", plane, "full"),
+            f"{prefix}4R": ElementType("quad4", plane, *replaced),
+            f"{prefix}8": ElementType("quad8", plane, "full"),
+            f"{prefix}8R": ElementType("quad8", plane, "reduced"),
+        }
+    return result
+
+
+ELEMENTS = _types()
+
+# Local facet of ``abut.cells`` for S1, S2, ...
+_TETRAHEDRON = (0, 1, 2, 3)
+_WEDGE = (0, 1, 2, 3, 4)
+_HEXAHEDRON = (4, 5, 2, 1, 3, 0)
+FACES: dict[str, tuple[int, ...]] = {
+    "tri3": (0, 1, 2),
+    "tri6": (0, 1, 2),
+    "quad4": (0, 1, 2, 3),
+    "quad8": (0, 1, 2, 3),
+    "tet4": _TETRAHEDRON,
+    "tet10": _TETRAHEDRON,
+    "wedge6": _WEDGE,
+    "wedge15": _WEDGE,
+    "hex8": _HEXAHEDRON,
+    "hex20": _HEXAHEDRON,
+}
+
+_FAMILIES = (  # prefixes of what is refused, longest first
+    ("SPRING", "springs"),
+    ("DASHPOT", "dashpots"),
+    ("DCOUP", "distributing couplings"),
+    ("CONN", "connectors"),
+    ("MASS", "point masses"),
+    ("ROTARYI", "rotary inertia"),
+    ("GAP", "gap elements"),
+    ("COH", "cohesive elements"),
+    ("PIPE", "pipes"),
+    ("ELBOW", "elbows"),
+    ("STRI", "shells"),
+    ("SAX", "shells"),
+    ("MAX", "membranes"),
+    ("SC", "continuum shells"),
+    ("CIN", "infinite elements"),
+    ("DC", "heat transfer elements"),
+    ("AC", "acoustic elements"),
+    ("C3D", "solid elements of this kind (hybrid, modified, thermal)"),
+    ("CP", "plane elements of this kind (hybrid, modified, thermal)"),
+    ("CAX", "axisymmetric elements of this kind (hybrid, twisted, thermal)"),
+    ("M3D", "membranes"),
+    ("R3D", "rigid surfaces"),
+    ("R2D", "rigid surfaces"),
+    ("RAX", "rigid surfaces"),
+    ("T2D", "trusses"),
+    ("T3D", "trusses"),
+    ("S", "shells"),
+    ("B", "beams"),
+    ("F", "fluid elements"),
+    ("D", "network and fluid elements"),
+    ("U", "user elements"),
+    ("M", "membranes"),
+)
+
+
+def refusal(code: str) -> str:
+    """Why an element type is refused, and what to do."""
+    family = next((words for prefix, words in _FAMILIES if code.startswith(prefix)), "elements of this type")
+    return (
+        f"element type {code}: {family} are not supported; model the part with solid, plane or axisymmetric elements "
+        "(C3D4 to C3D20R, CPE, CPS, CAX)"
+    )

@@ -1,0 +1,202 @@
+"""Nodes, elements, sets and surfaces of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from abut.cells import CELLS
+from abut.errors import nearest
+from abut.io.abaqus.cards import Card, Line, as_integer, key
+from abut.io.abaqus.elements import ELEMENTS, FACES, refusal
+from abut.io.abaqus.record import Block, Faces, Numbers
+
+MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
+
+
+@dataclass
+class Names:
+    """Sets by their name in any case; ``spelled`` keeps the first spelling. Filled while the mesh cards are read."""
+
+    sets: dict[str, Numbers] = field(default_factory=dict)
+    spelled: dict[str, str] = field(default_factory=dict)
+
+    def add(self, name: str, numbers: Numbers) -> None:
+        own = name.upper()
+        self.spelled.setdefault(own, name)
+        known = self.sets.get(own)
+        self.sets[own] = np.unique(numbers if known is None else np.concatenate([known, numbers]))
+
+    def by_name(self) -> dict[str, Numbers]:
+        return {self.spelled[name]: numbers for name, numbers in self.sets.items()}
+
+    def resolve(self, line: Line, i: int, what: str) -> Numbers:
+        """Field i of a line: a number, or the name of a set."""
+        text = line.text(i)
+        number = as_integer(text)
+        if number is not None:
+            return np.array([number], dtype=np.int64)
+        if text.upper() not in self.sets:
+            raise line.error(f"no {what} set named {text!r}{nearest(text, self.spelled.values())}")
+        return self.sets[text.upper()]
+
+
+@dataclass(frozen=True)
+class MeshCards:
+    """What the mesh cards say; see ``record.Deck``."""
+
+    nodes: Numbers
+    points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+    blocks: tuple[Block, ...]
+    node_sets: Names
+    element_sets: Names
+    surfaces: Mapping[str, Faces]
+
+
+def mesh_cards(cards: Iterable[Card]) -> MeshCards:
+    """Read the mesh cards in their order. Raises InputError with place and cure."""
+    nodes: dict[int, tuple[float, float, float]] = {}
+    elements: dict[int, tuple[str, tuple[int, ...]]] = {}
+    node_sets, element_sets, surfaces = Names(), Names(), {}
+    for card in cards:
+        if card.key == "NODE":
+            own = _nodes(card, nodes)
+            if card.get("NSET"):
+                node_sets.add(card.need("NSET"), own)
+        elif card.key == "ELEMENT":
+            own = _elements(card, elements, nodes)
+            if card.get("ELSET"):
+                element_sets.add(card.need("ELSET"), own)
+        elif card.key == "NSET":
+            node_sets.add(card.need("NSET"), _set(card, "node", node_sets, element_sets, elements))
+        elif card.key == "ELSET":
+            element_sets.add(card.need("ELSET"), _set(card, "element", element_sets, element_sets, elements))
+        elif card.key == "SURFACE":
+            surface = _surface(card, node_sets, element_sets, elements)
+            surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
+    ids = np.array(sorted(nodes), dtype=np.int64)
+    points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
+    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces))
+
+
+def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
+    """By name; where a name stands for faces and for nodes (CalculiX allows both), faces win."""
+    return {name: s for (name, by_nodes), s in surfaces.items() if not (by_nodes and (name, False) in surfaces)}
+
+
+def _nodes(card: Card, nodes: dict[int, tuple[float, float, float]]) -> Numbers:
+    own = []
+    for line in card.lines:
+        number = line.integer(0, "node number")
+        x = (line.number(1, "x", 0.0), line.number(2, "y", 0.0), line.number(3, "z", 0.0))
+        if nodes.setdefault(number, x) != x:
+            raise line.error(f"node {number} is given twice, in different places; take one of them out")
+        own.append(number)
+    return np.array(own, dtype=np.int64)
+
+
+def _elements(
+    card: Card, elements: dict[int, tuple[str, tuple[int, ...]]], nodes: Mapping[int, tuple[float, float, float]]
+) -> Numbers:
+    code = key(card.need("TYPE"))
+    if code not in ELEMENTS:
+        raise card.error(refusal(code))
+    count = CELLS[ELEMENTS[code].kind].nodes
+    own: list[int] = []
+    numbers: list[int] = []
+    for line in card.lines:
+        start = line if not numbers else start
+        last = len(line.fields) - (line.fields[-1] == "")
+        numbers += [line.integer(i, "node number" if numbers or i else "element number") for i in range(last)]
+        if len(numbers) <= count:
+            continue
+        if len(numbers) > count + 1:
+            raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
+        for node in numbers[1:]:
+            if node not in nodes:
+                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE before")
+        if numbers[0] in elements:
+            raise start.error(f"element {numbers[0]} is given twice; give each element its own number")
+        elements[numbers[0]] = (code, tuple(numbers[1:]))
+        own.append(numbers[0])
+        numbers = []
+    if numbers:
+        raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
+    return np.array(own, dtype=np.int64)
+
+
+def _blocks(elements: dict[int, tuple[str, tuple[int, ...]]]) -> tuple[Block, ...]:
+    by_code: dict[str, list[int]] = {}
+    for number, (code, _) in elements.items():
+        by_code.setdefault(code, []).append(number)
+    return tuple(
+        Block(code, ELEMENTS[code], np.array(own, np.int64), np.array([elements[i][1] for i in own], np.int64))
+        for code, own in by_code.items()
+    )
+
+
+def _set(
+    card: Card, what: str, own: Names, element_sets: Names, elements: Mapping[int, tuple[str, tuple[int, ...]]]
+) -> Numbers:
+    if what == "node" and card.get("ELSET"):
+        name = card.need("ELSET")
+        if name.upper() not in element_sets.sets:
+            raise card.error(f"no element set named {name!r}{nearest(name, element_sets.spelled.values())}")
+        members = element_sets.sets[name.upper()].tolist()
+        return np.unique(np.array([n for e in members for n in elements[e][1]], dtype=np.int64))
+    parts: list[Numbers] = [np.empty(0, np.int64)]
+    for line in card.lines:
+        if card.has("GENERATE"):
+            first, last = (
+                line.integer(0, "first number"),
+                line.integer(1, "last number", line.integer(0, "first number")),
+            )
+            step = line.integer(2, "increment", 1)
+            if (last - first) // step > MOST:
+                raise line.error(f"{(last - first) // step} numbers in one set; check the line")
+            parts.append(np.arange(first, last + 1, step, dtype=np.int64))
+            continue
+        parts += [own.resolve(line, i, what) for i, text in enumerate(line.fields) if text]
+    numbers = np.unique(np.concatenate(parts))
+    if what == "element":
+        for number in [n for n in numbers.tolist() if n not in elements][:1]:
+            if not card.has("GENERATE"):
+                raise card.error(f"element {number} of set '{card.need('ELSET')}' does not exist")
+        numbers = np.array([n for n in numbers.tolist() if n in elements], dtype=np.int64)
+    return numbers
+
+
+def _surface(
+    card: Card, node_sets: Names, element_sets: Names, elements: Mapping[int, tuple[str, tuple[int, ...]]]
+) -> Faces:
+    name, kind = card.need("NAME"), key(card.get("TYPE", "ELEMENT") or "")
+    if kind not in ("ELEMENT", "NODE"):
+        raise card.error(f"TYPE={kind}: only surfaces of element faces (ELEMENT) and of nodes (NODE) are read")
+    card.first("faces of elements, or nodes")
+    if kind == "NODE":
+        nodes = np.unique(np.concatenate([node_sets.resolve(line, 0, "node") for line in card.lines]))
+        return Faces(name, card.place, (), nodes)
+    faces = []
+    for line in card.lines:
+        members = element_sets.resolve(line, 0, "element")
+        for number in members.tolist():
+            if number not in elements:
+                raise line.error(f"element {number} does not exist")
+        face = 0
+        if line.text(1):
+            label = line.text(1).upper()
+            kinds = {ELEMENTS[elements[e][0]].kind for e in members.tolist()}
+            face = face_number(line, label, "S", kinds)
+        faces.append((members, face))
+    return Faces(name, card.place, tuple(faces))
+
+
+def face_number(line: Line, label: str, letter: str, kinds: Iterable[str]) -> int:
+    """The number in S1 or P1, which every one of the cell kinds must have."""
+    number = as_integer(label[1:]) if label.startswith(letter) else None
+    most = min((len(FACES[kind]) for kind in kinds), default=6)
+    if number is None or number > most:
+        raise line.error(f"face label {label!r}: expected {letter}1 to {letter}{most}")
+    return number

@@ -1,0 +1,119 @@
+"""From the file to the record: ``read_deck``."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+from abut.io.abaqus.cards import Card, key, read_cards
+from abut.io.abaqus.known import NEEDED, sift
+from abut.io.abaqus.mesh_cards import MeshCards, mesh_cards
+from abut.io.abaqus.model_cards import (
+    cyclic_symmetry,
+    equations,
+    materials,
+    pairs,
+    pretension_sections,
+    rigid_bodies,
+    sections,
+    transforms,
+)
+from abut.io.abaqus.record import Deck, Prescribed
+from abut.io.abaqus.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
+
+MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
+
+
+def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
+    """Read an Abaqus or CalculiX deck. ``ignore``: cards and parameters to leave out although they change the result.
+
+    Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
+    notes: list[str] = []
+    sifted = sift(_without_void_friction(read_cards(path), notes), ignore)
+    outside, groups = split_steps(sifted.cards)
+    mesh = mesh_cards(sifted.cards)
+    known = amplitudes(sifted.cards)
+    pair_list = pairs(sifted.cards, mesh)
+    for pair in pair_list:
+        if pair.overclosure not in ("HARD", "TIED"):
+            notes.append(
+                f"contact '{pair.name}': PRESSURE-OVERCLOSURE={pair.overclosure} replaced by exact contact, without "
+                "penetration"
+            )
+    return Deck(
+        path=str(path),
+        nodes=mesh.nodes,
+        points=mesh.points,
+        blocks=mesh.blocks,
+        node_sets=mesh.node_sets.by_name(),
+        element_sets=mesh.element_sets.by_name(),
+        surfaces={surface.name: surface for surface in mesh.surfaces.values()},
+        sections=sections(sifted.cards, mesh, materials(sifted.cards)),
+        pairs=pair_list,
+        equations=equations(sifted.cards, mesh),
+        rigid=rigid_bodies(sifted.cards, mesh),
+        transforms=transforms(sifted.cards, mesh),
+        cyclic=cyclic_symmetry(sifted.cards, mesh),
+        pretension=pretension_sections(sifted.cards, mesh),
+        fixed=_fixed(outside, mesh, notes),
+        initial=initial_temperature(sifted.cards, mesh),
+        amplitudes=known,
+        steps=steps(groups, mesh, known),
+        notes=tuple(notes),
+        quiet=sifted.quiet,
+        ignored=sifted.ignored,
+    )
+
+
+def read_mesh_only(path: Path) -> Deck:
+    """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
+
+    Raises InputError as ``read_deck`` does, for these cards only."""
+    every = read_cards(path)
+    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED]).cards
+    mesh = mesh_cards(cards)
+    inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
+    return Deck(
+        str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
+        {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
+        sections(cards, mesh, None),
+        (), (), (), (), (), (), (), {}, {}, (), (), (), (),
+    )  # fmt: skip
+
+
+def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str]) -> tuple[Prescribed, ...]:
+    """Supports outside the steps."""
+    result = []
+    for card in outside:
+        if card.key in KIND and card.key != "BOUNDARY":
+            raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
+        if card.key != "BOUNDARY":
+            continue
+        for value in prescribed(card, mesh, {}):
+            if value.value != 0.0 and not any("outside the steps" in note for note in notes):
+                notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
+            result.append(value)
+    return tuple(result)
+
+
+def _without_void_friction(cards: Sequence[Card], notes: list[str]) -> list[Card]:
+    """Friction without effect: of tied contact, where the card only gives the stick stiffness, and with coefficient 0."""
+    result: list[Card] = []
+    tied = False
+    for card in cards:
+        if card.key == "SURFACEINTERACTION":
+            tied = False
+        elif card.key == "SURFACEBEHAVIOR":
+            tied = key(card.get("PRESSURE-OVERCLOSURE") or "") == "TIED"
+        elif card.key == "FRICTION":
+            if tied:
+                notes.append(f"{card.place}: *FRICTION of tied contact gives its stick stiffness; tied exactly instead")
+                continue
+            if (
+                card.lines
+                and not card.parameters
+                and all(line.text(0) and line.number(0, "mu") == 0.0 for line in card.lines)
+            ):
+                continue
+        result.append(card)
+    return result

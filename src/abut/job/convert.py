@@ -1,0 +1,144 @@
+"""A model as a job file with its mesh beside it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from abut.errors import InputError
+from abut.io.atomic import write_text
+from abut.job.load import Job
+from abut.job.schema import JobFile
+from abut.mesh.write import write_mesh
+from abut.model import (
+    Amplitude,
+    BodyForce,
+    Force,
+    Gravity,
+    Integration,
+    Load,
+    Model,
+    NodalForce,
+    Pressure,
+    SolveOptions,
+    Temperature,
+    Traction,
+)
+from abut.solids.materials import LinearElastic
+
+KINDS: dict[type, str] = {
+    Pressure: "pressure",
+    Traction: "traction",
+    Force: "force",
+    NodalForce: "nodal-force",
+    Temperature: "temperature",
+    Gravity: "gravity",
+}
+
+
+def write_job(path: Path, job: Job) -> list[Path]:
+    """Write the job file ``path`` and its mesh, of the same name with the ending .vtu; return both.
+
+    Raises InputError for what a job file cannot hold (functions of position) and where a file cannot be written."""
+    mesh = path.with_suffix(".vtu")
+    table = job_table(job.model, mesh.name)
+    JobFile.model_validate(table)
+    head = [f"# from {job.path.name}"]
+    head += [f"# ignored: {what}" for what in job.ignored] + [f"# {note}" for note in job.notes]
+    write_mesh(mesh, job.model.mesh)
+    write_text(path, "\n".join(head) + "\n" + toml(table))
+    return [path, mesh]
+
+
+def job_table(model: Model, mesh: str) -> dict[str, Any]:
+    """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
+    materials: dict[LinearElastic, str] = {}
+    for solid in model.solids:
+        materials.setdefault(solid.material, f"material-{len(materials) + 1}")
+    table: dict[str, Any] = {"schema": 1, "mesh": {"file": mesh}}
+    if model.plane is not None:
+        table["model"] = {"plane": model.plane}
+    table["materials"] = {n: {"kind": "linear-elastic", **_plain(m)} for m, n in materials.items()}
+    table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
+    for name in ("supports", "loads", "contacts", "equations", "rigid"):
+        records = [_load(own) if name == "loads" else _plain(own) for own in getattr(model, name)]
+        if records:
+            table[name] = records
+    options = _plain(model.solve)
+    if options:
+        table["solve"] = options
+    return table
+
+
+def _load(load: Load) -> dict[str, Any]:
+    if isinstance(load, BodyForce):
+        raise InputError("a job file holds no body force; use gravity")
+    return {"kind": KINDS[type(load)], **_plain(load)}
+
+
+def _plain(record: Any) -> dict[str, Any]:
+    """A record as a table, without what has its default."""
+    result = {}
+    for item in fields(record):
+        value = getattr(record, item.name)
+        default = item.default_factory() if callable(item.default_factory) else item.default
+        if value == default or value is None:
+            continue
+        result[item.name] = _value(value, item.name)
+    return result
+
+
+def _value(value: Any, name: str) -> Any:
+    if callable(value) and not isinstance(value, Amplitude):
+        raise InputError(f"{name}: a job file holds numbers, not functions of position")
+    if isinstance(value, Amplitude):
+        return [list(point) for point in value.points]
+    if isinstance(value, (Integration, SolveOptions)):
+        return _plain(value)
+    if isinstance(value, (list, tuple)):
+        return [_value(item, name) for item in value]
+    return value if isinstance(value, (str, int, float)) else _plain(value)
+
+
+def toml(table: Mapping[str, Any]) -> str:
+    """Nested tables as TOML: scalars first, then tables, then arrays of tables."""
+    lines: list[str] = []
+    _tables(table, "", lines)
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _tables(table: Mapping[str, Any], path: str, lines: list[str]) -> None:
+    for key, value in table.items():
+        if not isinstance(value, Mapping) and not _of_tables(value):
+            lines.append(f"{_key(key)} = {_inline(value)}")
+    for key, value in table.items():
+        own = f"{path}.{_key(key)}" if path else _key(key)
+        if isinstance(value, Mapping):
+            if any(not isinstance(item, Mapping) for item in value.values()):
+                lines += ["", f"[{own}]"]
+            _tables(value, own, lines)
+        elif _of_tables(value):
+            for item in value:
+                lines += ["", f"[[{own}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
+
+
+def _of_tables(value: Any) -> bool:
+    return isinstance(value, Sequence) and bool(value) and all(isinstance(item, Mapping) for item in value)
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key)
+
+
+def _inline(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value).lower() if isinstance(value, bool) else repr(value)

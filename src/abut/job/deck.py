@@ -1,0 +1,278 @@
+"""From an Abaqus or CalculiX deck to a model."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from abut.errors import InputError
+from abut.io.abaqus import read_deck
+from abut.io.abaqus.adjust import distance
+from abut.io.abaqus.bonds import Bonds, bonds
+from abut.io.abaqus.courses import Course, combine, courses, scaled, times, zero
+from abut.io.abaqus.elements import FACES
+from abut.io.abaqus.groups import Groups, Piece, pieces
+from abut.io.abaqus.pretension import cut
+from abut.io.abaqus.record import Deck, Pair
+from abut.job.deck_rigid import rigid_bodies
+from abut.mesh.check import check_mesh
+from abut.mesh.read import build
+from abut.model import (
+    Amplitude,
+    Contact,
+    Equation,
+    Gravity,
+    Load,
+    Model,
+    NodalForce,
+    Pressure,
+    Solid,
+    SolveOptions,
+    Support,
+    Temperature,
+    Term,
+)
+from abut.solids.materials import LinearElastic
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A model, what was put in place of something else (notes), and what was left out because the user said so."""
+
+    model: Model
+    notes: tuple[str, ...]
+    ignored: tuple[str, ...]
+
+
+def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
+    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result.
+
+    Raises InputError with card, file, line and cure for what abut does not do."""
+    deck = read_deck(path, ignore)
+    try:
+        return translate(deck)
+    except InputError as error:
+        if str(error).startswith(str(path.parent)):
+            raise
+        raise InputError(f"{path}: {error}") from None
+
+
+def translate(deck: Deck) -> Translation:
+    """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
+    if not deck.steps:
+        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
+    if not deck.blocks:
+        raise InputError("the deck has no *ELEMENT cards")
+    deck = cut(deck)
+    plane = _plane(deck)
+    notes = list(deck.notes)
+    notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    groups = Groups(deck)
+    parts = {groups.body(piece.name, piece.elements): piece for piece in pieces(deck)}
+    contacts = [_contact(deck, groups, pair, notes) for pair in deck.pairs]
+    rigid = rigid_bodies(deck, parts, plane)
+    bound = bonds(deck, groups, plane)
+    thickness = _thickness(deck, plane, notes)
+    supports = _supports(bound, groups)
+    equations = [
+        Equation(
+            tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
+            *_history(bond.course),
+        )
+        for bond in bound.bonds
+    ]
+    loads: list[Load] = [
+        *_forces(bound, groups, plane, thickness),
+        *_pressures(deck, groups),
+        *_gravity(deck, parts, plane),
+        *_temperatures(deck, groups),
+    ]
+    if deck.quiet:
+        notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
+    mesh = build(groups.raw(), deck.path)
+    check_mesh(mesh)
+    moving = {body.body for body in rigid}
+    model = Model(
+        mesh,
+        solids=[_solid(name, piece) for name, piece in parts.items() if name not in moving],
+        supports=supports,
+        loads=loads,
+        contacts=contacts,
+        equations=equations,
+        rigid=rigid,
+        plane=plane,
+        solve=_options(deck),
+    )
+    return Translation(model, tuple(notes), deck.ignored)
+
+
+def _plane(deck: Deck) -> str | None:
+    planes = {block.type.plane: block.code for block in deck.blocks}
+    if len(planes) > 1:
+        raise InputError(
+            f"elements {' and '.join(sorted(planes.values()))} in one deck: abut solves 3D, plane strain, plane stress or "
+            "axisymmetry, not two of them together; use one of the types"
+        )
+    return next(iter(planes))
+
+
+def _solid(name: str, piece: Piece) -> Solid:
+    material = piece.section.material
+    try:
+        elastic = LinearElastic(material.young, material.poisson, material.density, material.expansion)
+    except InputError as error:
+        raise InputError(f"*MATERIAL '{material.name}': {error}") from None
+    return Solid(name, elastic, integration=piece.integration)
+
+
+def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
+    """By which forces are divided: a plane model of abut is one unit thick."""
+    if plane not in ("strain", "stress"):
+        return 1.0
+    values = {section.thickness: section for section in deck.sections}
+    if len(values) > 1:
+        place = next(reversed(values.values())).place
+        raise InputError(
+            f"{place}: *SOLID SECTION: sections of different thickness are not supported; give all the same"
+        )
+    value = next(iter(values))
+    if value != 1.0:
+        notes.append(f"forces in the results are those of unit thickness: times {value:g} gives the deck's")
+    return value
+
+
+def _history(course: Course) -> tuple[float, Amplitude | None]:
+    size, unit = scaled(course)
+    return size, None if unit is None else Amplitude(unit)
+
+
+def _contact(deck: Deck, groups: Groups, pair: Pair, notes: list[str]) -> Contact:
+    slave, master = groups.surface(pair.slave), groups.surface(pair.master)
+    for name, own in ((slave, pair.slave), (master, pair.master)):
+        if deck.surfaces[own].nodes is not None:
+            notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{own}' make up")
+    if pair.tied:
+        return Contact(slave, master, name=pair.name, kind="tied")
+    adjust = pair.adjust
+    if isinstance(adjust, np.ndarray):
+        adjust = distance(deck, groups, pair, adjust)
+        notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
+    if pair.clearance is not None:
+        adjust = float(np.ptp(deck.points, axis=0).max())
+    return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=pair.clearance or 0.0)
+
+
+def _supports(bound: Bonds, groups: Groups) -> list[Support]:
+    """Nodes held alike together; components with the same course over time in one support."""
+    by_node: dict[int, dict[int, Course]] = {}
+    for (node, axis), course in bound.supports.items():
+        by_node.setdefault(node, {})[axis] = course
+    alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
+    for node, own in by_node.items():
+        alike.setdefault(tuple(sorted(own.items())), []).append(node)
+    result = []
+    for key, nodes in alike.items():
+        on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
+        still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
+        moving: dict[Course | None, dict[str, float]] = {}
+        for axis, course in key:
+            if not zero(course):
+                size, unit = scaled(course)
+                moving.setdefault(unit, {})[AXES[axis]] = size
+        for unit, values in (moving or {None: {}}).items():
+            amplitude = None if unit is None else Amplitude(unit)
+            result.append(Support(on, **(values | still), amplitude=amplitude))
+            still = {}
+    return result
+
+
+def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -> list[Load]:
+    by_node: dict[tuple[int, Course | None], dict[int, float]] = {}
+    for (node, axis), course in bound.forces.items():
+        if not zero(course):
+            size, unit = scaled(course)
+            by_node.setdefault((node, unit), {})[axis] = size / thickness
+    alike: dict[tuple[Course | None, tuple[float, ...]], list[int]] = {}
+    for (node, unit), own in by_node.items():
+        vector = tuple(own.get(axis, 0.0) for axis in range(2 if plane else 3))
+        alike.setdefault((unit, vector), []).append(node)
+    return [
+        NodalForce(groups.node_set(np.array(nodes), f"force-{i}"), vector, None if unit is None else Amplitude(unit))
+        for i, ((unit, vector), nodes) in enumerate(alike.items(), start=1)
+    ]
+
+
+def _pressures(deck: Deck, groups: Groups) -> list[Load]:
+    alike: dict[Course, list[tuple[int, int]]] = {}
+    kinds = {int(e): block.type.kind for block in deck.blocks for e in block.ids}
+    for (element, face), course in courses(deck, "pressure").items():
+        if not zero(course):
+            number = int(element)
+            alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
+    return [
+        Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
+        for i, (course, rows) in enumerate(alike.items(), start=1)
+    ]
+
+
+def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Load]:
+    alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
+    for (element, *vector), course in courses(deck, "gravity").items():
+        if not zero(course):
+            alike.setdefault((tuple(vector), course), []).append(int(element))
+    result: list[Load] = []
+    for (vector, course), elements in alike.items():
+        place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
+        size, amplitude = _history(course)
+        for name, piece in parts.items():
+            inside = np.isin(piece.elements, elements)
+            if not inside.any():
+                continue
+            if not inside.all():
+                raise InputError(
+                    f"{place}: *DLOAD: gravity on a part of body '{name}' only; give it to all of the body"
+                )
+            if piece.section.material.density == 0.0:
+                raise InputError(
+                    f"{place}: *DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'"
+                )
+            value = tuple(size * x for x in vector[: 2 if plane else 3])
+            result.append(Gravity(value, name, amplitude))
+    return result
+
+
+def _temperatures(deck: Deck, groups: Groups) -> list[Load]:
+    """Changes from the initial temperature."""
+    for step in deck.steps:
+        for value in step.values:
+            if value.kind == "temperature":
+                for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
+                    raise InputError(
+                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add *INITIAL CONDITIONS, "
+                        "TYPE=TEMPERATURE"
+                    )
+    alike: dict[Course, list[int]] = {}
+    for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():
+        change = combine([(1.0, course), (-deck.initial[int(node)], ((0.0, 1.0),))])
+        if not zero(change):
+            alike.setdefault(change, []).append(int(node))
+    result: list[Load] = []
+    for change, nodes in alike.items():
+        own = np.intersect1d(np.array(nodes, np.int64), groups.used)
+        if len(own):
+            on = groups.node_set(own, f"temperature-{len(result) + 1}")
+            result.append(Temperature(on, *_history(change)))
+    return result
+
+
+def _options(deck: Deck) -> SolveOptions:
+    """Load steps at the ends of the deck's steps and the corners of its amplitudes."""
+    own = times(deck)
+    if np.allclose(own, np.arange(1, len(own) + 1) / len(own), rtol=0.0, atol=1e-12):
+        return SolveOptions(steps=len(own))
+    return SolveOptions(times=own)
