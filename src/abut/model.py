@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from abut import checks
-from abut.cells import CELLS
 from abut.conditions import (
+    COMPONENTS,
+    TURNS,
     Amplitude,
     BodyForce,
     Equation,
@@ -29,7 +30,7 @@ from abut.conditions import (
 )
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import BBAR, REDUCED
+from abut.solids.integration import INTEGRATIONS, check_integration
 from abut.solids.materials import LinearElastic
 
 __all__ = [
@@ -42,7 +43,6 @@ PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
-INTEGRATIONS = ("full", "reduced", "b-bar")
 LINEAR = ("auto", "direct", "amg")
 
 
@@ -166,7 +166,8 @@ class Model:
     """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
 
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the whole turn; points on the axis stay on it without a support of their own.
+    forces are those of the whole turn; points on the axis stay on it without a support of their own. Every body is one of
+    ``solids`` or ``rigid``.
     """
 
     mesh: Mesh
@@ -182,11 +183,11 @@ class Model:
     def __post_init__(self) -> None:
         for name in ("solids", "supports", "loads", "contacts", "equations", "rigid"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        if self.equations or self.rigid:
-            raise InputError("model: equations and rigid bodies are not solved yet")
         self._check_plane()
+        self._check_rigid()
         self._check_solids()
         self._check_names()
+        self._check_equations()
 
     @property
     def integration(self) -> dict[str, str]:
@@ -232,32 +233,56 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-            self._check_integration(solid, f"solids[{i}].integration")
-        missing = sorted(set(self.mesh.bodies) - seen)
+            check_integration(solid.integration, self._kinds(solid.body), self.plane, f"solids[{i}].integration")
+        for i, rigid in enumerate(self.rigid):
+            if rigid.body in seen:
+                raise InputError(
+                    f"rigid[{i}].body: body '{rigid.body}' is rigid and has a material (solids); take one of them out"
+                )
+        missing = sorted(set(self.mesh.bodies) - seen - {rigid.body for rigid in self.rigid})
         if missing:
             raise InputError(f"solids: no material for body {', '.join(map(repr, missing))}; add a solid for it")
+        if not self.solids:
+            raise InputError("solids: every body is rigid; at least one must deform")
 
-    def _check_integration(self, solid: Solid, where: str) -> None:
-        kinds = sorted({kind for kind, _, _ in self.mesh.cells_of(solid.body)})
-        if solid.integration == "reduced":
-            for kind in kinds:
-                if CELLS[kind].corners == CELLS[kind].dim + 1 and CELLS[kind].degree == 1:
-                    raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
-                if kind not in REDUCED:
-                    raise InputError(
-                        f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread "
-                        f"through the mesh; use 'full'{' or b-bar' if kind in BBAR else ''}, or {', '.join(REDUCED)} cells"
-                    )
-        elif solid.integration == "b-bar":
-            for kind in kinds:
-                if kind not in BBAR:
-                    raise InputError(
-                        f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'"
-                    )
-            if self.plane == "stress":
+    def _check_rigid(self) -> None:
+        owner: dict[int, str] = {}
+        exist = ("y",) if self.mesh.axisymmetric else ("x", "y", "rz") if self.dim == 2 else (*COMPONENTS, *TURNS)
+        for i, rigid in enumerate(self.rigid):
+            _known(rigid.body, self.mesh.bodies, f"rigid[{i}].body", "body")
+            if rigid.reference is not None and len(rigid.reference) != self.dim:
+                raise InputError(f"rigid[{i}].reference: expected {self.dim} numbers, got {len(rigid.reference)}")
+            for name in (*COMPONENTS, *TURNS):
+                if name not in exist and getattr(rigid, name):
+                    plane = "axisymmetric" if self.mesh.axisymmetric else "2D"
+                    raise InputError(f"rigid[{i}].{name}: the model is {plane}; leave {name} out")
+            nodes = {int(n) for _, cells, _ in self.mesh.cells_of(rigid.body) for n in np.unique(cells)}
+            if rigid.body in owner.values():
+                raise InputError(f"rigid[{i}].body: body '{rigid.body}' is given twice; keep one of them")
+            shared = nodes & owner.keys()
+            if shared:
                 raise InputError(
-                    f"{where}: 'b-bar' has no effect to offer in plane stress, which does not lock; use 'full'"
+                    f"rigid[{i}].body: '{rigid.body}' and '{owner[min(shared)]}' are rigid and share points; make "
+                    "them one body"
                 )
+            owner |= dict.fromkeys(nodes, rigid.body)
+
+    def _check_equations(self) -> None:
+        for i, equation in enumerate(self.equations):
+            for j, term in enumerate(equation.terms):
+                where = f"equations[{i}].terms[{j}]"
+                if isinstance(term.on, str):
+                    _known(term.on, self.mesh.node_sets, f"{where}.on", "node set")
+                    if len(self.mesh.node_sets[term.on]) != 1:
+                        count = len(self.mesh.node_sets[term.on])
+                        raise InputError(f"{where}.on: node set '{term.on}' has {count} nodes; a term is for one")
+                elif not 0 <= term.on < len(self.mesh.points):
+                    raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(self.mesh.points)}, from 0")
+                if term.component not in COMPONENTS[: self.dim]:
+                    raise InputError(f"{where}.component: the model is 2D; z does not exist")
+
+    def _kinds(self, body: str) -> list[str]:
+        return sorted({kind for kind, _, _ in self.mesh.cells_of(body)})
 
     def _check_names(self) -> None:
         mesh = self.mesh
@@ -268,12 +293,21 @@ class Model:
                 _known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
             if self.dim == 2 and support.z is not None:
                 raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+        rigid = {body.body for body in self.rigid}
         for i, load in enumerate(self.loads):
             if isinstance(load, (Gravity, BodyForce)):
                 if load.on is not None:
                     _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
+                if isinstance(load, Gravity) and load.on in rigid:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force"
+                    )
             else:
                 self._check_place(load, f"loads[{i}].on")
+                if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out"
+                    )
             if isinstance(load, (Pressure, Temperature)) or callable(load.value):
                 continue
             if len(load.value) != self.dim:
@@ -285,6 +319,8 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
+            if rigid and rigid >= self._bodies_of(contact):
+                raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
         self._check_swapped()
         self._check_facets()
 
@@ -296,6 +332,11 @@ class Model:
             _known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
         else:
             _known(load.on, mesh.surfaces, where, "surface")
+
+    def _bodies_of(self, contact: Contact) -> set[str]:
+        """Bodies of both sides."""
+        cells = np.concatenate([self.mesh.surfaces[contact.contactor][:, 0], self.mesh.surfaces[contact.target][:, 0]])
+        return {body for body, own in self.mesh.bodies.items() if np.isin(cells, own).any()}
 
     def _check_swapped(self) -> None:
         sides = {(contact.contactor, contact.target): contact.name for contact in self.contacts}
