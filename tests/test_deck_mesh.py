@@ -6,43 +6,46 @@ import numpy as np
 import pytest
 
 from abut import Mesh
+from abut._core import shape_functions
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.io.abaqus.elements import ELEMENTS
 from abut.mesh.integrals import chunks, gradients
 from abut.mesh.quadrature import stiffness_rule
-from abut._core import shape_functions
-from abut.cells import CELLS
 from abut.solids.loads import stress_load, surface_area
 
 # Corners, edges whose midpoints follow them, and faces S1, S2, ..., from the figures of the CalculiX manual (sections 6.2
 # and *DLOAD) and of the Abaqus Analysis User's Guide ("Solid element library"), counted from 1 as there.
-HEXAHEDRON = dict(
-    corners=[(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0), (0, 0, 3), (2, 0, 3), (2, 1, 3), (0, 1, 3)],
-    edges=[(1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 8), (8, 5), (1, 5), (2, 6), (3, 7), (4, 8)],
-    faces=[(1, 2, 3, 4), (5, 8, 7, 6), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1)],
-    volume=6.0,
-)
-TETRAHEDRON = dict(
-    corners=[(0, 0, 0), (2, 0, 0), (0, 1, 0), (0, 0, 3)],
-    edges=[(1, 2), (2, 3), (3, 1), (1, 4), (2, 4), (3, 4)],
-    faces=[(1, 2, 3), (1, 4, 2), (2, 4, 3), (3, 4, 1)],
-    volume=1.0,
-)
-WEDGE = dict(
-    corners=[(0, 0, 0), (2, 0, 0), (0, 1, 0), (0, 0, 3), (2, 0, 3), (0, 1, 3)],
-    edges=[(1, 2), (2, 3), (3, 1), (4, 5), (5, 6), (6, 4), (1, 4), (2, 5), (3, 6)],
-    faces=[(1, 2, 3), (4, 5, 6), (1, 2, 5, 4), (2, 3, 6, 5), (3, 1, 4, 6)],
-    volume=3.0,
-)
-TRIANGLE = dict(
-    corners=[(1, 0, 0), (3, 0, 0), (1, 1, 0)], edges=[(1, 2), (2, 3), (3, 1)], faces=[(1, 2), (2, 3), (3, 1)], volume=1.0
-)
-QUADRILATERAL = dict(
-    corners=[(1, 0, 0), (3, 0, 0), (3, 1, 0), (1, 1, 0)],
-    edges=[(1, 2), (2, 3), (3, 4), (4, 1)],
-    faces=[(1, 2), (2, 3), (3, 4), (4, 1)],
-    volume=2.0,
-)
+HEXAHEDRON = {
+    "corners": [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0), (0, 0, 3), (2, 0, 3), (2, 1, 3), (0, 1, 3)],
+    "edges": [(1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 8), (8, 5), (1, 5), (2, 6), (3, 7), (4, 8)],
+    "faces": [(1, 2, 3, 4), (5, 8, 7, 6), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1)],
+    "volume": 6.0,
+}
+TETRAHEDRON = {
+    "corners": [(0, 0, 0), (2, 0, 0), (0, 1, 0), (0, 0, 3)],
+    "edges": [(1, 2), (2, 3), (3, 1), (1, 4), (2, 4), (3, 4)],
+    "faces": [(1, 2, 3), (1, 4, 2), (2, 4, 3), (3, 4, 1)],
+    "volume": 1.0,
+}
+WEDGE = {
+    "corners": [(0, 0, 0), (2, 0, 0), (0, 1, 0), (0, 0, 3), (2, 0, 3), (0, 1, 3)],
+    "edges": [(1, 2), (2, 3), (3, 1), (4, 5), (5, 6), (6, 4), (1, 4), (2, 5), (3, 6)],
+    "faces": [(1, 2, 3), (4, 5, 6), (1, 2, 5, 4), (2, 3, 6, 5), (3, 1, 4, 6)],
+    "volume": 3.0,
+}
+TRIANGLE = {
+    "corners": [(1, 0, 0), (3, 0, 0), (1, 1, 0)],
+    "edges": [(1, 2), (2, 3), (3, 1)],
+    "faces": [(1, 2), (2, 3), (3, 1)],
+    "volume": 1.0,
+}
+QUADRILATERAL = {
+    "corners": [(1, 0, 0), (3, 0, 0), (3, 1, 0), (1, 1, 0)],
+    "edges": [(1, 2), (2, 3), (3, 4), (4, 1)],
+    "faces": [(1, 2), (2, 3), (3, 4), (4, 1)],
+    "volume": 2.0,
+}
 SHAPES = {"hex": HEXAHEDRON, "tet": TETRAHEDRON, "wed": WEDGE, "tri": TRIANGLE, "qua": QUADRILATERAL}
 
 
@@ -61,7 +64,10 @@ def element_deck(code):
     lines = ["*NODE"] + [f"{11 * i}, {x:g}, {y:g}, {z:g}" for i, (x, y, z) in enumerate(points, start=1)]
     numbers = [7, *(11 * i for i in range(1, len(points) + 1))]
     lines += [f"*ELEMENT, TYPE={code}, ELSET=E"]
-    lines += [", ".join(map(str, numbers[i : i + 16])) + ("," if len(numbers) > i + 16 else "") for i in range(0, len(numbers), 16)]
+    lines += [
+        ", ".join(map(str, numbers[i : i + 16])) + ("," if len(numbers) > i + 16 else "")
+        for i in range(0, len(numbers), 16)
+    ]
     for i in range(len(shape["faces"])):
         lines += [f"*SURFACE, NAME=F{i + 1}", f"E, S{i + 1}"]
     return "\n".join(lines) + "\n", shape
@@ -87,7 +93,9 @@ def test_node_order_and_faces(code, tmp_path):
         own = CELLS[mesh.blocks[0].kind].facets[int(surface.local[0])][0]
         at = mesh.points[surface.nodes[0, : CELLS[own].corners]]
         assert sorted(map(tuple, at.tolist())) == sorted(map(tuple, expected.tolist()))
-        push = np.array([stress_load(surface, np.eye(dim)).reshape(-1, dim).sum(axis=0)])[0]  # area times outward normal
+        push = np.array([stress_load(surface, np.eye(dim)).reshape(-1, dim).sum(axis=0)])[
+            0
+        ]  # area times outward normal
         assert push @ (expected.mean(axis=0) - corners.mean(axis=0)) > 0.0
         assert np.linalg.norm(push) == pytest.approx(surface_area(surface), rel=1e-12)
         total = total + push

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from decks import BRICKS, HELD, PAIR, PUSH, load, solve, step
 
 import abut
 from abut.errors import InputError
+from decks import BRICKS, HELD, PAIR, PUSH, load, solve, step
 
 E = 1000.0
 CONTACT = BRICKS + PAIR + HELD
@@ -45,7 +45,9 @@ def test_loads_add_up_within_a_step_and_replace_those_of_earlier_ones(tmp_path):
 
 def test_amplitudes_and_periods(tmp_path):
     """Steps of length 1 and 3 on one axis; the amplitude turns at time 2 of the second, where abut stops too."""
-    text = CONTACT + "*AMPLITUDE, NAME=A\n0., 0.5, 2., 2., 3., 0.\n*AMPLITUDE, NAME=T, TIME=TOTAL TIME\n0., 0., 4., 4.\n"
+    text = (
+        CONTACT + "*AMPLITUDE, NAME=A\n0., 0.5, 2., 2., 3., 0.\n*AMPLITUDE, NAME=T, TIME=TOTAL TIME\n0., 0., 4., 4.\n"
+    )
     text += step("*DLOAD", "2, P2, 4.") + step("0.1, 3.", "*DLOAD, AMPLITUDE=A", "2, P2, 10.")
     solution = solve(tmp_path, text)
     assert [s.factor for s in solution.steps] == pytest.approx([0.25, 0.75, 1.0])
@@ -89,7 +91,9 @@ def test_clearance_and_adjustment(tmp_path):
     rest = step("*BOUNDARY", "TOP, 3, 3, 0.")
     force = {}
     for adjust in ("", ", ADJUST=0.01", ", ADJUST=0.001"):
-        force[adjust] = solve(tmp_path, text.replace("INTERACTION=I,", f"INTERACTION=I{adjust},") + rest).contacts[0].force[2]
+        force[adjust] = (
+            solve(tmp_path, text.replace("INTERACTION=I,", f"INTERACTION=I{adjust},") + rest).contacts[0].force[2]
+        )
     stiff = 1.0 / (1.0 / E + 1.004 / E)
     assert force[""] == pytest.approx(0.004 * stiff, rel=1e-6)
     assert force[", ADJUST=0.001"] == pytest.approx(force[""], rel=1e-9)
@@ -98,11 +102,15 @@ def test_clearance_and_adjustment(tmp_path):
     given = text.replace("*CONTACT PAIR", "*CLEARANCE, SLAVE=SLAVE, MASTER=MASTER, VALUE=0.002\n*CONTACT PAIR")
     assert solve(tmp_path, given + down).contacts[0].force[2] == pytest.approx((0.01 - 0.002) * stiff, rel=1e-6)
     assert load(tmp_path, given + down).model.contacts[0].offset == 0.002
-    nodes = text.replace("*CONTACT PAIR", "*NSET, NSET=CLOSE\n11,12,13,14\n*CONTACT PAIR").replace("INTERACTION=I,", "INTERACTION=I, ADJUST=CLOSE,")
+    nodes = text.replace("*CONTACT PAIR", "*NSET, NSET=CLOSE\n11,12,13,14\n*CONTACT PAIR").replace(
+        "INTERACTION=I,", "INTERACTION=I, ADJUST=CLOSE,"
+    )
     assert solve(tmp_path, nodes + rest).contacts[0].force[2] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("card", ["*TIE, NAME=T\nSLAVE, MASTER\n", PAIR.replace("HARD", "TIED")], ids=["tie", "contact"])
+@pytest.mark.parametrize(
+    "card", ["*TIE, NAME=T\nSLAVE, MASTER\n", PAIR.replace("HARD", "TIED")], ids=["tie", "contact"]
+)
 def test_tied(card, tmp_path):
     solution = solve(tmp_path, BRICKS + card + HELD + step("*DLOAD", "2, P2, -10."))
     assert tops(solution) == pytest.approx(2 * 10.0 / E, rel=1e-10)
@@ -136,7 +144,9 @@ PLANE = """*NODE, NSET=ALL
 def test_forces_are_those_of_the_whole_turn(tmp_path):
     """A force 3 pi on a ring of area 3 pi stretches it by about 1 / E (checked with CalculiX: 1.0002e-3 with these
     forces at two nodes; exact only were they as 4 : 5)."""
-    text = PLANE.replace("3, 2, 4.71238898", f"3, 2, {np.pi * 5 / 3:.10f}").replace("4, 2, 4.71238898", f"4, 2, {np.pi * 4 / 3:.10f}")
+    text = PLANE.replace("3, 2, 4.71238898", f"3, 2, {np.pi * 5 / 3:.10f}").replace(
+        "4, 2, 4.71238898", f"4, 2, {np.pi * 4 / 3:.10f}"
+    )
     solution = solve(tmp_path, text)
     assert solution.displacement[:, 1].max() == pytest.approx(1e-3, rel=1e-9)
 
@@ -287,7 +297,9 @@ def test_cyclic_symmetry(sides, tmp_path):
 
 def test_nodes_as_a_surface(tmp_path):
     """The faces that the nodes make up; a node that equations bind to others stands for their face."""
-    text = CONTACT.replace("*SURFACE, NAME=SLAVE\n2, S1", "*NSET, NSET=S\n11,12,13,14\n*SURFACE, NAME=SLAVE, TYPE=NODE\nS")
+    text = CONTACT.replace(
+        "*SURFACE, NAME=SLAVE\n2, S1", "*NSET, NSET=S\n11,12,13,14\n*SURFACE, NAME=SLAVE, TYPE=NODE\nS"
+    )
     job = load(tmp_path, text + PUSH)
     assert any("the faces that the nodes of *SURFACE 'SLAVE' make up" in note for note in job.notes)
     assert abut.solve(job.model).contacts[0].force[2] == pytest.approx(10.0, rel=1e-10)

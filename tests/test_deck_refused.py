@@ -3,12 +3,12 @@
 import json
 
 import pytest
-from decks import BRICKS, HELD, PAIR, PUSH, load, step, write
 
 from abut.cli import main
 from abut.errors import InputError
-from abut.io.abaqus.known import NEEDED, PROCEDURES, QUIET, READ, REFUSED
 from abut.io.abaqus.cards import key
+from abut.io.abaqus.known import NEEDED, PROCEDURES, QUIET, READ, REFUSED
+from decks import BRICKS, HELD, PAIR, PUSH, load, step, write
 
 DECK = BRICKS + PAIR + HELD + PUSH
 
@@ -43,7 +43,7 @@ def test_other_procedures_are_refused_and_left_out_with_their_step(name, tmp_pat
 
 def test_large_displacements_are_refused_or_left_out(tmp_path):
     text = DECK.replace("*STEP", "*STEP, INC=100, nl geom")
-    with pytest.raises(InputError, match="NLGEOM: large displacements are not supported.* --ignore NLGEOM"):
+    with pytest.raises(InputError, match=r"NLGEOM: large displacements are not supported.* --ignore NLGEOM"):
         load(tmp_path, text)
     assert "NLGEOM of *STEP" in load(tmp_path, text, "NLGEOM").ignored[0]
     assert load(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM=NO")).ignored == ()
@@ -66,7 +66,10 @@ def test_friction_without_effect_needs_no_permission(tmp_path):
 
 
 def test_ignore_is_checked(tmp_path):
-    for name, words in (("FRICTOIN", "did you mean 'FRICTION'"), ("NODE", "abut reads \\*NODE, which cannot be left out")):
+    for name, words in (
+        ("FRICTOIN", "did you mean 'FRICTION'"),
+        ("NODE", "abut reads \\*NODE, which cannot be left out"),
+    ):
         with pytest.raises(InputError, match=words):
             load(tmp_path, DECK, name)
     assert load(tmp_path, DECK, "FRICTION").ignored == ()  # nothing there to leave out
@@ -131,7 +134,7 @@ def test_faults_of_a_deck_are_named(old, new, words, tmp_path):
 
 def test_supports_that_come_or_go_are_refused(tmp_path):
     moved = DECK + step("*BOUNDARY, OP=NEW", "BOTTOM, 3, 3")
-    with pytest.raises(InputError, match="OP=NEW of step 2 lets node .* go again"):
+    with pytest.raises(InputError, match=r"OP=NEW of step 2 lets node .* go again"):
         load(tmp_path, moved)
     with pytest.raises(InputError, match=r"node 15 is free in the step before and held in step 2"):
         load(tmp_path, DECK + step("*BOUNDARY", "TOP, 3, 3, 0.1"))

@@ -53,7 +53,13 @@ def step_result(
         iterations=outcome.iterations,
         displacement=nodal,
         stress=nodal_stress(
-            model.mesh, materials, temperatures, nodal, model.plane, loaded.temperature @ stage.weights, model.integration
+            model.mesh,
+            materials,
+            temperatures,
+            nodal,
+            model.plane,
+            loaded.temperature @ stage.weights,
+            model.integration,
         ),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={

@@ -99,7 +99,11 @@ def thermal_load(
         change = table[cells, 1][:, None] + nodal[nodes] @ shapes.T
         if rule == "b-bar":
             change = ((change * det) @ weights / (det @ weights))[:, None]
-        np.add.at(load, nodes, np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], np.broadcast_to(change, det.shape), det, weights, slopes))
+        np.add.at(
+            load,
+            nodes,
+            np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], np.broadcast_to(change, det.shape), det, weights, slopes),
+        )
     return load.ravel()
 
 

@@ -166,14 +166,14 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     Raises InputError for cards, parameters and element types that abut does not honour, all of them with place and cure,
     and for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
-    cards = _without_steps(tuple(cards), asked)
-    _check_asked(ignore, cards)
-    static = any(card.key == "STATIC" for card in cards if isinstance(card, Card))
+    left = _without_steps(tuple(cards), asked)
+    _check_asked(ignore, left)
+    static = any(card.key == "STATIC" for card in left if isinstance(card, Card))
     kept: list[Card] = []
     quiet: dict[str, None] = {}
     ignored: dict[str, list[str]] = {}
     found: dict[str, _Refusal] = {}
-    for card in cards:
+    for card in left:
         if isinstance(card, _Step):
             ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
         elif card.key in _QUIET:
@@ -219,7 +219,9 @@ def _refuse(found: list[_Refusal]) -> None:
         return
     texts = [f"{r.card.place}: {r.card.title}: {r.reason}" for r in found]
     options = " ".join(f"--ignore {_quoted(r.name)}" for r in found if r.name)
-    cure = "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
+    cure = (
+        "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
+    )
     raise InputError("\n  ".join(texts) + cure)
 
 
