@@ -12,6 +12,8 @@ import numpy as np
 from abut import checks
 from abut.cells import CELLS
 from abut.conditions import (
+    COMPONENTS,
+    TURNS,
     Amplitude,
     BodyForce,
     Equation,
@@ -166,7 +168,8 @@ class Model:
     """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
 
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the whole turn; points on the axis stay on it without a support of their own.
+    forces are those of the whole turn; points on the axis stay on it without a support of their own. Every body is one of
+    ``solids`` or ``rigid``.
     """
 
     mesh: Mesh
@@ -182,11 +185,11 @@ class Model:
     def __post_init__(self) -> None:
         for name in ("solids", "supports", "loads", "contacts", "equations", "rigid"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        if self.equations or self.rigid:
-            raise InputError("model: equations and rigid bodies are not solved yet")
         self._check_plane()
+        self._check_rigid()
         self._check_solids()
         self._check_names()
+        self._check_equations()
 
     @property
     def integration(self) -> dict[str, str]:
@@ -233,9 +236,52 @@ class Model:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
             self._check_integration(solid, f"solids[{i}].integration")
-        missing = sorted(set(self.mesh.bodies) - seen)
+        for i, rigid in enumerate(self.rigid):
+            if rigid.body in seen:
+                raise InputError(
+                    f"rigid[{i}].body: body '{rigid.body}' is rigid and has a material (solids); take one of them out"
+                )
+        missing = sorted(set(self.mesh.bodies) - seen - {rigid.body for rigid in self.rigid})
         if missing:
             raise InputError(f"solids: no material for body {', '.join(map(repr, missing))}; add a solid for it")
+        if not self.solids:
+            raise InputError("solids: every body is rigid; at least one must deform")
+
+    def _check_rigid(self) -> None:
+        owner: dict[int, str] = {}
+        exist = ("y",) if self.mesh.axisymmetric else ("x", "y", "rz") if self.dim == 2 else (*COMPONENTS, *TURNS)
+        for i, rigid in enumerate(self.rigid):
+            _known(rigid.body, self.mesh.bodies, f"rigid[{i}].body", "body")
+            if rigid.reference is not None and len(rigid.reference) != self.dim:
+                raise InputError(f"rigid[{i}].reference: expected {self.dim} numbers, got {len(rigid.reference)}")
+            for name in (*COMPONENTS, *TURNS):
+                if name not in exist and getattr(rigid, name):
+                    plane = "axisymmetric" if self.mesh.axisymmetric else "2D"
+                    raise InputError(f"rigid[{i}].{name}: the model is {plane}; leave {name} out")
+            nodes = {int(n) for _, cells, _ in self.mesh.cells_of(rigid.body) for n in np.unique(cells)}
+            if rigid.body in owner.values():
+                raise InputError(f"rigid[{i}].body: body '{rigid.body}' is given twice; keep one of them")
+            shared = nodes & owner.keys()
+            if shared:
+                raise InputError(
+                    f"rigid[{i}].body: '{rigid.body}' and '{owner[min(shared)]}' are rigid and share points; make "
+                    "them one body"
+                )
+            owner |= dict.fromkeys(nodes, rigid.body)
+
+    def _check_equations(self) -> None:
+        for i, equation in enumerate(self.equations):
+            for j, term in enumerate(equation.terms):
+                where = f"equations[{i}].terms[{j}]"
+                if isinstance(term.on, str):
+                    _known(term.on, self.mesh.node_sets, f"{where}.on", "node set")
+                    if len(self.mesh.node_sets[term.on]) != 1:
+                        count = len(self.mesh.node_sets[term.on])
+                        raise InputError(f"{where}.on: node set '{term.on}' has {count} nodes; a term is for one")
+                elif not 0 <= term.on < len(self.mesh.points):
+                    raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(self.mesh.points)}, from 0")
+                if term.component not in COMPONENTS[: self.dim]:
+                    raise InputError(f"{where}.component: the model is 2D; z does not exist")
 
     def _check_integration(self, solid: Solid, where: str) -> None:
         kinds = sorted({kind for kind, _, _ in self.mesh.cells_of(solid.body)})
@@ -268,12 +314,21 @@ class Model:
                 _known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
             if self.dim == 2 and support.z is not None:
                 raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+        rigid = {body.body for body in self.rigid}
         for i, load in enumerate(self.loads):
             if isinstance(load, (Gravity, BodyForce)):
                 if load.on is not None:
                     _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
+                if isinstance(load, Gravity) and load.on in rigid:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force"
+                    )
             else:
                 self._check_place(load, f"loads[{i}].on")
+                if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
+                    raise InputError(
+                        f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out"
+                    )
             if isinstance(load, (Pressure, Temperature)) or callable(load.value):
                 continue
             if len(load.value) != self.dim:
@@ -285,6 +340,8 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
+            if rigid and rigid >= self._bodies_of(contact):
+                raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
         self._check_swapped()
         self._check_facets()
 
@@ -296,6 +353,11 @@ class Model:
             _known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
         else:
             _known(load.on, mesh.surfaces, where, "surface")
+
+    def _bodies_of(self, contact: Contact) -> set[str]:
+        """Bodies of both sides."""
+        cells = np.concatenate([self.mesh.surfaces[contact.contactor][:, 0], self.mesh.surfaces[contact.target][:, 0]])
+        return {body for body, own in self.mesh.bodies.items() if np.isin(cells, own).any()}
 
     def _check_swapped(self) -> None:
         sides = {(contact.contactor, contact.target): contact.name for contact in self.contacts}

@@ -81,13 +81,25 @@ class ContactResult:
 
 
 @dataclass(frozen=True)
+class RigidResult:
+    """A rigid body at the end of a step: displacement (dim,) of its reference and rotation (1,) or (3,), radians; force
+    (dim,) and moment (1,) or (3,) about the reference that move it, zero where a component is free."""
+
+    displacement: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Step:
     """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
     displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
-    reaction: (dim,) resultant of all supports; reactions: the same for each supported surface or node set (points that
-    lie on several count for each of them); load: (dim,) resultant of all loads.
+    reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
+    supported surface or node set (points that lie on several count for each of them); load: (dim,) resultant of all
+    loads; rigid: by the name of the body.
     """
 
     number: int
@@ -102,9 +114,8 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
-    earlier: float = (
-        0.0  # largest force of the steps before: what is left where the loads go back to nothing is rounding
-    )
+    rigid: Mapping[str, RigidResult] = field(default_factory=dict)
+    earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
 
     @property
     def balance_error(self) -> float:
@@ -116,6 +127,7 @@ class Step:
     def largest_force(self) -> float:
         """Largest component of any resultant, now or in a step before."""
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
+        forces += [body.force for body in self.rigid.values()]
         return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), self.earlier, 1e-300)
 
 

@@ -72,7 +72,7 @@ class Holding:
 def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
     """Work out what holds the bodies of a mesh."""
     rigid = rigid_modes(mesh)
-    support = resistance_of_supports(rigid, held.free)
+    support = resistance_of_supports(rigid, held)
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
     return Holding(
         rigid, support, pairs, free_motions([support, *ties]).shape[1] == 0, rigid.modes @ free_motions([support])

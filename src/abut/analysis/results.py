@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
 from abut.analysis.loads import Loads
+from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
 from abut.solids.elements import nodal_stress
 from abut.solvers.newton import Outcome, Stage, System
-from abut.state import ContactResult, Step
+from abut.state import ContactResult, RigidResult, Step
 
 
 def step_result(
@@ -29,6 +30,7 @@ def step_result(
     stage: Stage,
     time: float,
     before: Sequence[Step],
+    bodies: Sequence[RigidBody],
 ) -> Step:
     """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others."""
     dim = model.dim
@@ -79,6 +81,10 @@ def step_result(
         ),
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
+        rigid={
+            body.rigid.body: RigidResult(*body.motion(nodal), *body.resultant(reaction.reshape(-1, dim)))
+            for body in bodies
+        },
         earlier=max((step.largest_force for step in before), default=0.0),
     )
 

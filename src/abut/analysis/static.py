@@ -72,12 +72,14 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
 
+    loose = held.coordinates(held_by.free)
+
     def linear_solver(kind: str) -> Prepared:
-        result = prepare(kind, system, held.free, held_by.rigid.together, held_by.free, model.dim)
+        result = prepare(kind, system, held.free, held_by.rigid.together, loose, model.dim)
         note(result.note)
         return result
 
-    solver = linear_solver(choose(model.solve.linear, system, model.mesh))
+    solver = linear_solver(choose(model.solve.linear, system, model.mesh, held.coupled))
     state = start(solver.system)
     steps: list[Step] = []
     times = model.solve.ends
@@ -95,7 +97,9 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         displacement = held.free @ outcome.unknowns.displacement + held.prescribed @ stage.weights
         clock.mark("solve")
         _check_size(model, displacement, note)
-        steps.append(step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps))
+        steps.append(
+            step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps, held.bodies)
+        )
         clock.mark("results")
         if not outcome.converged:
             note(f"step {stage.number} did not converge in {len(outcome.iterations)} iterations")

@@ -247,12 +247,12 @@ def _compliance(model: Model, contactor: Surface, target: Surface) -> float:
     total = 0.0
     for surface in (contactor, target):
         bodies = [s for s in model.solids if np.isin(surface.cells, model.mesh.bodies[s.body]).any()]
-        total += max(2.0 * (1.0 - s.material.poisson**2) / s.material.young for s in bodies)
+        total += max((2.0 * (1.0 - s.material.poisson**2) / s.material.young for s in bodies), default=0.0)
     return total
 
 
 def _modulus(model: Model, contactor: Surface, target: Surface) -> float:
-    """The softer Young's modulus of the two sides."""
+    """The softer Young's modulus of the two sides; rigid bodies have none."""
     young = {solid.body: solid.material.young for solid in model.solids}
     cells = np.concatenate([contactor.cells, target.cells])
-    return min(young[body] for body, members in model.mesh.bodies.items() if np.isin(cells, members).any())
+    return min(young[body] for body in young if np.isin(cells, model.mesh.bodies[body]).any())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.mesh.mesh import Mesh
+
+if TYPE_CHECKING:
+    from abut.discretization.supports import Supports
 
 FREE = 1e-7  # resistance, relative to the strongest, below which a motion counts as free
 
@@ -30,6 +33,23 @@ class RigidModes:
         """(dim n_points, per_group) each body's own motions, those of all bodies added up: as they share no points, every
         body still has its own."""
         return np.asarray(self.modes.reshape(len(self.modes), -1, self.per_group).sum(axis=1))
+
+
+def motions(x: NDArray[np.float64], axisymmetric: bool) -> NDArray[np.float64]:
+    """Unit translations, then small turns about the axes, of points x (n, dim): (n, dim, 3 or 6); axisymmetric: of the
+    shift along the axis alone, since nothing else leaves a ring unstrained, (n, dim, 1)."""
+    n, dim = x.shape
+    if axisymmetric:
+        return np.broadcast_to(np.eye(dim)[:, 1:], (n, dim, 1)).copy()
+    result = np.zeros((n, dim, 3 if dim == 2 else 6))
+    result[:, :, :dim] = np.eye(dim)
+    if dim == 2:
+        result[:, 0, 2], result[:, 1, 2] = -x[:, 1], x[:, 0]
+        return result
+    for a in range(3):
+        b, c = (a + 1) % 3, (a + 2) % 3
+        result[:, b, 3 + a], result[:, c, 3 + a] = -x[:, c], x[:, b]
+    return result
 
 
 def rigid_modes(mesh: Mesh) -> RigidModes:
@@ -51,25 +71,14 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
         x = mesh.points[nodes] - mesh.points[nodes].mean(axis=0)
         x = x / max(np.abs(x).max(), 1e-300)
         first = per_group * g
-        if mesh.axisymmetric:  # nothing but a shift along the axis leaves a ring unstrained
-            modes[nodes, 1, first] = 1.0
-            continue
-        for a in range(dim):
-            modes[nodes, a, first + a] = 1.0
-        if dim == 2:
-            modes[nodes, 0, first + 2], modes[nodes, 1, first + 2] = -x[:, 1], x[:, 0]
-        else:
-            for a in range(3):
-                b, c = (a + 1) % 3, (a + 2) % 3
-                modes[nodes, b, first + 3 + a], modes[nodes, c, first + 3 + a] = -x[:, c], x[:, b]
+        modes[nodes, :, first : first + per_group] = motions(x, mesh.axisymmetric)
     return RigidModes(modes.reshape(n * dim, -1), tuple(groups), per_group)
 
 
-def resistance_of_supports(rigid: RigidModes, free: Any) -> NDArray[np.float64]:
-    """Gram matrix of what supports take out of the rigid motions."""
-    moved = free.T @ rigid.modes
-    held = rigid.modes.T @ rigid.modes - moved.T @ moved
-    return held / max(1.0, float(free.shape[0] - free.shape[1]))
+def resistance_of_supports(rigid: RigidModes, held: Supports) -> NDArray[np.float64]:
+    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
+    taken = rigid.modes - held.free @ held.coordinates(rigid.modes)
+    return np.asarray(taken.T @ taken / max(1.0, float(held.free.shape[0] - held.free.shape[1])))
 
 
 def resistance_of_rows(rigid: RigidModes, rows: Any) -> NDArray[np.float64]:

@@ -1,14 +1,18 @@
-"""Supports as an exact change of variables: u = Z u_free + u_prescribed; theory (F8)."""
+"""Supports, equations and rigid bodies as an exact change of variables: u = Z u_free + u_prescribed; theory (F8)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
+from abut.discretization.bodies import RigidBody, rigid_bodies
+from abut.discretization.elimination import eliminate
 from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.interface.geometry import nodal_normals
@@ -18,17 +22,30 @@ from abut.model import Model, Support
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
 ON_AXIS = 1e-9  # radius over the model's size that counts as none
 ROUNDING = 1e-12  # of the largest prescribed value: functions of position that agree may differ by this
+STUCK = 1e-12  # square of a point's motion over its largest, by unit free displacements, that counts as none
+ORTHONORMAL = 1e-12
 SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
 
 
 @dataclass(frozen=True)
 class Supports:
-    """free: (dim n_points, n_free) sparse with orthonormal columns; prescribed: (dim n_points, n_histories);
-    largest: displacement prescribed at any time."""
+    """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
+    ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
+    at any time; bodies: the rigid ones."""
 
     free: Any
     prescribed: NDArray[np.float64]
     largest: float = 0.0
+    orthonormal: bool = True
+    coupled: bool = False
+    bodies: Sequence[RigidBody] = ()
+
+    def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
+        moved = self.free.T @ vectors
+        if self.orthonormal or not moved.size:
+            return np.asarray(moved)
+        return np.asarray(spla.splu((self.free.T @ self.free).tocsc()).solve(moved))
 
     def reduce(self, matrix: Any) -> Any:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
@@ -39,21 +56,108 @@ class Supports:
 
     def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """How much of a direction (n, dim unit vectors) is held at each of n points: 1 fully, 0 free."""
-        dim = directions.shape[1]
-        n = len(points)
-        pick = sp.csr_matrix(
-            (directions.ravel(), (np.repeat(np.arange(n), dim), (dim * points[:, None] + np.arange(dim)).ravel())),
-            shape=(n, self.free.shape[0]),
-        )
-        moved = pick @ self.free
-        return np.asarray(1.0 - moved.multiply(moved).sum(axis=1)).ravel()
+        n, dim = directions.shape
+        rows = (dim * points[:, None] + np.arange(dim)).ravel()
+        if self.orthonormal:
+            pick = sp.csr_matrix(
+                (directions.ravel(), (np.repeat(np.arange(n), dim), rows)), shape=(n, self.free.shape[0])
+            )
+            moved = pick @ self.free
+            return np.asarray(1.0 - moved.multiply(moved).sum(axis=1)).ravel()
+        own = [self.free[rows[a::dim]] for a in range(dim)]
+        gram = np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in own] for p in own]).transpose(2, 0, 1)
+        size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
+        can_move = size > STUCK * np.maximum(size[:, -1:], 1e-300)
+        along = np.einsum("nda,nd->na", axes, directions)
+        return np.asarray(1.0 - np.where(can_move & (size[:, -1:] > 0.0), along**2, 0.0).sum(axis=1))
 
 
 def supports(model: Model) -> Supports:
-    """Collect all supports. Raises SingularModelError where two of them contradict each other at a node, InputError for
-    functions that do not return a finite number for each node."""
+    """Collect all supports, equations and rigid bodies. Raises SingularModelError where they contradict each other,
+    InputError for functions that do not return a finite number for each node."""
+    conditions, bodies = _conditions(model), rigid_bodies(model)
+    on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in bodies)]))
+    free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), bodies)
+    orthonormal, coupled = True, False
+    if bodies or model.equations:
+        free, prescribed = _together(model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies)
+        gram = free.T @ free
+        orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
+        point = sp.csr_matrix((np.ones(free.nnz), (free.tocoo().row // model.dim, free.tocoo().col)))
+        point.sum_duplicates()
+        coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
+    factors = [1.0 if history is None else history.largest for history in model.histories]
+    largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
+    return Supports(free, prescribed, largest, orthonormal, coupled, bodies)
+
+
+def _together(
+    model: Model,
+    free: Any,
+    prescribed: NDArray[np.float64],
+    conditions: tuple[NDArray[Any], ...],
+    bodies: Sequence[RigidBody],
+) -> tuple[Any, NDArray[np.float64]]:
+    """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12)."""
+    n_dofs, n_own = free.shape
+    free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
+    histories = model.histories
+    rows, values, names = [], [], []
+    first = n_own
+    for body in bodies:
+        given, value = body.prescribed()
+        own = sp.csr_matrix(given)
+        shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
+                              shape=(given.shape[1], free.shape[1]))  # fmt: skip
+        rows.append(own @ shift)
+        values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(body.rigid.amplitude)]))
+        names += [f"rigid body '{body.rigid.body}'"] * len(value)
+        first += given.shape[1]
+    node, direction, value, origin = conditions
+    dim = model.dim
+    entries = (np.repeat(np.arange(len(node)), dim), (dim * node[:, None] + np.arange(dim)).ravel())
+    held = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
+    linear, constants = equations(model)
+    names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
+    points = sp.vstack([held, linear], format="csr")
+    rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
+    values.append(np.concatenate([value, constants]) - points @ prescribed)
+    inner, constant = eliminate(sp.vstack(rows, format="csr"), np.concatenate(values), names)
+    return (free @ inner).tocsr(), prescribed + free @ constant
+
+
+def equations(model: Model) -> tuple[Any, NDArray[np.float64]]:
+    """Coefficients (n_equations, dim n_points) sparse and values (n_equations, n_histories) of a model's equations."""
+    histories, dim = model.histories, model.dim
+    values = np.zeros((len(model.equations), len(histories)))
+    entries: list[tuple[int, int, float]] = []
+    for i, equation in enumerate(model.equations):
+        values[i, histories.index(equation.amplitude)] = equation.value
+        for term in equation.terms:
+            node = int(model.mesh.node_sets[term.on][0]) if isinstance(term.on, str) else int(term.on)
+            entries.append((i, dim * node + "xyz".index(term.component), term.coefficient))
+    row, column, coefficient = np.array(entries, dtype=float).reshape(-1, 3).T
+    shape = (len(model.equations), model.mesh.points.size)
+    return sp.csr_matrix((coefficient, (row.astype(np.int64), column.astype(np.int64))), shape=shape), values
+
+
+def _without_rounding(rows: Any, size: NDArray[np.float64]) -> Any:
+    """Without entries that are nothing beside the size of their row before supports were put in."""
+    entries = rows.tocoo()
+    keep = np.abs(entries.data) > ROUNDING * size[entries.row]
+    return sp.csr_matrix((entries.data[keep], (entries.row[keep], entries.col[keep])), shape=rows.shape)
+
+
+def _name(model: Model, origin: int) -> str:
+    return "the axis" if origin == AXIS else f"support on '{model.supports[origin].on}'"
+
+
+def _node_by_node(
+    model: Model, conditions: tuple[NDArray[Any], ...], bodies: Sequence[RigidBody]
+) -> tuple[Any, NDArray[np.float64]]:
+    """Supports at the points that belong to no rigid body: columns left free, and prescribed displacements."""
     mesh, dim = model.mesh, model.dim
-    node, direction, value, origin = _conditions(model)
+    node, direction, value, origin = conditions
     prescribed = np.zeros((len(mesh.points), dim, value.shape[1]))
     slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
     order = np.lexsort((np.abs(direction).argmax(axis=1), node))
@@ -61,7 +165,7 @@ def supports(model: Model) -> Supports:
     held, start = np.unique(node, return_index=True)
     stop = np.append(start[1:], len(node))
     free_rows, free_columns, free_values = [], [], []
-    unheld = np.setdiff1d(np.arange(len(mesh.points)), held)
+    unheld = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([held, *(body.nodes for body in bodies)]))
     rows = (dim * unheld[:, None] + np.arange(dim)).ravel()
     free_rows.append(rows)
     free_columns.append(np.arange(len(rows)))
@@ -87,9 +191,7 @@ def supports(model: Model) -> Supports:
         shape=(dim * len(mesh.points), column),
     )
     free.eliminate_zeros()
-    factors = [1.0 if history is None else history.largest for history in model.histories]
-    flat = prescribed.reshape(free.shape[0], -1)
-    return Supports(free, flat, float((np.abs(flat) @ factors).max(initial=0.0)))
+    return free, prescribed.reshape(free.shape[0], -1)
 
 
 def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:

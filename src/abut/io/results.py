@@ -114,6 +114,9 @@ def _step_summary(step: Step) -> dict[str, Any]:
             }
             for c in step.contacts
         ],
+        "rigid": {
+            body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
+        },
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
     }
 
@@ -127,13 +130,19 @@ def _history(solution: Solution) -> str:
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     force = [f"force_{a}" for a in "xyz"[:dim]]
-    table.writerow(
-        ["step", "factor", "converged", "contact", *force, "max_pressure", "area", "max_penetration", "active"]
-    )
+    turn = [a for a in "xyz" if dim == 3 or a == "z"]
+    moving = ["rigid", *(f"displacement_{a}" for a in "xyz"[:dim]), *(f"rotation_{a}" for a in turn)]
+    moving = [*moving, *(f"moment_{a}" for a in turn)] if solution.model.rigid else []
+    of_contact = ["max_pressure", "area", "max_penetration", "active"]
+    table.writerow(["step", "factor", "converged", "contact", *force, *of_contact, *moving])
     for step in solution.steps:
         for c in step.contacts:
             row = [step.number, step.factor, int(step.converged), c.name, *c.force.tolist()]
-            table.writerow([*row, c.max_pressure, c.area, c.max_penetration, c.active])
+            row += [c.max_pressure, c.area, c.max_penetration, c.active]
+            table.writerow([*row, *[""] * len(moving)])
+        for name, body in step.rigid.items():
+            row = [step.number, step.factor, int(step.converged), "", *body.force.tolist(), *[""] * len(of_contact)]
+            table.writerow([*row, name, *body.displacement.tolist(), *body.rotation.tolist(), *body.moment.tolist()])
     return text.getvalue()
 
 

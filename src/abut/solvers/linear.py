@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.solvers.active_set import Outcome, System
 from abut.solvers.condensed import condense
@@ -33,13 +34,24 @@ class Prepared:
     count: Count | None = None
 
 
-def choose(linear: str, system: System, mesh: Mesh) -> str:
-    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do."""
+def choose(linear: str, system: System, mesh: Mesh, coupled: bool) -> str:
+    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do.
+
+    coupled: free displacements belong to several points at once. Raises InputError where "amg" cannot do that."""
+    if linear == "amg" and coupled:
+        raise InputError(
+            'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
+            'couple points; choose "direct" or "auto"'
+        )
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and len(system.load) >= LARGE[degree]
-    able = find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in system.pairs)
+    able = (
+        not coupled
+        and find_spec("pyamg") is not None
+        and not any(pair.smooth or pair.redundant for pair in system.pairs)
+    )
     return "amg" if large and able else "direct"
 
 
@@ -49,14 +61,14 @@ def prepare(
     """Set a linear solver up.
 
     linear: "direct" or "amg"; free: (dim n_points, n_free) change of variables; rigid: (dim n_points, m) rigid motions of
-    the bodies; loose: (dim n_points, k) those that supports leave free.
+    the bodies; loose: (n_free, k) those that supports leave free.
     Raises InputError where the solver is not installed or cannot serve the system.
     """
     if linear == "amg":
         levels = hierarchy(system.stiffness, free, rigid, dim)
-        iterative, count = iterate(system, levels, free.T @ loose)
+        iterative, count = iterate(system, levels, loose)
         return Prepared(iterative, lambda outcome, _: outcome, "multigrid (PyAMG)", levels.summary, count)
-    condensed = condense(system, free.T @ loose)
+    condensed = condense(system, loose)
     name = f"direct ({solver_name()})"
     if condensed is None:
         return Prepared(system, lambda outcome, _: outcome, name, f"direct solver {solver_name()}")

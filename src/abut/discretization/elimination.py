@@ -1,0 +1,129 @@
+"""Linear constraints between unknowns, eliminated exactly: y = Z z + sum of w_h y_h; theory (F11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.errors import SingularModelError
+
+DEPENDENT = 1e-8  # coefficients over the constraint's own from which on it says something new
+ROUNDING = 1e-13  # coefficients over the largest that are what subtractions left
+PIVOT = 0.1  # coefficients over the largest among which the pivot may be chosen so that few others change
+AGREE = 1e-9  # of the values that make it up: what may be missing where constraints repeat each other
+NAMED = 6  # constraints named in an error
+
+
+@dataclass(frozen=True)
+class Expression:
+    """One unknown by others: the sum of terms and value (n_histories,); from constraint ``source`` and the unknowns
+    ``through`` that were put into it."""
+
+    terms: dict[int, float]
+    value: NDArray[np.float64]
+    source: int
+    through: tuple[int, ...] = ()
+
+
+def eliminate(rows: Any, values: NDArray[np.float64], names: Sequence[str]) -> tuple[Any, NDArray[np.float64]]:
+    """Solve rows @ y = values by Gaussian elimination, one unknown for each constraint that says something new.
+
+    rows: (m, n) sparse; values: (m, n_histories); names: of each constraint, for errors.
+    Returns free (n, n_free) sparse and prescribed (n, n_histories), y = free @ z + prescribed for any z.
+    Raises SingularModelError for constraints that contradict each other; repeated ones do no harm.
+    """
+    rows = rows.tocsr()
+    uses = np.bincount(rows.indices, minlength=rows.shape[1])
+    slack = max(1e-12 * np.abs(values).max(initial=0.0), 1e-39)
+    solved: dict[int, Expression] = {}
+    for i in range(rows.shape[0]):
+        own = slice(rows.indptr[i], rows.indptr[i + 1])
+        given = dict(zip(rows.indices[own].tolist(), rows.data[own].tolist()))
+        row, value, through, size = _substitute(given, values[i], solved)
+        scale = max(map(abs, given.values()), default=0.0)
+        largest = max(map(abs, row.values()), default=0.0)
+        if largest <= DEPENDENT * scale:
+            if np.abs(value).max() > max(slack, AGREE * size):
+                raise SingularModelError(_contradiction(i, through, solved, names))
+            continue
+        row = {k: c for k, c in row.items() if abs(c) > ROUNDING * largest}
+        pivot = min((k for k, c in row.items() if abs(c) >= PIVOT * largest), key=lambda k: (uses[k], -abs(row[k]), k))
+        by = row.pop(pivot)
+        solved[pivot] = Expression({k: -c / by for k, c in row.items()}, value / by, i, through)
+    return _assemble(solved, rows.shape[1], values.shape[1])
+
+
+def _substitute(
+    given: dict[int, float], value: NDArray[np.float64], solved: dict[int, Expression]
+) -> tuple[dict[int, float], NDArray[np.float64], tuple[int, ...], float]:
+    """A constraint without the unknowns that are solved for: coefficients, value, what was put in, size of what was added
+    up to the value. Expressions hold unknowns solved for later at most, so this ends."""
+    row, value, size = dict(given), value.copy(), float(np.abs(value).max(initial=0.0))
+    through = []
+    pending = [k for k in row if k in solved]
+    while pending:
+        k = pending.pop()
+        factor = row.pop(k, 0.0)
+        if factor == 0.0:
+            continue
+        through.append(k)
+        known = solved[k]
+        value -= factor * known.value
+        size = max(size, abs(factor) * float(np.abs(known.value).max(initial=0.0)))
+        for other, coefficient in known.terms.items():
+            row[other] = row.get(other, 0.0) + factor * coefficient
+            if other in solved:
+                pending.append(other)
+    return row, value, tuple(through), size
+
+
+def _assemble(solved: dict[int, Expression], n: int, n_histories: int) -> tuple[Any, NDArray[np.float64]]:
+    """Back substitution: the last one solved for holds free unknowns only."""
+    final: dict[int, tuple[dict[int, float], NDArray[np.float64]]] = {}
+    none = np.zeros(n_histories)
+    for pivot, expression in reversed(solved.items()):
+        terms: dict[int, float] = {}
+        value = expression.value.copy()
+        for k, coefficient in expression.terms.items():
+            inner, constant = final.get(k, ({k: 1.0}, none))
+            value += coefficient * constant
+            for other, by in inner.items():
+                terms[other] = terms.get(other, 0.0) + coefficient * by
+        final[pivot] = terms, value
+    remain = np.setdiff1d(np.arange(n), np.fromiter(final, dtype=np.int64, count=len(final)))
+    column = np.full(n, -1)
+    column[remain] = np.arange(len(remain))
+    entries = [(pivot, column[k], c) for pivot, (terms, _) in final.items() for k, c in terms.items() if c != 0.0]
+    i, j, c = np.array(entries, dtype=float).reshape(-1, 3).T
+    free = sp.csr_matrix(
+        (
+            np.concatenate([np.ones(len(remain)), c]),
+            (np.concatenate([remain, i.astype(np.int64)]), np.concatenate([column[remain], j.astype(np.int64)])),
+        ),
+        shape=(n, len(remain)),
+    )
+    prescribed = np.zeros((n, n_histories))
+    for pivot, (_, value) in final.items():
+        prescribed[pivot] = value
+    return free, prescribed
+
+
+def _contradiction(i: int, through: Sequence[int], solved: dict[int, Expression], names: Sequence[str]) -> str:
+    """Which constraints take part, found by going back through what was put in."""
+    involved, seen, pending = {i}, set(), list(through)
+    while pending:
+        k = pending.pop()
+        if k not in seen:
+            seen.add(k)
+            involved.add(solved[k].source)
+            pending += solved[k].through
+    others = list(dict.fromkeys(names[k] for k in sorted(involved)))
+    more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
+    if len(others) == 1:
+        return f"{others[0]} contradicts what is prescribed at its points: no displacement meets both; take one of them out"
+    return f"{', '.join(others[:NAMED])}{more} contradict each other: no displacement meets all; take one of them out"
