@@ -98,7 +98,7 @@ def solve(model: Model, observer: Observer | None = None) -> Solution:
         clock.mark("solve")
         _check_size(model, displacement, note)
         steps.append(
-            step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps, held.bodies)
+            step_result(model, full_stiffness, loaded, displacement, system, outcome, stage, time_, steps, held)
         )
         clock.mark("results")
         if not outcome.converged:
