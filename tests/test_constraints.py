@@ -40,7 +40,8 @@ def test_elimination_spans_the_solutions(seed: int) -> None:
     rows = rng.standard_normal((12, 30)) * (rng.random((12, 30)) < 0.2)
     rows[8:] = rng.standard_normal((4, 8)) @ rows[:8]  # repeated
     y = rng.standard_normal((30, 2))
-    free, prescribed = eliminate(sp.csr_matrix(rows), rows @ y, [str(i) for i in range(12)])
+    done = eliminate(sp.csr_matrix(rows), rows @ y, [str(i) for i in range(12)])
+    free, prescribed = done.free, done.prescribed
     size = np.abs(rows).max()
     assert np.abs(rows @ free.toarray()).max() < 1e-11 * size
     assert np.abs(rows @ prescribed - rows @ y).max() < 1e-11 * size
@@ -49,13 +50,14 @@ def test_elimination_spans_the_solutions(seed: int) -> None:
 
 def test_elimination_follows_chains_and_names_contradictions() -> None:
     links = sp.csr_matrix(np.eye(6, 7) - np.eye(6, 7, 1))
-    free, prescribed = eliminate(links, np.arange(6.0)[:, None], list("abcdef"))
+    done = eliminate(links, np.arange(6.0)[:, None], list("abcdef"))
+    free, prescribed = done.free, done.prescribed
     assert free.shape == (7, 1)
     assert np.ptp(free.toarray()) == 0.0
     assert np.abs(links @ prescribed - np.arange(6.0)[:, None]).max() < 1e-14
     around = sp.vstack([links, sp.csr_matrix(np.eye(7)[:1] - np.eye(7)[2:3])])
     eliminate(around, np.append(np.arange(6.0), 1.0)[:, None], list("abcdefg"))  # 0 + 1 = 1: repeated
-    with pytest.raises(SingularModelError, match="^a, b, g contradict each other"):
+    with pytest.raises(SingularModelError, match=r"^a, b, g contradict"):
         eliminate(around, np.append(np.arange(6.0), 1.1)[:, None], list("abcdefg"))
 
 
@@ -81,6 +83,7 @@ def test_an_end_moved_through_one_node() -> None:
     ours, theirs = abut.solve(moved).steps[-1], abut.solve(whole).steps[-1]
     assert np.abs(ours.displacement - theirs.displacement).max() < EXACT * 0.01
     assert ours.reactions["bar.left"] == pytest.approx(theirs.reactions["bar.left"], rel=EXACT)
+    assert ours.reactions["handle"][0] == pytest.approx(theirs.reactions["bar.right"][0], rel=EXACT)
     assert np.abs(ours.reaction).max() < EXACT * abs(ours.reactions["bar.left"][0])
 
 
@@ -274,29 +277,26 @@ def test_a_free_tool_finds_its_place(condensed: bool, monkeypatch: pytest.Monkey
     assert np.abs(moved.displacement - free.displacement).max() < 1e-8 * np.abs(free.displacement).max()
 
 
-@pytest.mark.parametrize("tool_carries", [False, True])
-def test_a_rigid_plate_in_space(tool_carries: bool) -> None:
-    """Flush with a block held on its sides, sinking by d and turned about x: p = E' (d + theta y) / H with nu = 0, its
-    resultant and moment."""
+def test_a_rigid_plate_in_space() -> None:
+    """Flush with a block, nu = 0, sinking by d and turned about x: its force by Betti's theorem, and where its points go."""
     depth, turn, young = 2e-3, 1e-3, 1000.0
     block = box((0, 1), (0, 1), (-1, 0), (2, 3, 2), "hex20")
-    tool = box((0, 1), (0, 1), (0, 0.5), (2, 3, 1) if tool_carries else (1, 1, 1), "hex20")
+    tool = box((0, 1), (0, 1), (0, 0.5), (1, 1, 1), "hex20")
     mesh = join({"block": block, "tool": tool})
-    pair = ("tool.bottom", "block.top") if tool_carries else ("block.top", "tool.bottom")
     model = abut.Model(
         mesh, [abut.Solid("block", abut.LinearElastic(young, 0.0))],
         [abut.Support("block.bottom", x=0, y=0, z=0)],
-        contacts=[abut.Contact(*pair)],
+        contacts=[abut.Contact("block.top", "tool.bottom")],
         rigid=[abut.Rigid("tool", (0.5, 0.5, 0.0), 0.0, 0.0, -depth, rx=turn, ry=0.0, rz=0.0)],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
     tool_result = step.rigid["tool"]
     turned = step.displacement[mesh.nodes_of("tool")]
     arm = mesh.points[mesh.nodes_of("tool")] - [0.5, 0.5, 0.0]
-    expected = np.cross(np.broadcast_to([turn, 0, 0], arm.shape), arm) + [0.0, 0.0, -depth]
+    expected = np.array([0.0, 0.0, -depth]) + np.cross(np.broadcast_to([turn, 0, 0], arm.shape), arm)
     assert np.abs(turned - expected).max() < 1e-15
     assert tool_result.rotation == pytest.approx([turn, 0.0, 0.0], abs=1e-14)
-    # The mean displacement of the block's top is -d, so that by Betti's theorem (uniform compression) the force is E d / H.
+    # The mean displacement of the block's top is -d: with uniform compression as the other state the force is E d / H.
     assert tool_result.force == pytest.approx([0.0, 0.0, -young * depth], rel=1e-8, abs=1e-8)
     assert tool_result.moment[0] > 0.0
     assert tool_result.force == pytest.approx(-step.reactions["block.bottom"], rel=1e-8, abs=1e-8)
@@ -325,7 +325,7 @@ def test_a_rigid_tool_free_in_space() -> None:
 
 def test_an_axisymmetric_rigid_punch() -> None:
     """Free along the axis, pushed by F: the pressure carries F; far from its edge Sneddon's p(0) = F / (2 pi a^2)."""
-    block = rectangle((0, 8), (-8, 0), (48, 24), "quad8")
+    block = rectangle((0, 4), (-4, 0), (48, 24), "quad8")
     punch = rectangle((0, 1), (0, 1), (2, 1), "quad4")
     mesh = join({"block": block, "punch": punch})
     model = abut.Model(
@@ -339,7 +339,9 @@ def test_an_axisymmetric_rigid_punch() -> None:
     contact = step.contacts[0]
     x = contact.contactor.points[np.maximum(contact.contactor.nodes, 0), 0]
     centre = contact.pressure[(x == 0.0) & (contact.contactor.nodes >= 0)]
-    assert centre == pytest.approx(5.0 / (2 * np.pi), rel=0.05)  # six facets across the radius, a block 8 radii deep
+    assert centre == pytest.approx(
+        5.0 / (2 * np.pi), rel=0.05
+    )  # twelve facets across the radius, a block of finite depth
 
 
 def test_supports_on_a_rigid_body() -> None:
@@ -349,9 +351,9 @@ def test_supports_on_a_rigid_body() -> None:
     by_support = replace(model, supports=[*model.supports, abut.Support("tool.top", x=0, y=-0.01)])
     step = abut.solve(by_support).steps[-1]
     assert np.abs(step.displacement - by_components.displacement).max() < EXACT * 0.01
-    assert step.reactions["tool.top"] == pytest.approx([0.0, 0.0], abs=1e-30) or True
-    with pytest.raises(SingularModelError, match="rigid body 'tool', support on 'tool.top' contradict each other"):
-        twice = pressed(**DOWN)
+    assert step.reactions["tool.top"] == pytest.approx(by_components.rigid["tool"].force, rel=EXACT, abs=1e-9)
+    twice = pressed(**DOWN)
+    with pytest.raises(SingularModelError, match=r"rigid body 'tool', support on 'tool\.top' contradict"):
         abut.solve(replace(twice, supports=[*twice.supports, abut.Support("tool.top", y=-0.02)]))
 
 
@@ -409,6 +411,8 @@ def test_a_body_glued_to_a_rigid_one() -> None:
         ({"rigid": [abut.Rigid("tool"), abut.Rigid("block")], "solids": []}, "at least one must deform"),
         ({"loads": [abut.Gravity((0, -1), on="tool")]}, "has no density"),
         ({"loads": [abut.Temperature("tool", 1.0)]}, "does not expand"),
+        ({"contacts": [abut.Contact("tool.bottom", "block.top")]}, "swap contactor and target"),
+        ({"contacts": [abut.Contact("tool.bottom", "tool.top")]}, "both sides"),
         ({"equations": [abut.Equation((abut.Term(10**6, "x", 1.0),))]}, "no point 1000000"),
         ({"equations": [abut.Equation((abut.Term(0, "z", 1.0),))]}, "z does not exist"),
         ({"equations": [abut.Equation((abut.Term("none", "x", 1.0),))]}, "no node set named 'none'"),

@@ -130,7 +130,8 @@ class Equation:
 class Rigid:
     """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and turns
     rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``; components
-    left out are free. Reference: the mean of the body's points, where left out. The body needs no material."""
+    left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and in contact
+    it is the target."""
 
     body: str
     reference: tuple[float, ...] | None = None

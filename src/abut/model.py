@@ -319,8 +319,8 @@ class Model:
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
-            if rigid and rigid >= self._bodies_of(contact):
-                raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
+            if rigid >= self._bodies_of(contact.contactor):
+                self._refuse_rigid(i, contact, rigid)
         self._check_swapped()
         self._check_facets()
 
@@ -333,9 +333,16 @@ class Model:
         else:
             _known(load.on, mesh.surfaces, where, "surface")
 
-    def _bodies_of(self, contact: Contact) -> set[str]:
-        """Bodies of both sides."""
-        cells = np.concatenate([self.mesh.surfaces[contact.contactor][:, 0], self.mesh.surfaces[contact.target][:, 0]])
+    def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
+        if rigid >= self._bodies_of(contact.target):
+            raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
+        raise InputError(
+            f"contacts[{i}].contactor: '{contact.contactor}' is rigid; the pressure needs the displacements of its own side to "
+            "be unique: swap contactor and target"
+        )
+
+    def _bodies_of(self, surface: str) -> set[str]:
+        cells = self.mesh.surfaces[surface][:, 0]
         return {body for body, own in self.mesh.bodies.items() if np.isin(cells, own).any()}
 
     def _check_swapped(self) -> None:

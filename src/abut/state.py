@@ -98,7 +98,8 @@ class Step:
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
     reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
-    supported surface or node set (points that lie on several count for each of them); load: (dim,) resultant of all
+    supported surface or node set without the share of equations (points that lie on several count for each of them, those
+    of a rigid body for the whole body); load: (dim,) resultant of all
     loads; rigid: by the name of the body.
     """
 

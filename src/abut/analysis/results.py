@@ -12,6 +12,7 @@ from abut.analysis.certificate import certificate
 from abut.analysis.loads import Loads
 from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair
+from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
@@ -30,7 +31,7 @@ def step_result(
     stage: Stage,
     time: float,
     before: Sequence[Step],
-    bodies: Sequence[RigidBody],
+    held: Supports,
 ) -> Step:
     """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others."""
     dim = model.dim
@@ -41,6 +42,8 @@ def step_result(
         contact_force += pair.rows.T @ pressure
     reaction = stiffness @ displacement - loaded.forces @ stage.weights - contact_force
     nodal = displacement.reshape(-1, dim)
+    carried = reaction if held.links is None else reaction - held.links.forces(reaction)
+    by_supports = carried.reshape(-1, dim)
     temperatures = {solid.body: time * solid.temperature for solid in model.solids}
     materials = {solid.body: solid.material for solid in model.solids}
     cycling = {}
@@ -55,11 +58,17 @@ def step_result(
         iterations=outcome.iterations,
         displacement=nodal,
         stress=nodal_stress(
-            model.mesh, materials, temperatures, nodal, model.plane, loaded.temperature @ stage.weights, model.integration
+            model.mesh,
+            materials,
+            temperatures,
+            nodal,
+            model.plane,
+            loaded.temperature @ stage.weights,
+            model.integration,
         ),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
-            on: reaction.reshape(-1, dim)[model.mesh.nodes_of(on)].sum(axis=0)
+            on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
         load=loaded.resultant @ stage.weights,
@@ -75,12 +84,15 @@ def step_result(
         ),
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
-        rigid={
-            body.rigid.body: RigidResult(*body.motion(nodal), *body.resultant(reaction.reshape(-1, dim)))
-            for body in bodies
-        },
+        rigid={body.rigid.body: RigidResult(*body.motion(nodal), *body.resultant(by_supports)) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
     )
+
+
+def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
+    """Nodes, and all of the rigid bodies they belong to: what holds one point of those holds the whole."""
+    touched = [body.nodes for body in bodies if np.isin(nodes, body.nodes).any()]
+    return np.unique(np.concatenate([nodes, *touched]))
 
 
 def _largest_pressures(n_pairs: int, steps: Sequence[Step]) -> list[float]:

@@ -30,11 +30,21 @@ class Expression:
     through: tuple[int, ...] = ()
 
 
-def eliminate(rows: Any, values: NDArray[np.float64], names: Sequence[str]) -> tuple[Any, NDArray[np.float64]]:
+@dataclass(frozen=True)
+class Eliminated:
+    """free (n, n_free) sparse and prescribed (n, n_histories): y = free @ z + prescribed for any z. independent: numbers of
+    the constraints that say something new; pivots: the unknown that each of them is solved for."""
+
+    free: Any
+    prescribed: NDArray[np.float64]
+    independent: NDArray[np.int64]
+    pivots: NDArray[np.int64]
+
+
+def eliminate(rows: Any, values: NDArray[np.float64], names: Sequence[str]) -> Eliminated:
     """Solve rows @ y = values by Gaussian elimination, one unknown for each constraint that says something new.
 
     rows: (m, n) sparse; values: (m, n_histories); names: of each constraint, for errors.
-    Returns free (n, n_free) sparse and prescribed (n, n_histories), y = free @ z + prescribed for any z.
     Raises SingularModelError for constraints that contradict each other; repeated ones do no harm.
     """
     rows = rows.tocsr()
@@ -55,7 +65,9 @@ def eliminate(rows: Any, values: NDArray[np.float64], names: Sequence[str]) -> t
         pivot = min((k for k, c in row.items() if abs(c) >= PIVOT * largest), key=lambda k: (uses[k], -abs(row[k]), k))
         by = row.pop(pivot)
         solved[pivot] = Expression({k: -c / by for k, c in row.items()}, value / by, i, through)
-    return _assemble(solved, rows.shape[1], values.shape[1])
+    free, prescribed = _assemble(solved, rows.shape[1], values.shape[1])
+    independent = np.array([expression.source for expression in solved.values()], dtype=np.int64)
+    return Eliminated(free, prescribed, independent, np.array(list(solved), dtype=np.int64))
 
 
 def _substitute(

@@ -28,10 +28,29 @@ SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count
 
 
 @dataclass(frozen=True)
+class Links:
+    """What the forces of equations follow from. outer: (dim n_points, n) the unknowns before equations; matrix: (m, m) the
+    coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
+    (m, dim n_points) coefficients on all displacements of those that are equations."""
+
+    outer: Any
+    matrix: Any
+    pivots: NDArray[np.int64]
+    equations: Any
+
+    def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The share of equations in the forces (dim n_points,) that hold the points."""
+        if not len(self.pivots):
+            return np.zeros_like(residual)
+        multipliers = spla.splu(self.matrix.T.tocsc()).solve((self.outer.T @ residual)[self.pivots])
+        return np.asarray(self.equations.T @ multipliers)
+
+
+@dataclass(frozen=True)
 class Supports:
     """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
     ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
-    at any time; bodies: the rigid ones."""
+    at any time; bodies: the rigid ones; links: where there are equations."""
 
     free: Any
     prescribed: NDArray[np.float64]
@@ -39,6 +58,7 @@ class Supports:
     orthonormal: bool = True
     coupled: bool = False
     bodies: Sequence[RigidBody] = ()
+    links: Links | None = None
 
     def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
@@ -78,9 +98,11 @@ def supports(model: Model) -> Supports:
     conditions, bodies = _conditions(model), rigid_bodies(model)
     on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in bodies)]))
     free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), bodies)
-    orthonormal, coupled = True, False
+    orthonormal, coupled, links = True, False, None
     if bodies or model.equations:
-        free, prescribed = _together(model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies)
+        free, prescribed, links = _together(
+            model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies
+        )
         gram = free.T @ free
         orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
         point = sp.csr_matrix((np.ones(free.nnz), (free.tocoo().row // model.dim, free.tocoo().col)))
@@ -88,7 +110,7 @@ def supports(model: Model) -> Supports:
         coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
     factors = [1.0 if history is None else history.largest for history in model.histories]
     largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
-    return Supports(free, prescribed, largest, orthonormal, coupled, bodies)
+    return Supports(free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None)
 
 
 def _together(
@@ -97,7 +119,7 @@ def _together(
     prescribed: NDArray[np.float64],
     conditions: tuple[NDArray[Any], ...],
     bodies: Sequence[RigidBody],
-) -> tuple[Any, NDArray[np.float64]]:
+) -> tuple[Any, NDArray[np.float64], Links]:
     """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12)."""
     n_dofs, n_own = free.shape
     free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
@@ -122,8 +144,12 @@ def _together(
     points = sp.vstack([held, linear], format="csr")
     rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
     values.append(np.concatenate([value, constants]) - points @ prescribed)
-    inner, constant = eliminate(sp.vstack(rows, format="csr"), np.concatenate(values), names)
-    return (free @ inner).tocsr(), prescribed + free @ constant
+    every = sp.vstack(rows, format="csr")
+    done = eliminate(every, np.concatenate(values), names)
+    others = sp.csr_matrix((every.shape[0] - linear.shape[0], n_dofs))
+    of_equations = sp.vstack([others, linear], format="csr")
+    links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])
+    return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links
 
 
 def equations(model: Model) -> tuple[Any, NDArray[np.float64]]:

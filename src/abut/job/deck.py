@@ -65,7 +65,7 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
 def translate(deck: Deck) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
     if not deck.steps:
-        raise InputError("the deck has no *STEP with *STATIC; add one")
+        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
         raise InputError("the deck has no *ELEMENT cards")
     deck = cut(deck)
@@ -175,7 +175,7 @@ def _supports(bound: Bonds, groups: Groups) -> list[Support]:
     alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
     for node, own in by_node.items():
         alike.setdefault(tuple(sorted(own.items())), []).append(node)
-    result = []
+    result: list[Support] = []
     for key, nodes in alike.items():
         on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
         still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
@@ -222,9 +222,9 @@ def _pressures(deck: Deck, groups: Groups) -> list[Load]:
 
 def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Load]:
     alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
-    for (element, *vector), course in courses(deck, "gravity").items():
+    for key, course in courses(deck, "gravity").items():
         if not zero(course):
-            alike.setdefault((tuple(vector), course), []).append(int(element))
+            alike.setdefault((key[1:], course), []).append(int(key[0]))
     result: list[Load] = []
     for (vector, course), elements in alike.items():
         place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
@@ -253,8 +253,8 @@ def _temperatures(deck: Deck, groups: Groups) -> list[Load]:
             if value.kind == "temperature":
                 for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
                     raise InputError(
-                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add *INITIAL CONDITIONS, "
-                        "TYPE=TEMPERATURE"
+                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add "
+                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
                     )
     alike: dict[Course, list[int]] = {}
     for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():

@@ -78,8 +78,8 @@ def _bodies(deck: Deck, body: RigidBody, parts: Mapping[str, Piece], where: str)
     left = np.setdiff1d(own, covered)
     if len(left):
         raise InputError(
-            f"{where}: node {left[0]} belongs to a body that is rigid in part only; abut makes whole bodies rigid: give that "
-            "part its own *SOLID SECTION, or hold its nodes with *BOUNDARY"
+            f"{where}: node {left[0]} belongs to a body that is rigid in part only; abut makes whole bodies rigid: give "
+            "that part its own *SOLID SECTION, or hold its nodes with *BOUNDARY"
         )
     return names
 

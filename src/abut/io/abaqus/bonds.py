@@ -43,17 +43,16 @@ class Bonds:
 
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
-    local = _local_axes(deck)
     used = set(groups.used.tolist())
     apart = {r.reference for r in deck.rigid} | {r.turning for r in deck.rigid}
     axes = 2 if plane else 3
     held = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if d <= 3 and n not in apart}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
+    named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
+    local = _local_axes(deck, named)
     supports, oblique = _supports({p: c for p, c in held.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
-    equations = [
-        Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations
-    ]
+    equations = [Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations]
     for symmetry in deck.cyclic:
         equations += _cyclic(deck, groups, symmetry)
     virtual = _Virtual(
@@ -87,11 +86,11 @@ def coordinates(deck: Deck, nodes: Numbers) -> Vector:
     return np.asarray(deck.points[np.searchsorted(deck.nodes, nodes)])
 
 
-def _local_axes(deck: Deck) -> dict[int, Vector]:
-    """Node -> its own axes as rows (3, 3)."""
+def _local_axes(deck: Deck, named: set[int]) -> dict[int, Vector]:
+    """Node -> its own axes as rows (3, 3), for those that something is said of."""
     result: dict[int, Vector] = {}
     for transform in deck.transforms:
-        nodes = np.intersect1d(transform.nodes, deck.nodes)
+        nodes = np.intersect1d(np.intersect1d(transform.nodes, deck.nodes), np.array(sorted(named), np.int64))
         for node, x in zip(nodes.tolist(), coordinates(deck, nodes)):
             result[node] = _axes(transform, x)
     return result
@@ -118,7 +117,9 @@ def _clean(rows: Vector) -> Vector:
     return np.asarray(np.where(np.abs(rows) < TINY, 0.0, rows))
 
 
-def _supports(held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int) -> tuple[dict[Point, Course], list[Bond]]:
+def _supports(
+    held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
+) -> tuple[dict[Point, Course], list[Bond]]:
     """Supports along the global axes, and equations for those across."""
     supports: dict[Point, Course] = {}
     oblique: list[Bond] = []
@@ -177,15 +178,15 @@ def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     x, y = (coordinates(deck, nodes[side]) for side in (symmetry.slave, symmetry.master))
     size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
     tried = [_turn(axis, sign * 2.0 * np.pi / symmetry.sectors) for sign in (1.0, -1.0)]
-    best = min(((cKDTree((y - a) @ turn.T).query(x - a), turn) for turn in tried), key=lambda own: float(own[0][0].max()))
-    (distance, match), turn = best
+    found = [tuple(map(np.asarray, cKDTree((y - a) @ turn.T).query(x - a))) for turn in tried]
+    best = int(found[1][0].max() < found[0][0].max())
+    (distance, match), turn = found[best], _clean(tried[best])
     if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
         worst = int(nodes[symmetry.slave][int(distance.argmax())])
         raise InputError(
-            f"{symmetry.place}: *CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on '{symmetry.master}' "
-            "one sector on; mesh both sides alike"
+            f"{symmetry.place}: *CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
+            f"'{symmetry.master}' one sector on; mesh both sides alike"
         )
-    turn = _clean(turn)
     result = []
     for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
         for k in range(3):
@@ -236,7 +237,9 @@ def _without_virtual(
     for point, force in virtual.pushed.items():
         if point not in bound and not zero(force):
             place = next(v.place for s in deck.steps for v in s.values if v.kind == "force" and point[0] in v.numbers)
-            raise InputError(f"{place}: *CLOAD: node {point[0]} belongs to no element and no equation; nothing carries its force")
+            raise InputError(
+                f"{place}: *CLOAD: node {point[0]} belongs to no element and no equation; nothing carries its force"
+            )
     return equations, pushed
 
 

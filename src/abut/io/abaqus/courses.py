@@ -107,7 +107,9 @@ def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
     return result
 
 
-def _within(deck: Deck, value: Prescribed, size: float, before: float, start: float, end: float) -> list[tuple[float, float]]:
+def _within(
+    deck: Deck, value: Prescribed, size: float, before: float, start: float, end: float
+) -> list[tuple[float, float]]:
     """Points of a course within a step, with the one at its beginning."""
     if not value.amplitude:
         return [(start, before), (end, size)]
@@ -176,6 +178,3 @@ def grouped(own: Mapping[Key, Course]) -> dict[tuple[float, Course], list[int]]:
     for (number, direction), course in own.items():
         result.setdefault((direction, course), []).append(int(number))
     return result
-
-
-

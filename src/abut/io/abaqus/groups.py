@@ -49,7 +49,8 @@ def _parts(deck: Deck) -> Numbers:
     size = int(deck.nodes.max(initial=0)) + 1
     ends = [(b.nodes[:, :1].repeat(b.nodes.shape[1], 1).ravel(), b.nodes.ravel()) for b in deck.blocks]
     a, b = (np.concatenate(end) for end in zip(*ends))
-    return connected_components(csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)[1]
+    graph = csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
@@ -69,7 +70,7 @@ def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tupl
 
 
 class Groups:
-    """Collects the named groups of a mesh; names that are taken get an ending. Node sets and surfaces """
+    """Collects the named groups of a mesh; names that are taken get an ending. Node sets and surfaces"""
 
     def __init__(self, deck: Deck) -> None:
         self.deck = deck
@@ -112,7 +113,7 @@ class Groups:
         return self._add(name, connectivity(self.deck, rows), "surface")
 
     def node_set(self, nodes: Numbers, name: str) -> str:
-        """Nodes that elements use as a set, called like the deck's own set of them; one with the same nodes is used again."""
+        """Nodes that elements use as a set, called like the deck's own set of them; one with the same nodes serves again."""
         nodes = np.unique(np.asarray(nodes, dtype=np.int64))
         key = nodes.tobytes()
         if key not in self._sets:

@@ -166,15 +166,16 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     Raises InputError for cards, parameters and element types that abut does not honour, all of them with place and cure,
     and for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
-    cards = _without_steps(tuple(cards), asked)
-    _check_asked(ignore, cards)
+    left = _without_steps(tuple(cards), asked)
+    _check_asked(ignore, left)
+    static = any(card.key == "STATIC" for card in left if isinstance(card, Card))
     kept: list[Card] = []
     quiet: dict[str, None] = {}
-    ignored: dict[str, None] = {}
+    ignored: dict[str, list[str]] = {}
     found: dict[str, _Refusal] = {}
-    for card in cards:
-        if isinstance(card, str):
-            ignored[card] = None
+    for card in left:
+        if isinstance(card, _Step):
+            ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
         elif card.key in _QUIET:
             quiet[card.title] = None
         elif card.key in _READ:
@@ -185,12 +186,24 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
                 found.setdefault(f"ELEMENT {code}", _Refusal(card, refusal(code), ""))
         elif card.key in asked:
-            ignored[f"{card.title} ({card.place})"] = None
+            ignored.setdefault(card.title, []).append(str(card.place))
         else:
             _, reason = _REFUSED.get(card.key, ("", "abut does not know this card; take it out if it is not needed"))
-            found.setdefault(card.key, _Refusal(card, reason, "" if card.key in NEEDED else card.title[1:]))
+            pointless = card.key in NEEDED or (card.key in _PROCEDURES and not static)
+            found.setdefault(card.key, _Refusal(card, reason, "" if pointless else card.title[1:]))
     _refuse(list(found.values()))
-    return Sifted(tuple(kept), tuple(quiet), tuple(ignored))
+    return Sifted(tuple(kept), tuple(quiet), tuple(f"{what} ({_places(at)})" for what, at in ignored.items()))
+
+
+def _places(places: list[str]) -> str:
+    return places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else "")
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step that is left out, for its procedure."""
+
+    procedure: Card
 
 
 @dataclass(frozen=True)
@@ -206,13 +219,15 @@ def _refuse(found: list[_Refusal]) -> None:
         return
     texts = [f"{r.card.place}: {r.card.title}: {r.reason}" for r in found]
     options = " ".join(f"--ignore {_quoted(r.name)}" for r in found if r.name)
-    cure = "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
+    cure = (
+        "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
+    )
     raise InputError("\n  ".join(texts) + cure)
 
 
-def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | str, ...]:
-    """Cards without the steps whose procedure the user leaves out; a text stands where one was."""
-    result: list[Card | str] = []
+def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | _Step, ...]:
+    """Cards without the steps whose procedure the user leaves out; a ``_Step`` stands where one was."""
+    result: list[Card | _Step] = []
     step: list[Card] | None = None
     for card in cards:
         if card.key == "STEP" and step is None:
@@ -227,20 +242,20 @@ def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | str
     return (*result, *_step(step or [], asked))
 
 
-def _step(step: list[Card], asked: set[str]) -> list[Card | str]:
+def _step(step: list[Card], asked: set[str]) -> list[Card | _Step]:
     for card in step:
         if card.key in _PROCEDURES:  # refused alone: what else the step holds goes with it
-            return [f"the step with {card.title} ({card.place})" if card.key in asked else card]
+            return [_Step(card) if card.key in asked else card]
     return list(step)
 
 
-def _parameters(card: Card, asked: set[str], ignored: dict[str, None], found: dict[str, _Refusal]) -> None:
+def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], found: dict[str, _Refusal]) -> None:
     """Sort out the parameters that are not read."""
     for name, value in card.parameters.items():
         if name in _READ[card.key] or (name == "NLGEOM" and value is not None and key(value) == "NO"):
             continue
         if name in asked:
-            ignored[f"{name} of {card.title} ({card.place})"] = None
+            ignored.setdefault(f"{name} of {card.title}", []).append(str(card.place))
         else:
             reason = _PARAMETERS.get((_name(card), name), "abut does not know this parameter")
             found.setdefault(f"{card.key} {name}", _Refusal(card, f"{name}: {reason}", name))
@@ -250,7 +265,7 @@ def _name(card: Card) -> str:
     return next(name for name in READ if key(name) == card.key)
 
 
-def _check_asked(ignore: Collection[str], cards: tuple[Card | str, ...]) -> None:
+def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> None:
     present = {card.key for card in cards if isinstance(card, Card)}
     parameters = {name for card in cards if isinstance(card, Card) for name in card.parameters}
     parameters |= {parameter for _, parameter in _PARAMETERS}

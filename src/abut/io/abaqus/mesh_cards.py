@@ -56,20 +56,21 @@ class MeshCards:
 
 
 def mesh_cards(cards: Iterable[Card]) -> MeshCards:
-    """Read the mesh cards in their order. Raises InputError with place and cure."""
+    """Read the mesh cards: nodes, elements, then sets and surfaces in their order. Raises InputError with place and cure."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
     node_sets, element_sets, surfaces = Names(), Names(), {}
+    cards = tuple(cards)
+    for card in (c for c in cards if c.key == "NODE"):
+        own = _nodes(card, nodes)
+        if card.get("NSET"):
+            node_sets.add(card.need("NSET"), own)
+    for card in (c for c in cards if c.key == "ELEMENT"):
+        own = _elements(card, elements, nodes)
+        if card.get("ELSET"):
+            element_sets.add(card.need("ELSET"), own)
     for card in cards:
-        if card.key == "NODE":
-            own = _nodes(card, nodes)
-            if card.get("NSET"):
-                node_sets.add(card.need("NSET"), own)
-        elif card.key == "ELEMENT":
-            own = _elements(card, elements, nodes)
-            if card.get("ELSET"):
-                element_sets.add(card.need("ELSET"), own)
-        elif card.key == "NSET":
+        if card.key == "NSET":
             node_sets.add(card.need("NSET"), _set(card, "node", node_sets, element_sets, elements))
         elif card.key == "ELSET":
             element_sets.add(card.need("ELSET"), _set(card, "element", element_sets, element_sets, elements))
@@ -106,8 +107,9 @@ def _elements(
     count = CELLS[ELEMENTS[code].kind].nodes
     own: list[int] = []
     numbers: list[int] = []
+    start = card.lines[0] if card.lines else None
     for line in card.lines:
-        start = line if not numbers else start
+        start = start if numbers and start else line
         last = len(line.fields) - (line.fields[-1] == "")
         numbers += [line.integer(i, "node number" if numbers or i else "element number") for i in range(last)]
         if len(numbers) <= count:
@@ -116,13 +118,13 @@ def _elements(
             raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
         for node in numbers[1:]:
             if node not in nodes:
-                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE before")
+                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE")
         if numbers[0] in elements:
             raise start.error(f"element {numbers[0]} is given twice; give each element its own number")
         elements[numbers[0]] = (code, tuple(numbers[1:]))
         own.append(numbers[0])
         numbers = []
-    if numbers:
+    if numbers and start:
         raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
     return np.array(own, dtype=np.int64)
 
@@ -149,7 +151,10 @@ def _set(
     parts: list[Numbers] = [np.empty(0, np.int64)]
     for line in card.lines:
         if card.has("GENERATE"):
-            first, last = line.integer(0, "first number"), line.integer(1, "last number", line.integer(0, "first number"))
+            first, last = (
+                line.integer(0, "first number"),
+                line.integer(1, "last number", line.integer(0, "first number")),
+            )
             step = line.integer(2, "increment", 1)
             if (last - first) // step > MOST:
                 raise line.error(f"{(last - first) // step} numbers in one set; check the line")

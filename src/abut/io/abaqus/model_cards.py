@@ -62,13 +62,15 @@ def _row(card: Card, columns: int, what: str) -> Line:
     line = card.first(what)
     if len(card.lines) > 1:
         raise card.lines[1].error(
-            "values that depend on temperature (several rows) are not supported; give the row of the temperature that matters"
+            "values that depend on temperature (several rows) are not supported; give one row, that of the temperature "
+            "that matters"
         )
     return line
 
 
 def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None) -> tuple[Section, ...]:
-    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand in both, as in Abaqus and CalculiX."""
+    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
+    in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     for card in of(cards, "SOLID SECTION"):
         name, material = card.need("ELSET"), card.need("MATERIAL")
@@ -77,14 +79,14 @@ def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Materia
         if known is not None and material.upper() not in known:
             raise card.error(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
         if card.has("NODAL THICKNESS"):
-            raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
+            raise card.error(
+                "NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness"
+            )
         thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
         if not thickness > 0.0:
             raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
         elements = mesh.element_sets.sets[name.upper()]
-        result = [
-            Section(s.name, np.setdiff1d(s.elements, elements), s.material, s.thickness, s.place) for s in result
-        ]
+        result = [Section(s.name, np.setdiff1d(s.elements, elements), s.material, s.thickness, s.place) for s in result]
         spelled = mesh.element_sets.spelled[name.upper()]
         own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0)
         result.append(Section(spelled, elements, own, thickness, card.place))
@@ -94,9 +96,7 @@ def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Materia
 def pairs(cards: Sequence[Card], mesh: MeshCards) -> tuple[Pair, ...]:
     """Contact pairs and ties in the order of the deck."""
     overclosures = _overclosures(cards)
-    clearances = {
-        (card.need("SLAVE").upper(), card.need("MASTER").upper()): card for card in of(cards, "CLEARANCE")
-    }
+    clearances = {(card.need("SLAVE").upper(), card.need("MASTER").upper()): card for card in of(cards, "CLEARANCE")}
     result: list[Pair] = []
     for card in cards:
         if card.key == "TIE" and not card.has("CYCLIC SYMMETRY"):
@@ -117,9 +117,7 @@ def pairs(cards: Sequence[Card], mesh: MeshCards) -> tuple[Pair, ...]:
                         raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
                 tied = overclosure == "TIED"
                 name = f"{slave}-{master}"
-                result.append(
-                    Pair(name, slave, master, tied, overclosure, _adjust(card, mesh), clearance, line.place)
-                )
+                result.append(Pair(name, slave, master, tied, overclosure, _adjust(card, mesh), clearance, line.place))
     for (slave, master), card in clearances.items():
         raise card.error(f"no *CONTACT PAIR of slave {slave} and master {master}")
     return tuple(result)
@@ -231,11 +229,7 @@ def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
         b = np.repeat(b, len(a))
     if len(a) != len(b):
         raise line.error(f"the two node sets have {len(a)} and {len(b)} nodes; they must have the same number")
-    return [
-        Equation(((int(n), d, 1.0), (int(m), d, -1.0)), line.place)
-        for n, m in zip(a, b)
-        for d in (1, 2, 3)
-    ]
+    return [Equation(((int(n), d, 1.0), (int(m), d, -1.0)), line.place) for n, m in zip(a, b) for d in (1, 2, 3)]
 
 
 def rigid_bodies(cards: Sequence[Card], mesh: MeshCards) -> tuple[RigidBody, ...]:

@@ -48,9 +48,7 @@ def _cut(deck: Deck, section: PreTension) -> Deck:
                 for k in range(3)
                 if abs(vector[k]) > 1e-12
             ]
-            equations.append(
-                Equation((*terms, (section.node, 1, -1.0)) if opening else tuple(terms), section.place)
-            )
+            equations.append(Equation((*terms, (section.node, 1, -1.0)) if opening else tuple(terms), section.place))
     return replace(
         deck,
         nodes=np.concatenate([deck.nodes, double]),
@@ -101,7 +99,9 @@ def _side(deck: Deck, rows: Numbers, nodes: Numbers, where: str) -> set[int]:
             reached.add(other)
             todo.append(other)
     if reached & beyond:
-        raise InputError(f"{where}: its surface does not cut the body in two; it must go right through, faces on one side only")
+        raise InputError(
+            f"{where}: its surface does not cut the body in two; it must go right through, faces on one side only"
+        )
     return reached
 
 

@@ -109,7 +109,11 @@ def _without_void_friction(cards: Sequence[Card], notes: list[str]) -> list[Card
             if tied:
                 notes.append(f"{card.place}: *FRICTION of tied contact gives its stick stiffness; tied exactly instead")
                 continue
-            if card.lines and not card.parameters and all(line.text(0) and line.number(0, "mu") == 0.0 for line in card.lines):
+            if (
+                card.lines
+                and not card.parameters
+                and all(line.text(0) and line.number(0, "mu") == 0.0 for line in card.lines)
+            ):
                 continue
         result.append(card)
     return result

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -63,7 +64,9 @@ def amplitudes(cards: Iterable[Card]) -> dict[str, Amplitude]:
             continue
         for parameter, wanted in (("DEFINITION", "TABULAR"), ("VALUE", "RELATIVE")):
             if key(card.get(parameter, wanted) or "") != wanted:
-                raise card.error(f"{parameter}={card.get(parameter)} is not supported; give a table of times and factors")
+                raise card.error(
+                    f"{parameter}={card.get(parameter)} is not supported; give a table of times and factors"
+                )
         numbers = [
             line.number(i, "time" if i % 2 == 0 else "factor")
             for line in card.lines
@@ -72,7 +75,7 @@ def amplitudes(cards: Iterable[Card]) -> dict[str, Amplitude]:
         if not numbers or len(numbers) % 2:
             raise card.error("expected pairs of time and factor")
         points = tuple(zip(numbers[::2], numbers[1::2]))
-        if any(b[0] <= a[0] for a, b in zip(points, points[1:])):
+        if any(b[0] <= a[0] for a, b in pairwise(points)):
             raise card.error("times must increase from pair to pair")
         result[card.need("NAME").upper()] = Amplitude(points, key(card.get("TIME", "") or "") == "TOTALTIME")
     return result
@@ -132,7 +135,9 @@ def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
 def _force(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     direction = line.integer(1, "direction")
     if direction > 3:
-        raise line.error(f"direction {direction}: only forces (1, 2, 3) are supported, not moments; use a pair of forces")
+        raise line.error(
+            f"direction {direction}: only forces (1, 2, 3) are supported, not moments; use a pair of forces"
+        )
     nodes = mesh.node_sets.resolve(line, 0, "node")
     return [Prescribed("force", nodes, (direction,), line.number(2, "force"), amplitude, line.place)]
 
@@ -198,5 +203,3 @@ def initial_temperature(cards: Iterable[Card], mesh: MeshCards) -> dict[int, flo
             value = line.number(1, "temperature")
             result |= dict.fromkeys(mesh.node_sets.resolve(line, 0, "node").tolist(), value)
     return result
-
-

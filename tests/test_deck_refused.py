@@ -1,0 +1,150 @@
+"""What decks ask for and abut does not do is refused with its place, or left out where the user says so."""
+
+import json
+
+import pytest
+
+from abut.cli import main
+from abut.errors import InputError
+from abut.io.abaqus.cards import key
+from abut.io.abaqus.known import NEEDED, PROCEDURES, QUIET, READ, REFUSED
+from decks import BRICKS, HELD, PAIR, PUSH, load, step, write
+
+DECK = BRICKS + PAIR + HELD + PUSH
+
+
+@pytest.mark.parametrize("name", sorted(set(REFUSED) - set(PROCEDURES)))
+def test_every_refused_card_is_named_with_its_line(name, tmp_path):
+    text = BRICKS + PAIR + HELD + f"*{name}\n" + PUSH
+    line = text.splitlines().index(f"*{name}") + 1
+    with pytest.raises(InputError, match=rf"deck\.inp:{line}: \*{name}: ") as caught:
+        load(tmp_path, text)
+    if key(name) in NEEDED:
+        assert "--ignore" not in str(caught.value)
+        return
+    option = f'"{name}"' if " " in name else name
+    assert f"to solve without it: --ignore {option}" in str(caught.value)
+    job = load(tmp_path, text, name.lower())
+    assert job.ignored == (f"*{name} ({tmp_path / 'deck.inp'}:{line})",)
+
+
+@pytest.mark.parametrize("name", sorted(PROCEDURES))
+def test_other_procedures_are_refused_and_left_out_with_their_step(name, tmp_path):
+    text = DECK + step("*CLOAD", "18, 1, 5.", "*MODEL CHANGE", card=f"*{name}")
+    with pytest.raises(InputError, match=rf"\*{name}: abut solves \*STATIC steps only"):
+        load(tmp_path, text)
+    job = load(tmp_path, text, name)
+    assert job.model.solve.steps == 1
+    assert [own.split(" (")[0] for own in job.ignored] == [f"the step with *{name}"]
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, BRICKS + step(card=f"*{name}"))
+    assert "--ignore" not in str(caught.value)  # nothing would be left
+
+
+def test_large_displacements_are_refused_or_left_out(tmp_path):
+    text = DECK.replace("*STEP", "*STEP, INC=100, nl geom")
+    with pytest.raises(InputError, match=r"NLGEOM: large displacements are not supported.* --ignore NLGEOM"):
+        load(tmp_path, text)
+    assert "NLGEOM of *STEP" in load(tmp_path, text, "NLGEOM").ignored[0]
+    assert load(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM=NO")).ignored == ()
+
+
+def test_all_refusals_come_at_once(tmp_path):
+    text = DECK.replace("*STEP", "*FRICTION\n0.1,\n*PLASTIC\n1., 0.\n*STEP, NLGEOM")
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, text)
+    assert all(f"--ignore {name}" in str(caught.value) for name in ("FRICTION", "PLASTIC", "NLGEOM"))
+
+
+def test_friction_without_effect_needs_no_permission(tmp_path):
+    none = DECK.replace("*CONTACT PAIR", "*FRICTION\n0., 1.E4\n*CONTACT PAIR")
+    assert load(tmp_path, none).ignored == ()
+    tied = DECK.replace("HARD\n", "TIED\n*FRICTION\n0.5, 1.E4\n")
+    job = load(tmp_path, tied)
+    assert job.model.contacts[0].kind == "tied"
+    assert any("stick stiffness" in note for note in job.notes)
+
+
+def test_ignore_is_checked(tmp_path):
+    for name, words in (
+        ("FRICTOIN", "did you mean 'FRICTION'"),
+        ("NODE", "abut reads \\*NODE, which cannot be left out"),
+    ):
+        with pytest.raises(InputError, match=words):
+            load(tmp_path, DECK, name)
+    assert load(tmp_path, DECK, "FRICTION").ignored == ()  # nothing there to leave out
+    job = write(tmp_path, "schema = 1\n", "job.toml")
+    assert main(["run", str(job), "--ignore", "FRICTION"]) == 2
+
+
+def test_cards_without_effect_are_noted(tmp_path):
+    for name in QUIET:
+        notes = load(tmp_path, DECK.replace("*STEP", f"*{name}\n*STEP")).notes
+        assert any(f"*{name}" in note for note in notes)
+    assert not set(QUIET) & (set(READ) | set(REFUSED))
+
+
+def test_unknown_cards_and_parameters_are_refused(tmp_path):
+    with pytest.raises(InputError, match=r"\*BUNDARY: abut does not know this card.*--ignore BUNDARY"):
+        load(tmp_path, DECK.replace("*BOUNDARY", "*BUNDARY"))
+    with pytest.raises(InputError, match=r"\*CLOAD: FOLLOWER: abut does not know this parameter"):
+        load(tmp_path, DECK.replace("*DLOAD", "*CLOAD, FOLLOWER\n18, 1, 0.\n*DLOAD"))
+
+
+def test_penalty_is_replaced_with_a_note(tmp_path):
+    notes = load(tmp_path, DECK.replace("=HARD", "=Linear")).notes
+    assert any("LINEAR replaced by exact contact" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("1000., 0.", "1000., 0., 20.\n900., 0., 100.", r"several rows.* give one row"),
+        ("*ELASTIC", "*ELASTIC, TYPE=ORTHO", "TYPE=ORTHO is not supported; abut's solids are isotropic"),
+        ("1000., 0.", "-1000., 0.", "young"),
+        ("*ELASTIC\n1000., 0.\n", "", r"material 'EL' has no \*ELASTIC"),
+        ("MATERIAL=EL\n", "MATERIAL=AL\n", "no material named 'AL'; known: EL"),
+        ("ELSET=EALL, M", "ELSET=EAL, M", "no element set named 'EAL'; did you mean 'EALL'"),
+        ("ELSET=EALL, M", "ELSET=LOW, M", r"element 2 without \*SOLID SECTION"),
+        ("INTERACTION=I,", "INTERACTION=J,", r"no \*SURFACE INTERACTION named 'J'"),
+        ("SLAVE, MASTER\n", "SLAVE, MASTRE\n", "no master surface named 'MASTRE'; did you mean 'MASTER'"),
+        ("2, P2, 10.", "2, P9, 10.", "face label 'P9': expected P1 to P6"),
+        ("2, P2, 10.", "2, CENTRIF, 10.", "load 'CENTRIF' is not supported"),
+        ("2, P2, 10.", "3, P2, 10.", "element 3 does not exist"),
+        ("2, P2, 10.", "2, P2", "magnitude is missing"),
+        ("BOTTOM, 1, 3", "BOTTOM, 1, 11", "belongs to heat transfer"),
+        ("BOTTOM, 1, 3", "BOTTOM, 3, 1", "directions 3 to 1"),
+        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", "only forces"),
+        ("*DLOAD", "*DLOAD, AMPLITUDE=A", r"no \*AMPLITUDE named 'A'"),
+        ("*STEP\n*STATIC\n*DLOAD", "*STEP\n*DLOAD", "the step has no procedure"),
+        ("*END STEP\n", "", r"the step has no \*END STEP"),
+        ("*STEP\n", "*CLOAD\n18, 1, 1.\n*STEP\n", "loads stand inside a step"),
+        ("*DLOAD\n2, P2, 10.", "*TEMPERATURE\nALL, 5.", "has no temperature to begin with"),
+        ("*DLOAD\n2, P2, 10.", "*CLOAD\n77, 1, 1.", "node 77 belongs to no element and no equation"),
+        ("*STEP\n", "*INITIAL CONDITIONS, TYPE=STRESS\n1, 5.\n*STEP\n", "TYPE=STRESS is not supported"),
+        ("*STEP\n", "*MPC\nBEAM, 1, 2\n*STEP\n", "MPC of type BEAM is not supported"),
+        ("*STEP\n", "*EQUATION\n3\n1,1,1.,2,1,-1.\n*STEP\n", "3 terms announced, but 2 given"),
+    ],
+)  # fmt: skip
+def test_faults_of_a_deck_are_named(old, new, words, tmp_path):
+    assert old in DECK
+    with pytest.raises(InputError, match=words):
+        load(tmp_path, DECK.replace(old, new, 1) if old != "*END STEP\n" else DECK.replace(old, new))
+
+
+def test_supports_that_come_or_go_are_refused(tmp_path):
+    moved = DECK + step("*BOUNDARY, OP=NEW", "BOTTOM, 3, 3")
+    with pytest.raises(InputError, match=r"OP=NEW of step 2 lets node .* go again"):
+        load(tmp_path, moved)
+    with pytest.raises(InputError, match=r"node 15 is free in the step before and held in step 2"):
+        load(tmp_path, DECK + step("*BOUNDARY", "TOP, 3, 3, 0.1"))
+
+
+def test_what_was_ignored_stands_in_the_summary(tmp_path, capsys):
+    deck = write(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM"))
+    assert main(["run", str(deck)]) == 2
+    assert f"{deck}:" in capsys.readouterr().err
+    assert main(["run", str(deck), "--ignore", "NLGEOM", "--quiet"]) == 0
+    summary = json.loads((tmp_path / "deck-results" / "summary.json").read_text())
+    assert [own.split(" (")[0] for own in summary["ignored"]] == ["NLGEOM of *STEP"]
+    assert any("*NODE PRINT" in note for note in summary["notes"])
