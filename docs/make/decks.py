@@ -1,0 +1,73 @@
+"""abut beside CalculiX on the contact decks of CalculiX's own tests.
+
+python docs/make/decks.py [NAME ...] prints a line for each deck; with --page it writes the table of
+docs/verification/decks.md (all decks; about 20 minutes). Needs CalculiX and its tests: apt install calculix-ccx
+calculix-ccx-test.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from page import DOCS, write_table
+
+sys.path.insert(0, str(DOCS.parent / "bench" / "decks"))
+from compare import Outcome, compare, line
+from reference import EXAMPLES, decks
+
+PAGE = DOCS / "verification" / "decks.md"
+HEADER = [
+    "deck",
+    "elements",
+    "result",
+    "largest displacement",
+    "largest difference",
+    "contact in CalculiX",
+    "without",
+    "remark",
+]
+
+
+def row(outcome: Outcome) -> list[str]:
+    """An outcome in the columns of the page."""
+    solved = outcome.status in ("agrees", "differs")
+    return [
+        f"`{outcome.name}`", outcome.cells, outcome.status, f"{outcome.largest:.4g}" if outcome.largest else "",
+        f"{100 * outcome.difference:.2g} %" if solved else "", (outcome.kind.lower() or "as in the deck") if solved else "",
+        ", ".join(outcome.ignored), outcome.detail or REMARKS.get(outcome.name, ""),
+    ]  # fmt: skip
+
+
+# Why the two differ, where they do.
+REMARKS: dict[str, str] = {}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--folder", type=Path, default=EXAMPLES, help="the decks, .inp or .inp.gz")
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run of CalculiX")
+    parser.add_argument("--page", action="store_true", help="write the table of the page")
+    arguments = parser.parse_args()
+    found = decks(arguments.folder)
+    if not found:
+        raise SystemExit(f"no contact decks in {arguments.folder}: apt install calculix-ccx-test, or give --folder")
+    outcomes = []
+    for name in arguments.names or found:
+        outcomes.append(compare(name, found[name], arguments.limit))
+        print(line(outcomes[-1]), flush=True)
+    count = sum(outcome.status == "agrees" for outcome in outcomes)
+    print(f"{count} of {len(outcomes)} decks agree")
+    if arguments.page:
+        write_table(PAGE, "decks", HEADER, [row(outcome) for outcome in outcomes])
+        counts = [
+            (s, sum(o.status == s for o in outcomes))
+            for s in ("agrees", "differs", "refused", "no reference", "failed")
+        ]
+        write_table(PAGE, "counts", ["result", "decks"], [[status, str(n)] for status, n in counts])
+
+
+if __name__ == "__main__":
+    main()
