@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
 from abut.discretization.supports import Supports
 from abut.errors import InputError
@@ -23,7 +22,6 @@ HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which 
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
-MOST_COMPARED = 1500  # multipliers among which those that repeat others are looked for
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
 FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
 DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
@@ -127,8 +125,6 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
     rows = (space.transfer.T @ coupling.operator).tocsr()
     free = (rows @ held.free).tocsr()
     moved = _row_norms(free) > NO_EFFECT * space.weight
-    if model.equations and moved.any():
-        moved[moved] = _independent(free[moved], space.weight[moved])
     if not moved.all():
         space = reduce(space, coupling, moved)
         rows = (space.transfer.T @ coupling.operator).tocsr()
@@ -235,21 +231,6 @@ def _tied(
         prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
         stiffness=stiffness, compliance=compliance,
     )  # fmt: skip
-
-
-def _independent(rows: Any, weight: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which rows (n, n_free) to keep so that none repeats others: equations that bind the nodes of both sides leave fewer
-    motions than multipliers. Above MOST_COMPARED rows, where the comparison would cost too much, all of them."""
-    n = rows.shape[0]
-    if n > MOST_COMPARED:
-        return np.ones(n, dtype=bool)
-    used = np.unique(rows.indices)
-    scaled = (sp.diags(1.0 / weight) @ rows[:, used]).toarray()
-    r, pivot = qr(scaled.T, mode="r", pivoting=True)
-    size = np.abs(np.diag(r))
-    keep = np.zeros(n, dtype=bool)
-    keep[pivot[: int((size > NO_EFFECT * size[0]).sum())]] = True
-    return keep
 
 
 def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
