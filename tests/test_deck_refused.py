@@ -1,6 +1,7 @@
 """What decks ask for and abut does not do is refused with its place, or left out where the user says so."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -148,3 +149,9 @@ def test_what_was_ignored_stands_in_the_summary(tmp_path, capsys):
     summary = json.loads((tmp_path / "deck-results" / "summary.json").read_text())
     assert [own.split(" (")[0] for own in summary["ignored"]] == ["NLGEOM of *STEP"]
     assert any("*NODE PRINT" in note for note in summary["notes"])
+
+
+def test_every_card_stands_in_the_documents():
+    text = (Path(__file__).parents[1] / "docs" / "decks.md").read_text(encoding="utf-8")
+    for name in (*READ, *QUIET, *REFUSED):
+        assert f"`*{name}`" in text, name
