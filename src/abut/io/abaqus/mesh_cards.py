@@ -53,6 +53,16 @@ class MeshCards:
     node_sets: Names
     element_sets: Names
     surfaces: Mapping[str, Faces]
+    virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
+
+    def existing(self, line: Line, i: int) -> Numbers:
+        """The nodes that field i of a line names. Raises InputError for none, and for a number that no node has."""
+        nodes = self.node_sets.resolve(line, i, "node")
+        if not len(nodes):
+            raise line.error(f"node set '{line.text(i)}' is empty")
+        if len(nodes) == 1 and not np.isin(nodes, self.nodes).all() and int(nodes[0]) not in self.virtual:
+            raise line.error(f"node {nodes[0]} does not exist; give it in *NODE")
+        return nodes
 
 
 def mesh_cards(cards: Iterable[Card]) -> MeshCards:
@@ -79,7 +89,9 @@ def mesh_cards(cards: Iterable[Card]) -> MeshCards:
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
-    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces))
+    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
+    virtual = frozenset(number for number in named if number is not None)
+    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces), virtual)
 
 
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
