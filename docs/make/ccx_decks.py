@@ -1,7 +1,7 @@
 """abut beside CalculiX on the contact decks of CalculiX's own tests.
 
 python docs/make/ccx_decks.py [NAME ...] prints a line for each deck; with --page it writes the table of
-docs/verification/decks.md (all decks; about 20 minutes). Needs CalculiX and its tests: apt install calculix-ccx
+docs/verification/decks.md (all decks; about 12 minutes). Needs CalculiX and its tests: apt install calculix-ccx
 calculix-ccx-test.
 """
 
