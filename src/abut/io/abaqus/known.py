@@ -173,8 +173,14 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     quiet: dict[str, None] = {}
     ignored: dict[str, list[str]] = {}
     found: dict[str, _Refusal] = {}
+    changing = ""  # what belongs to a *CHANGE ... card: *CHANGE SURFACE BEHAVIOR is followed by *SURFACE BEHAVIOR
     for card in left:
-        if isinstance(card, _Step):
+        if isinstance(card, Card) and card.key.startswith("CHANGE"):
+            changing = card.key.removeprefix("CHANGE")
+        if isinstance(card, Card) and card.key == changing and f"CHANGE{changing}" in asked:
+            ignored.setdefault(card.title, []).append(str(card.place))
+            changing = ""
+        elif isinstance(card, _Step):
             ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
         elif card.key in _QUIET:
             quiet[card.title] = None
