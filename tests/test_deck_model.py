@@ -210,12 +210,13 @@ def test_rigid_body(tmp_path):
     )
     text += "*RIGID BODY, ELSET=HIGH, REF NODE=99, ROT NODE=98\n"
     solution = solve(tmp_path, text + step("*BOUNDARY", "99, 3, 3, -0.01"))
-    assert solution.contacts[0].force[2] == pytest.approx(E * 0.01, rel=1e-9)
+    assert solution.contacts[0].force[2] == pytest.approx(-E * 0.01, rel=1e-9)  # the lower one is the contactor
+    assert any("as the slave is rigid" in note for note in load(tmp_path, text + step()).notes)
     assert tops(solution) == pytest.approx(-0.01, rel=1e-12)
     with pytest.raises(InputError, match="forces on a rigid body are not supported"):
         load(tmp_path, text + step("*CLOAD", "99, 3, -1."))
     with pytest.raises(InputError, match="rigid in part only"):
-        load(tmp_path, text.replace("ELSET=HIGH", "NSET=TOP") + step())
+        load(tmp_path, text.replace("BODY, ELSET=HIGH", "BODY, NSET=TOP") + step())
 
 
 def test_pretension(tmp_path):

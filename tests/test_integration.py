@@ -180,3 +180,16 @@ def test_mean_dilatation_gives_each_cell_one_pressure(kind: str) -> None:
     stress = nodal_stress(mesh, {"body": MATERIAL}, {}, u, plane(mesh), integration={"body": "b-bar"})
     mean = stress[:, :3].sum(axis=1) / 3.0
     assert mean == pytest.approx(2.0 / (3 * (1 - 2 * 0.3)) * dilatation, abs=1e-13)
+
+
+@pytest.mark.parametrize("kind", BBAR)
+def test_mean_dilatation_sees_the_mean_temperature(kind: str) -> None:
+    """A temperature that varies over a unit cell pushes its volume apart as its mean does: E alpha T / (1 - 2 nu)."""
+    mesh = (rectangle if kind == "quad4" else box)(cells=(1,) * CELLS[kind].dim, cell=kind)
+    rng = np.random.default_rng(6)
+    u, temperature = rng.uniform(-1, 1, mesh.points.shape), rng.uniform(-1, 1, len(mesh.points))
+    dilatation = sum(
+        u[mesh.points[:, a] == 1.0, a].mean() - u[mesh.points[:, a] == 0.0, a].mean() for a in range(mesh.dim)
+    )
+    load = thermal_load(mesh, {"body": MATERIAL}, {}, plane(mesh), temperature, {"body": "b-bar"})
+    assert load @ u.ravel() == pytest.approx(2.0 * 1e-3 / 0.4 * temperature.mean() * dilatation, abs=1e-15)

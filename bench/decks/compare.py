@@ -11,19 +11,19 @@ import re
 import shlex
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from cards import Card, plain, read
 from frd import Displacements
+from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
 import abut
 from abut.errors import AbutError, ConvergenceError, InputError
 from abut.io.abaqus import read_deck
 from abut.io.abaqus.courses import ends
 from abut.job.deck import translate
-from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, decks, difference, reference
 
 AGREES = 0.01  # largest difference of displacement over the largest displacement
 # What abut may be told to ignore here, because the reference run leaves it out too.
@@ -84,39 +84,54 @@ def _compare(name: str, path: Path, what: str, limit: float) -> Outcome:
     try:
         steps, ignored = _abut(path)
     except AbutError as error:
-        reason = str(error).replace(f"{path}:", "line ").replace(str(path), "the deck").strip()
         refused = isinstance(error, InputError)
-        return Outcome(name, what, "refused" if refused else "failed", detail=reason)
+        return Outcome(name, what, "refused" if refused else "failed", detail=_reason(str(error), path))
     best: Outcome | None = None
+    references: list[Reference] = []
     for kind in TYPES:
         try:
             found = reference(path, ignored, limit, kind)
         except NoReference as reason:
             best = best or Outcome(name, what, "no reference", ignored, _largest(steps), kind=kind, detail=str(reason))
             continue
+        references.append(found)
         error = difference(found.steps, steps)
         status = "agrees" if error <= AGREES else "differs"
         outcome = Outcome(name, what, status, ignored, _largest(found.steps), error, kind)
-        if best is None or best.status == "no reference" or status == "agrees":
+        if best is None or best.status == "no reference" or error < best.difference:
             best = outcome
         if status == "agrees":
             break
     assert best is not None
+    if best.status == "differs" and len(references) == 2:
+        own = difference(references[0].steps, references[1].steps)
+        return replace(best, detail=f"CalculiX's two kinds of contact differ by {own:.1%} from each other")
     return best
+
+
+def _reason(message: str, path: Path) -> str:
+    """What was refused, with its line, without what could have been ignored."""
+    every = [line.strip() for line in message.partition("; to solve without")[0].splitlines()]
+    kept = [line for line in every if not re.search(rf": \*({'|'.join(IGNORABLE)}): |: NLGEOM: ", line)] or every
+    return ", ".join(line.replace(f"{path}:", "line ").partition(";")[0] for line in kept)
 
 
 def _abut(path: Path) -> tuple[list[Displacements], tuple[str, ...]]:
     """Displacements at the end of each step of the deck, and what abut was told to ignore."""
     ignored: list[str] = []
+    first: InputError | None = None
     while True:
         try:
             deck = read_deck(path, ignored)
+            if not deck.steps and first is not None:  # nothing static: the reason is what had to be ignored
+                raise first
             model = translate(deck).model
             break
         except InputError as error:
             asked = [word.upper() for word in shlex.split(str(error).partition(": --ignore ")[2]) if word != "--ignore"]
-            if not asked or any(name in ignored or name not in IGNORABLE for name in asked):
+            if error is first or not asked or any(name in ignored or name not in IGNORABLE for name in asked):
                 raise
+            first = first or error
             ignored += asked
     solution = abut.solve(model)
     if not solution.converged:

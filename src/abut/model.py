@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from abut import checks
-from abut.cells import CELLS
 from abut.conditions import (
     COMPONENTS,
     TURNS,
@@ -31,7 +30,7 @@ from abut.conditions import (
 )
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import BBAR, REDUCED
+from abut.solids.integration import INTEGRATIONS, check_integration
 from abut.solids.materials import LinearElastic
 
 __all__ = [
@@ -45,7 +44,6 @@ LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
 MOST_STEPS = 1_000_000  # load steps, and iterations in one
-INTEGRATIONS = ("full", "reduced", "b-bar")
 LINEAR = ("auto", "direct", "amg")
 
 
@@ -237,7 +235,7 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-            self._check_integration(solid, f"solids[{i}].integration")
+            check_integration(solid.integration, self._kinds(solid.body), self.plane, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(
@@ -285,27 +283,8 @@ class Model:
                 if term.component not in COMPONENTS[: self.dim]:
                     raise InputError(f"{where}.component: the model is 2D; z does not exist")
 
-    def _check_integration(self, solid: Solid, where: str) -> None:
-        kinds = sorted({kind for kind, _, _ in self.mesh.cells_of(solid.body)})
-        if solid.integration == "reduced":
-            for kind in kinds:
-                if CELLS[kind].corners == CELLS[kind].dim + 1 and CELLS[kind].degree == 1:
-                    raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
-                if kind not in REDUCED:
-                    raise InputError(
-                        f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread "
-                        f"through the mesh; use 'full'{' or b-bar' if kind in BBAR else ''}, or {', '.join(REDUCED)} cells"
-                    )
-        elif solid.integration == "b-bar":
-            for kind in kinds:
-                if kind not in BBAR:
-                    raise InputError(
-                        f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'"
-                    )
-            if self.plane == "stress":
-                raise InputError(
-                    f"{where}: 'b-bar' has no effect to offer in plane stress, which does not lock; use 'full'"
-                )
+    def _kinds(self, body: str) -> list[str]:
+        return sorted({kind for kind, _, _ in self.mesh.cells_of(body)})
 
     def _check_names(self) -> None:
         mesh = self.mesh

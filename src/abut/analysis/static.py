@@ -163,6 +163,11 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
             f"contact '{p.contact.name}': {p.coupling.segments.sum()} segments on {covered} of {facets} facets, "
             f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (without support or fixed)"
         )
+        if p.repeated:
+            note(
+                f"contact '{p.contact.name}': equations tie displacements of its surfaces together, so that its pressure is "
+                "one of many; the smallest is taken"
+            )
 
 
 def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:

@@ -23,6 +23,8 @@ SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
+FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
+DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,7 @@ class Pair:
     stiffness: float
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
+    repeated: bool = False  # equations tie displacements together that the constraints would take one by one
 
     @property
     def tied(self) -> bool:
@@ -71,7 +74,7 @@ class Pair:
     @property
     def redundant(self) -> bool:
         """Whether constraints may repeat each other, so that the pressure is one of many."""
-        return self.contact.method == "node-to-segment-two-pass"
+        return self.repeated or self.contact.method == "node-to-segment-two-pass"
 
     @property
     def smooth(self) -> bool:
@@ -93,7 +96,18 @@ def pairs(model: Model, held: Supports) -> list[Pair]:
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
             result.append(pair(model, back, held))
-    return result
+    tied_together = bool(model.equations or model.rigid)
+    return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
+
+
+def _repeats(operator: Any) -> bool:
+    """Whether rows depend on each other. Not looked for where they are too many for a dense matrix."""
+    if not 0 < operator.shape[0] <= FEW:
+        return False
+    size = sp.linalg.norm(operator, axis=1)
+    rows = sp.diags(1.0 / np.where(size > 0.0, size, 1.0)) @ operator
+    values = np.linalg.eigvalsh((rows @ rows.T).toarray())
+    return bool(values[0] < DEPENDENT * values[-1])
 
 
 def pair(model: Model, contact: Contact, held: Supports) -> Pair:

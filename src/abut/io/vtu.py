@@ -85,8 +85,9 @@ def read_vtu(path: Path) -> RawMesh:
 
     An integer cell array ``region`` numbers the groups, and the string array ``region_names`` in the field data gives
     the name of region 0, 1, ...; a region without a name there is called ``region_<number>``. Regions of the highest
-    cells are bodies, those of facet cells surfaces, those of vertices node sets. A cell in several groups stands in the file once for each. Without
-    ``region`` there are no surfaces, and every connected set of cells is a body ``body_1``, ``body_2``, ...
+    cells are bodies, those of facet cells surfaces, those of vertices node sets. A cell in several groups stands in the
+    file once for each. Without ``region`` there are no surfaces, and every connected set of cells is a body ``body_1``,
+    ``body_2``, ...
 
     Raises InputError for files that VTK cannot read or that hold cells abut does not know.
     """

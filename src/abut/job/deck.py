@@ -16,8 +16,8 @@ from abut.io.abaqus.courses import Course, combine, courses, scaled, times, zero
 from abut.io.abaqus.elements import FACES
 from abut.io.abaqus.groups import Groups, Piece, pieces
 from abut.io.abaqus.pretension import cut
-from abut.io.abaqus.record import Deck, Pair
-from abut.job.deck_rigid import rigid_bodies
+from abut.io.abaqus.record import Deck, Numbers, Pair
+from abut.job.deck_rigid import join, rigid_bodies
 from abut.mesh.check import check_mesh
 from abut.mesh.read import build
 from abut.model import (
@@ -73,9 +73,12 @@ def translate(deck: Deck) -> Translation:
     notes = list(deck.notes)
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     groups = Groups(deck)
-    parts = {groups.body(piece.name, piece.elements): piece for piece in pieces(deck)}
-    contacts = [_contact(deck, groups, pair, notes) for pair in deck.pairs]
-    rigid = rigid_bodies(deck, parts, plane)
+    every, stiff = join(deck, pieces(deck))
+    parts = {groups.body(piece.name, piece.elements): piece for piece in every}
+    moving = [name for own in stiff for name, piece in parts.items() if piece is own]
+    hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])
+    contacts = [_contact(deck, groups, pair, hard, notes) for pair in deck.pairs]
+    rigid = rigid_bodies(deck, moving, plane)
     bound = bonds(deck, groups, plane)
     thickness = _thickness(deck, plane, notes)
     supports = _supports(bound, groups)
@@ -96,7 +99,6 @@ def translate(deck: Deck) -> Translation:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(groups.raw(), deck.path)
     check_mesh(mesh)
-    moving = {body.body for body in rigid}
     model = Model(
         mesh,
         solids=[_solid(name, piece) for name, piece in parts.items() if name not in moving],
@@ -151,11 +153,15 @@ def _history(course: Course) -> tuple[float, Amplitude | None]:
     return size, None if unit is None else Amplitude(unit)
 
 
-def _contact(deck: Deck, groups: Groups, pair: Pair, notes: list[str]) -> Contact:
+def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
+    """The slave is the contactor, which must deform: elements in ``hard`` are rigid."""
     slave, master = groups.surface(pair.slave), groups.surface(pair.master)
     for name, own in ((slave, pair.slave), (master, pair.master)):
         if deck.surfaces[own].nodes is not None:
             notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{own}' make up")
+    if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
+        slave, master = master, slave
+        notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
     if pair.tied:
         return Contact(slave, master, name=pair.name, kind="tied")
     adjust = pair.adjust
@@ -175,7 +181,7 @@ def _supports(bound: Bonds, groups: Groups) -> list[Support]:
     alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
     for node, own in by_node.items():
         alike.setdefault(tuple(sorted(own.items())), []).append(node)
-    result = []
+    result: list[Support] = []
     for key, nodes in alike.items():
         on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
         still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
@@ -222,9 +228,9 @@ def _pressures(deck: Deck, groups: Groups) -> list[Load]:
 
 def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Load]:
     alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
-    for (element, *vector), course in courses(deck, "gravity").items():
+    for key, course in courses(deck, "gravity").items():
         if not zero(course):
-            alike.setdefault((tuple(vector), course), []).append(int(element))
+            alike.setdefault((key[1:], course), []).append(int(key[0]))
     result: list[Load] = []
     for (vector, course), elements in alike.items():
         place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
@@ -253,8 +259,8 @@ def _temperatures(deck: Deck, groups: Groups) -> list[Load]:
             if value.kind == "temperature":
                 for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
                     raise InputError(
-                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add *INITIAL CONDITIONS, "
-                        "TYPE=TEMPERATURE"
+                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add "
+                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
                     )
     alike: dict[Course, list[int]] = {}
     for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():

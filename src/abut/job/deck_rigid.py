@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -15,11 +15,12 @@ from abut.io.abaqus.record import Deck, Numbers, RigidBody
 from abut.model import Amplitude, Rigid
 
 
-def rigid_bodies(deck: Deck, parts: Mapping[str, Piece], plane: str | None) -> list[Rigid]:
-    """Bodies that move as a whole. Raises InputError where a *RIGID BODY is not whole bodies, or carries a force."""
+def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Rigid]:
+    """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one that carries a
+    force or follows several amplitudes."""
     result = []
     held = courses(deck, "boundary") if deck.rigid else {}
-    for body in deck.rigid:
+    for name, body in zip(names, deck.rigid):
         where = f"{body.place}: *RIGID BODY"
         _check_forces(deck, body)
         components = _components(held, body, plane)
@@ -32,14 +33,7 @@ def rigid_bodies(deck: Deck, parts: Mapping[str, Piece], plane: str | None) -> l
         if body.reference not in deck.nodes:
             raise InputError(f"{where}: REF NODE {body.reference} does not exist; give it in *NODE")
         reference = tuple(coordinates(deck, np.array([body.reference]))[0][: 2 if plane else 3].tolist())
-        names = _bodies(deck, body, parts, where)
-        wanted = {None: 6, "axisymmetric": 1}.get(plane, 3)
-        if len(names) > 1 and len(values) < wanted:
-            raise InputError(
-                f"{where}: it takes in several bodies ({', '.join(names)}), each of which would move by itself; hold all "
-                "directions of its reference node, or give each body its own"
-            )
-        result += [Rigid(name, reference, **values, amplitude=amplitude) for name in names]
+        result.append(Rigid(name, reference, **values, amplitude=amplitude))
     return result
 
 
@@ -68,22 +62,32 @@ def _components(held: Mapping[tuple[float, ...], Course], body: RigidBody, plane
     return result
 
 
-def _bodies(deck: Deck, body: RigidBody, parts: Mapping[str, Piece], where: str) -> list[str]:
-    """Names of the bodies all of whose nodes belong to the rigid body."""
-    nodes = {name: _nodes(deck, piece.elements) for name, piece in parts.items()}
-    own = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
-    own = np.setdiff1d(own, [body.reference, body.turning])
-    names = [name for name, members in nodes.items() if np.isin(members, own).all()]
-    covered = np.unique(np.concatenate([np.empty(0, np.int64), *(nodes[name] for name in names)]))
-    left = np.setdiff1d(own, covered)
-    if len(left):
-        raise InputError(
-            f"{where}: node {left[0]} belongs to a body that is rigid in part only; abut makes whole bodies rigid: give that "
-            "part its own *SOLID SECTION, or hold its nodes with *BOUNDARY"
-        )
-    return names
+def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
+    """All bodies, with those of each rigid body made one; and the rigid ones, in the order of the deck.
+
+    Raises InputError where a rigid body is not whole bodies."""
+    free, rigid = list(parts), []
+    for body in deck.rigid:
+        where = f"{body.place}: *RIGID BODY"
+        own = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
+        own = np.setdiff1d(own, [body.reference, body.turning])
+        inside = [piece for piece in free if np.isin(_nodes(deck, piece.elements), own).all()]
+        elements = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in inside)])
+        left = np.setdiff1d(own, _nodes(deck, elements))
+        if len(left) or not inside:
+            which = f"node {left[0]} belongs to" if len(left) else "it is part of"
+            raise InputError(
+                f"{where}: {which} a body that is rigid in part only, or rigid already; abut makes whole bodies rigid: give "
+                "that part its own *SOLID SECTION, or hold its nodes with *BOUNDARY"
+            )
+        rest = [piece for piece in free if not any(piece is other for other in inside)]
+        name = inside[0].name if len(inside) == 1 else inside[0].section.name
+        codes = tuple(sorted({code for piece in inside for code in piece.codes}))
+        rigid.append(Piece(name, inside[0].section, inside[0].integration, codes, np.sort(elements)))
+        free = rest
+    return [*free, *rigid], rigid
 
 
 def _nodes(deck: Deck, elements: Numbers) -> Numbers:
     own = [element_nodes(b, np.intersect1d(elements, b.ids)).ravel() for b in deck.blocks]
-    return np.unique(np.concatenate(own))
+    return np.unique(np.concatenate(own)).astype(np.int64)

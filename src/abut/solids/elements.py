@@ -97,13 +97,11 @@ def thermal_load(
             slopes[..., 0] += shapes / at[..., :1]  # of the hoop strain u_r / r
         det = det * around(at, mesh.axisymmetric)
         change = table[cells, 1][:, None] + nodal[nodes] @ shapes.T
+        change = np.broadcast_to(change, det.shape)
         if rule == "b-bar":
-            change = ((change * det) @ weights / (det @ weights))[:, None]
-        np.add.at(
-            load,
-            nodes,
-            np.einsum("c,cq,cq,q,cqna->cna", table[cells, 0], np.broadcast_to(change, det.shape), det, weights, slopes),
-        )
+            change = np.broadcast_to(((change * det) @ weights / (det @ weights))[:, None], det.shape)
+        blocked = table[cells, :1] * change * det * weights
+        np.add.at(load, nodes, np.einsum("cq,cqna->cna", blocked, slopes))
     return load.ravel()
 
 

@@ -178,17 +178,15 @@ def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     x, y = (coordinates(deck, nodes[side]) for side in (symmetry.slave, symmetry.master))
     size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
     tried = [_turn(axis, sign * 2.0 * np.pi / symmetry.sectors) for sign in (1.0, -1.0)]
-    best = min(
-        ((cKDTree((y - a) @ turn.T).query(x - a), turn) for turn in tried), key=lambda own: float(own[0][0].max())
-    )
-    (distance, match), turn = best
+    found = [tuple(map(np.asarray, cKDTree((y - a) @ turn.T).query(x - a))) for turn in tried]
+    best = int(found[1][0].max() < found[0][0].max())
+    (distance, match), turn = found[best], _clean(tried[best])
     if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
         worst = int(nodes[symmetry.slave][int(distance.argmax())])
         raise InputError(
-            f"{symmetry.place}: *CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on '{symmetry.master}' "
-            "one sector on; mesh both sides alike"
+            f"{symmetry.place}: *CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
+            f"'{symmetry.master}' one sector on; mesh both sides alike"
         )
-    turn = _clean(turn)
     result = []
     for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
         for k in range(3):

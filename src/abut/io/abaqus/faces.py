@@ -39,8 +39,8 @@ def free_faces(deck: Deck) -> FreeFaces:
             nodes.append(padded)
             corners.append(np.full(len(block.ids), count))
             keys.append(key)
-    _, inverse, count = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
-    free = count[inverse.ravel()] == 1
+    _, inverse, times = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
+    free = times[inverse.ravel()] == 1
     return FreeFaces(np.concatenate(rows)[free], np.concatenate(nodes)[free], np.concatenate(corners)[free])
 
 

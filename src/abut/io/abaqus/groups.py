@@ -45,11 +45,12 @@ def pieces(deck: Deck) -> tuple[Piece, ...]:
 
 
 def _parts(deck: Deck) -> Numbers:
-    """Node number -> number of the connected part it is in."""
-    size = int(deck.nodes.max(initial=0)) + 1
+    """For each of ``deck.nodes`` the number of the connected part it is in."""
+    size = len(deck.nodes)
     ends = [(b.nodes[:, :1].repeat(b.nodes.shape[1], 1).ravel(), b.nodes.ravel()) for b in deck.blocks]
-    a, b = (np.concatenate(end) for end in zip(*ends))
-    return connected_components(csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)[1]
+    a, b = (np.searchsorted(deck.nodes, np.concatenate(end)) for end in zip(*ends))
+    graph = csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
@@ -59,7 +60,7 @@ def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tupl
         own = np.intersect1d(elements, block.ids)
         if not len(own):
             continue
-        at = part[element_nodes(block, own)[:, 0]]
+        at = part[np.searchsorted(deck.nodes, element_nodes(block, own)[:, 0])]
         for number in np.unique(at).tolist():
             codes, members = parts.setdefault((number, block.type.integration), (set(), []))
             codes.add(block.code)
@@ -112,7 +113,7 @@ class Groups:
         return self._add(name, connectivity(self.deck, rows), "surface")
 
     def node_set(self, nodes: Numbers, name: str) -> str:
-        """Nodes that elements use as a set, called like the deck's own set of them; one with the same nodes is used again."""
+        """Nodes that elements use as a set, called like the deck's own set of them; one with the same nodes serves again."""
         nodes = np.unique(np.asarray(nodes, dtype=np.int64))
         key = nodes.tobytes()
         if key not in self._sets:
@@ -132,9 +133,8 @@ class Groups:
 
     def raw(self) -> RawMesh:
         """The mesh with everything collected so far."""
-        number = np.full(int(self.deck.nodes.max(initial=0)) + 1, -1, np.int64)
-        number[self.deck.nodes] = np.arange(len(self.deck.nodes))
-        groups = {name: {kind: number[n] for kind, n in parts.items()} for name, parts in self._groups.items()}
+        at = self.deck.nodes
+        groups = {n: {kind: np.searchsorted(at, own) for kind, own in p.items()} for n, p in self._groups.items()}
         return RawMesh(self.deck.points, groups)
 
 

@@ -166,15 +166,21 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     Raises InputError for cards, parameters and element types that abut does not honour, all of them with place and cure,
     and for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
-    cards = _without_steps(tuple(cards), asked)
-    _check_asked(ignore, cards)
-    static = any(card.key == "STATIC" for card in cards if isinstance(card, Card))
+    left = _without_steps(tuple(cards), asked)
+    _check_asked(ignore, left)
+    static = any(card.key == "STATIC" for card in left if isinstance(card, Card))
     kept: list[Card] = []
     quiet: dict[str, None] = {}
     ignored: dict[str, list[str]] = {}
     found: dict[str, _Refusal] = {}
-    for card in cards:
-        if isinstance(card, _Step):
+    changing = ""  # what belongs to a *CHANGE ... card: *CHANGE SURFACE BEHAVIOR is followed by *SURFACE BEHAVIOR
+    for card in left:
+        if isinstance(card, Card) and card.key.startswith("CHANGE"):
+            changing = card.key.removeprefix("CHANGE")
+        if isinstance(card, Card) and card.key == changing and f"CHANGE{changing}" in asked:
+            ignored.setdefault(card.title, []).append(str(card.place))
+            changing = ""
+        elif isinstance(card, _Step):
             ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
         elif card.key in _QUIET:
             quiet[card.title] = None

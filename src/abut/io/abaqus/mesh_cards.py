@@ -53,23 +53,34 @@ class MeshCards:
     node_sets: Names
     element_sets: Names
     surfaces: Mapping[str, Faces]
+    virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
+
+    def existing(self, line: Line, i: int) -> Numbers:
+        """The nodes that field i of a line names. Raises InputError for none, and for a number that no node has."""
+        nodes = self.node_sets.resolve(line, i, "node")
+        if not len(nodes):
+            raise line.error(f"node set '{line.text(i)}' is empty")
+        if len(nodes) == 1 and not np.isin(nodes, self.nodes).all() and int(nodes[0]) not in self.virtual:
+            raise line.error(f"node {nodes[0]} does not exist; give it in *NODE")
+        return nodes
 
 
 def mesh_cards(cards: Iterable[Card]) -> MeshCards:
-    """Read the mesh cards in their order. Raises InputError with place and cure."""
+    """Read the mesh cards: nodes, elements, then sets and surfaces in their order. Raises InputError with place and cure."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
     node_sets, element_sets, surfaces = Names(), Names(), {}
+    cards = tuple(cards)
+    for card in (c for c in cards if c.key == "NODE"):
+        own = _nodes(card, nodes)
+        if card.get("NSET"):
+            node_sets.add(card.need("NSET"), own)
+    for card in (c for c in cards if c.key == "ELEMENT"):
+        own = _elements(card, elements, nodes)
+        if card.get("ELSET"):
+            element_sets.add(card.need("ELSET"), own)
     for card in cards:
-        if card.key == "NODE":
-            own = _nodes(card, nodes)
-            if card.get("NSET"):
-                node_sets.add(card.need("NSET"), own)
-        elif card.key == "ELEMENT":
-            own = _elements(card, elements, nodes)
-            if card.get("ELSET"):
-                element_sets.add(card.need("ELSET"), own)
-        elif card.key == "NSET":
+        if card.key == "NSET":
             node_sets.add(card.need("NSET"), _set(card, "node", node_sets, element_sets, elements))
         elif card.key == "ELSET":
             element_sets.add(card.need("ELSET"), _set(card, "element", element_sets, element_sets, elements))
@@ -78,7 +89,9 @@ def mesh_cards(cards: Iterable[Card]) -> MeshCards:
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
-    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces))
+    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
+    virtual = frozenset(number for number in named if number is not None)
+    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces), virtual)
 
 
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
@@ -106,8 +119,9 @@ def _elements(
     count = CELLS[ELEMENTS[code].kind].nodes
     own: list[int] = []
     numbers: list[int] = []
+    start = card.lines[0] if card.lines else None
     for line in card.lines:
-        start = line if not numbers else start
+        start = start if numbers and start else line
         last = len(line.fields) - (line.fields[-1] == "")
         numbers += [line.integer(i, "node number" if numbers or i else "element number") for i in range(last)]
         if len(numbers) <= count:
@@ -116,13 +130,13 @@ def _elements(
             raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
         for node in numbers[1:]:
             if node not in nodes:
-                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE before")
+                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE")
         if numbers[0] in elements:
             raise start.error(f"element {numbers[0]} is given twice; give each element its own number")
         elements[numbers[0]] = (code, tuple(numbers[1:]))
         own.append(numbers[0])
         numbers = []
-    if numbers:
+    if numbers and start:
         raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
     return np.array(own, dtype=np.int64)
 

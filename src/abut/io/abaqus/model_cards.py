@@ -62,13 +62,15 @@ def _row(card: Card, columns: int, what: str) -> Line:
     line = card.first(what)
     if len(card.lines) > 1:
         raise card.lines[1].error(
-            "values that depend on temperature (several rows) are not supported; give the row of the temperature that matters"
+            "values that depend on temperature (several rows) are not supported; give one row, that of the temperature "
+            "that matters"
         )
     return line
 
 
 def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None) -> tuple[Section, ...]:
-    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand in both, as in Abaqus and CalculiX."""
+    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
+    in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     for card in of(cards, "SOLID SECTION"):
         name, material = card.need("ELSET"), card.need("MATERIAL")
@@ -195,7 +197,7 @@ def _equations(head: Line, fields: list[tuple[Line, int]], mesh: MeshCards) -> l
     """One equation, or one for each node of the sets that stand in its terms."""
     sets, rest = [], []
     for (line, i), (other, j), (third, k) in zip(fields[::3], fields[1::3], fields[2::3]):
-        sets.append(mesh.node_sets.resolve(line, i, "node"))
+        sets.append(mesh.existing(line, i))
         rest.append((_direction(other, j), third.number(k, "coefficient")))
     count = max(len(numbers) for numbers in sets)
     if any(len(numbers) not in (1, count) for numbers in sets):
@@ -222,7 +224,7 @@ def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
     kind = key(line.text(0))
     if kind not in ("TIE", "PIN"):
         raise line.error(f"*MPC of type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
-    a, b = (mesh.node_sets.resolve(line, i, "node") for i in (1, 2))
+    a, b = (mesh.existing(line, i) for i in (1, 2))
     if len(b) == 1:
         b = np.repeat(b, len(a))
     if len(a) != len(b):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from abut.errors import nearest
 from abut.io.abaqus.cards import Card, Line, key
 from abut.io.abaqus.known import STEP_PROCEDURES
 from abut.io.abaqus.mesh_cards import MeshCards, face_number
-from abut.io.abaqus.record import Amplitude, Numbers, Prescribed, Step
+from abut.io.abaqus.record import Amplitude, Prescribed, Step
 
 NAMED_SUPPORTS = {
     "ENCASTRE": (1, 2, 3, 4, 5, 6),
@@ -74,7 +75,7 @@ def amplitudes(cards: Iterable[Card]) -> dict[str, Amplitude]:
         if not numbers or len(numbers) % 2:
             raise card.error("expected pairs of time and factor")
         points = tuple(zip(numbers[::2], numbers[1::2]))
-        if any(b[0] <= a[0] for a, b in zip(points, points[1:])):
+        if any(b[0] <= a[0] for a, b in pairwise(points)):
             raise card.error("times must increase from pair to pair")
         result[card.need("NAME").upper()] = Amplitude(points, key(card.get("TIME", "") or "") == "TOTALTIME")
     return result
@@ -117,7 +118,7 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
 
 
 def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
-    nodes = mesh.node_sets.resolve(line, 0, "node")
+    nodes = mesh.existing(line, 0)
     name = line.text(1).upper()
     if name in NAMED_SUPPORTS:
         return [Prescribed("boundary", nodes, NAMED_SUPPORTS[name], 0.0, amplitude, line.place)]
@@ -137,7 +138,7 @@ def _force(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
         raise line.error(
             f"direction {direction}: only forces (1, 2, 3) are supported, not moments; use a pair of forces"
         )
-    nodes = mesh.node_sets.resolve(line, 0, "node")
+    nodes = mesh.existing(line, 0)
     return [Prescribed("force", nodes, (direction,), line.number(2, "force"), amplitude, line.place)]
 
 
@@ -176,7 +177,7 @@ def _on_surface(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]
 
 
 def _temperature(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
-    nodes: Numbers = mesh.node_sets.resolve(line, 0, "node")
+    nodes = mesh.existing(line, 0)
     return [Prescribed("temperature", nodes, (0,), line.number(1, "temperature"), amplitude, line.place)]
 
 

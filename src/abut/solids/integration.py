@@ -1,0 +1,28 @@
+"""How the cells of a solid are integrated, and which cells may be so (theory (E1), (E2), (E3))."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from abut.cells import CELLS
+from abut.errors import InputError
+from abut.mesh.quadrature import BBAR, REDUCED
+
+INTEGRATIONS = ("full", "reduced", "b-bar")
+
+
+def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: str) -> None:
+    """Raises InputError, beginning with ``where``, for cell types that ``how`` is not for, with the reason."""
+    for kind in kinds if how == "reduced" else ():
+        if CELLS[kind].corners == CELLS[kind].dim + 1 and CELLS[kind].degree == 1:
+            raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
+        if kind not in REDUCED:
+            raise InputError(
+                f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread through the "
+                f"mesh; use {'full or b-bar' if kind in BBAR else 'full'}, or {', '.join(REDUCED)} cells"
+            )
+    for kind in kinds if how == "b-bar" else ():
+        if kind not in BBAR:
+            raise InputError(f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'")
+        if plane == "stress":
+            raise InputError(f"{where}: 'b-bar' has nothing to offer in plane stress, which does not lock; use 'full'")
