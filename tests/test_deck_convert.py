@@ -38,7 +38,19 @@ PLATE = """*NODE, NSET=ALL
 """
 
 
-@pytest.mark.parametrize("text", [FULL, PLATE + step("*CLOAD", "3, 2, 5.")], ids=["bricks", "plate"])
+BOUND = (
+    BRICKS.replace("*ELEMENT", "*NODE\n99, 0.5, 0.5, 3.\n*ELEMENT", 1).replace("C3D8, ELSET=LOW", "C3D8R, ELSET=LOW")
+    + PAIR
+    + "*RIGID BODY, ELSET=HIGH, REF NODE=99\n*EQUATION\n2\n5, 3, 1., 6, 3, -1.\n"
+    + "*BOUNDARY\nBOTTOM, 1, 3\n99, 1, 2\n99, 4, 6\n"
+    + step("*BOUNDARY", "99, 3, 3, -0.01", "*CLOAD", "7, 1, 0.5")
+    + step("*BOUNDARY", "99, 3, 3, -0.02")
+)
+
+
+@pytest.mark.parametrize(
+    "text", [FULL, PLATE + step("*CLOAD", "3, 2, 5."), BOUND], ids=["bricks", "plate", "bound and rigid"]
+)
 def test_job_gives_the_same_answer(text, tmp_path):
     """Bit by bit but for the order of cells and points."""
     deck = load(tmp_path, text)

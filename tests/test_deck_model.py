@@ -229,6 +229,9 @@ def test_pretension(tmp_path):
     cut = points[:, 2] == 1.0
     assert cut.sum() == 8
     assert sorted(u[cut, 2]) == pytest.approx([-0.01] * 4 + [0.01] * 4, rel=1e-9)
+    for normal in ("0., 0., 1.\n", "0., 0., -2.\n"):  # a direction only: tension is tension
+        given = text.replace("NODE=99\n", f"NODE=99\n{normal}")
+        assert np.allclose(solve(tmp_path, given + step("*CLOAD", "99, 1, 10.")).displacement, u, atol=1e-12)
     closed = solve(tmp_path, text + step("*BOUNDARY", "99, 1, 1, 0.02"))
     assert np.allclose(np.abs(closed.displacement[cut, 2]), 0.01, rtol=1e-9)
     with pytest.raises(InputError, match="no neighbour beyond the cut"):

@@ -109,6 +109,7 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("ELSET=EALL, M", "ELSET=LOW, M", r"element 2 without \*SOLID SECTION"),
         ("INTERACTION=I,", "INTERACTION=J,", r"no \*SURFACE INTERACTION named 'J'"),
         ("SLAVE, MASTER\n", "SLAVE, MASTRE\n", "no master surface named 'MASTRE'; did you mean 'MASTER'"),
+        ("2, S1\n", "2, S2\n", r"\*CONTACT PAIR: 'SLAVE' and 'MASTER' look the same way"),
         ("2, P2, 10.", "2, P9, 10.", "face label 'P9': expected P1 to P6"),
         ("2, P2, 10.", "2, CENTRIF, 10.", "load 'CENTRIF' is not supported"),
         ("2, P2, 10.", "3, P2, 10.", "element 3 does not exist"),

@@ -19,6 +19,7 @@ from abut.io.abaqus.pretension import cut
 from abut.io.abaqus.record import Deck, Numbers, Pair
 from abut.job.deck_rigid import join, rigid_bodies
 from abut.mesh.check import check_mesh
+from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
     Amplitude,
@@ -35,9 +36,11 @@ from abut.model import (
     Temperature,
     Term,
 )
+from abut.solids.loads import stress_load
 from abut.solids.materials import LinearElastic
 
 AXES = "xyz"
+SAME_WAY = 0.9  # cosine between mean normals of two surfaces that cannot touch
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,8 @@ def translate(deck: Deck) -> Translation:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(groups.raw(), deck.path)
     check_mesh(mesh)
+    for contact, pair in zip(contacts, deck.pairs):
+        _check_sides(mesh, contact, pair)
     model = Model(
         mesh,
         solids=[_solid(name, piece) for name, piece in parts.items() if name not in moving],
@@ -171,6 +176,18 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
     return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=pair.clearance or 0.0)
+
+
+def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
+    """Raise InputError for surfaces that look the same way, which happens where meshes overlap."""
+    push = [stress_load(mesh.surface(name), np.eye(mesh.dim)) for name in (contact.contactor, contact.target)]
+    a, b = (own.reshape(-1, mesh.dim).sum(axis=0) for own in push)  # area times outward normal
+    if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
+        card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
+        raise InputError(
+            f"{pair.place}: {card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            "needs surfaces that face each other: choose other faces, or join the meshes"
+        )
 
 
 def _supports(bound: Bonds, groups: Groups) -> list[Support]:

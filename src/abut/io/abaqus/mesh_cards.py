@@ -191,6 +191,8 @@ def _surface(
     card.first("faces of elements, or nodes")
     if kind == "NODE":
         nodes = np.unique(np.concatenate([node_sets.resolve(line, 0, "node") for line in card.lines]))
+        if not len(nodes):
+            raise card.error(f"surface '{name}' has no nodes; check its sets")
         return Faces(name, card.place, (), nodes)
     faces = []
     for line in card.lines:
