@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "bench" / "decks"))
 
 import cards as deck_cards
 import frd
+
 import reference
 
 DECK = """** a comment

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 from cards import Card, plain, read
 from frd import Displacements
-from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
 import abut
 from abut.errors import AbutError, ConvergenceError, InputError
 from abut.io.abaqus import read_deck
 from abut.io.abaqus.courses import ends
 from abut.job.deck import translate
+from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
 AGREES = 0.01  # largest difference of displacement over the largest displacement
 # What abut may be told to ignore here, because the reference run leaves it out too.

@@ -15,6 +15,7 @@ from page import DOCS, write_table
 
 sys.path.insert(0, str(DOCS.parent / "bench" / "decks"))
 from compare import Outcome, compare, line
+
 from reference import EXAMPLES, decks
 
 PAGE = DOCS / "verification" / "decks.md"
