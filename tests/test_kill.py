@@ -60,6 +60,8 @@ def assert_whole(path: Path) -> None:
     elif path.suffix == ".npz":
         with np.load(path) as data:
             assert len(data["displacement"])
+    elif path.suffix == ".html":
+        assert path.read_text(encoding="utf-8").rstrip().endswith("</html>")
     else:
         assert path.name in ("run.jsonl", "run.jsonl.part"), path
         text = path.read_text()

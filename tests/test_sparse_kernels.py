@@ -63,7 +63,7 @@ def test_principal_submatrix() -> None:
 
 
 def hierarchy() -> tuple[list, Levels]:
-    matrix, near_null = pyamg.gallery.linear_elasticity((40, 40), format="bsr")
+    matrix, near_null = pyamg.gallery.linear_elasticity((20, 20), format="bsr")
     levels = pyamg.smoothed_aggregation_solver(matrix, B=near_null, max_coarse=10).levels
     return levels, single_precision(levels)
 

@@ -37,6 +37,7 @@ ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers whil
 FINE = 1e-5  # the same once sets repeat
 FINEST = 1e-9  # the same at most, for the final set
 FEW = 0.01  # share of the active set below which changes count as few
+PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
 
@@ -63,6 +64,7 @@ def solve_step(
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
     done: list[Iteration] = []
+    changes: list[int] = []
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
     finest = ROUGH
@@ -86,7 +88,7 @@ def solve_step(
                 return finish_smooth(system, solved, stage, limit, done, observe)
             state, accuracy = solved, max(0.3 * ACCURATE / error, FINEST)
             continue
-        if system.predict is not None and changed.sum() > FEW * active.sum():
+        if system.predict is not None and not share and changed.sum() > FEW * active.sum():
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 wanted = guess
@@ -96,15 +98,17 @@ def solve_step(
                 f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
             )
         seen.add(active.tobytes())
+        changes.append(int(changed.sum()))
+        stalled = len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
         repeated = wanted.tobytes() in seen
         if repeated and not system.exact and finest > FINE:
             accuracy = finest = FINE  # sets may repeat because they were not solved well enough
             seen.clear()
-        elif repeated or share:
+        elif repeated or stalled or share:
             if repeated:
                 share = min(1.0, GROWTH * share) if share else FIRST_SHARE
             else:
-                share = min(share, 1.0 / GROWTH)
+                share = min(max(share, FIRST_SHARE), 1.0 / GROWTH)
             strong = changed & (violation >= share * violation[changed].max())
             wanted = np.where(strong, wanted, active)
         state = replace(solved, active=wanted)

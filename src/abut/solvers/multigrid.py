@@ -53,6 +53,7 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int)
         strength=("symmetric", {"theta": 0.0}),
         presmoother=None,  # ours: see cycle.py
         postsmoother=None,
+        smooth=("jacobi", {"weighting": "local"}),  # by row sums: needs no random vector
         improve_candidates=None,  # rigid motions need no improving
         max_coarse=COARSEST,
     )
