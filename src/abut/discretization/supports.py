@@ -194,16 +194,18 @@ def _node_by_node(
     slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
     order = np.lexsort((np.abs(direction).argmax(axis=1), node))
     node, direction, value, origin = node[order], direction[order], value[order], origin[order]
-    held, start = np.unique(node, return_index=True)
-    stop = np.append(start[1:], len(node))
-    free_rows, free_columns, free_values = [], [], []
-    unheld = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([held, *(body.nodes for body in bodies)]))
-    rows = (dim * unheld[:, None] + np.arange(dim)).ravel()
-    free_rows.append(rows)
-    free_columns.append(np.arange(len(rows)))
-    free_values.append(np.ones(len(rows)))
+    plain = _plain(node, direction)
+    picked = np.ones((len(mesh.points), dim), dtype=bool)
+    axis = np.abs(direction[plain]).argmax(axis=1)
+    picked[node[plain], axis] = False
+    prescribed[node[plain], axis] = value[plain] * direction[plain, axis][:, None]
+    node, direction, value, origin = node[~plain], direction[~plain], value[~plain], origin[~plain]
+    picked[np.concatenate([node, *(body.nodes for body in bodies)])] = False
+    rows = np.flatnonzero(picked)
+    free_rows, free_columns, free_values = [rows], [np.arange(len(rows))], [np.ones(len(rows))]
     column = len(rows)
-    for k, first, last in zip(held, start, stop):
+    held, start = np.unique(node, return_index=True)
+    for k, first, last in zip(held, start, np.append(start[1:], len(node))):
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
@@ -226,6 +228,15 @@ def _node_by_node(
     free = sp.csr_matrix((np.concatenate(free_values), (rows, place[columns])), shape=(dim * len(mesh.points), column))
     free.eliminate_zeros()
     return free, prescribed.reshape(free.shape[0], -1)
+
+
+def _plain(node: NDArray[np.int64], direction: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Conditions, sorted by node and axis, of nodes that are held along axes only, and once along each: nothing to solve."""
+    axis = np.abs(direction).argmax(axis=1)
+    twice = np.zeros(len(node), dtype=bool)
+    twice[1:] = (node[1:] == node[:-1]) & (axis[1:] == axis[:-1])
+    odd = twice | ~(np.abs(direction) == np.eye(direction.shape[1])[axis]).all(axis=1)
+    return ~np.isin(node, node[odd])
 
 
 def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:

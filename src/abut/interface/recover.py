@@ -12,6 +12,9 @@ from abut.cells import BY_CODE, CELLS
 from abut.interface.geometry import by_kind, function_count, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
 
+FOUND = 1e-13  # step in reference coordinates after which a foot is found
+SINGULAR = 1e-14  # of the metric's trace
+
 
 def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Facet-wise coefficients (9 n_facets,) evaluated at every node of each facet, (n_facets, 9), NaN where padded; in the
@@ -75,8 +78,12 @@ def _foot(
         tangent = np.einsum("pna,pnd->pda", derivative, x)
         normal = np.einsum("pda,pdb->pab", tangent, tangent)
         # Far from a bent facet its map may be singular; a step along what is left of it does no harm there.
-        step = np.einsum("pab,pb->pa", np.linalg.pinv(normal, hermitian=True), np.einsum("pda,pd->pa", tangent, miss))
+        size = np.trace(normal, axis1=1, axis2=2)[:, None, None]
+        regular = normal + np.where(size > 0.0, SINGULAR * size, 1.0) * np.eye(cell.dim)
+        step = np.linalg.solve(regular, np.einsum("pda,pd->pa", tangent, miss)[..., None])[..., 0]
         xi = np.clip(xi - step, -3.0, 3.0)
+        if np.abs(step).max(initial=0.0) < FOUND:
+            break
     if triangle:
         outside = np.max(np.column_stack([-xi, xi.sum(axis=1) - 1.0]), axis=1)
     else:

@@ -74,6 +74,7 @@ def write_vtu(
         writer = vtkXMLUnstructuredGridWriter()
         writer.SetFileName(str(temporary))
         writer.SetInputData(grid)
+        writer.SetCompressorTypeToLZ4()  # several times as fast as zlib, for a third more bytes
         if not writer.Write():
             raise OSError(f"VTK could not write {path.name}")
 

@@ -9,6 +9,7 @@ from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.facets import bodies_at, facet_keys, number_keys
+from abut.mesh.integrals import determinants
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 
@@ -119,13 +120,12 @@ def _check_cells(mesh: Mesh) -> None:
         _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
         x = mesh.points[block.nodes]
         size = np.ptp(x, axis=1).max(axis=1)[:, None, None]
-        x = (x - x[:, :1]) / np.where(
-            size > 0.0, size, 1.0
-        )  # cells of size one: the test has no unit and cannot overflow
+        # Cells of size one: the test has no unit and cannot overflow.
+        x = (x - x[:, :1]) / np.where(size > 0.0, size, 1.0)
         smallest = np.full(len(x), np.inf)
         for own in derivatives:  # a point at a time keeps memory low
             with np.errstate(all="ignore"):  # absurd coordinates give no number, which fails below
-                smallest = np.minimum(smallest, np.linalg.det(np.einsum("cnd,na->cda", x, own)))
+                smallest = np.minimum(smallest, determinants(x.transpose(0, 2, 1) @ own))
         bad = np.flatnonzero(~(smallest > DEGENERATE))
         if len(bad):
             inverted = bool((smallest[bad] < -DEGENERATE).all())

@@ -72,3 +72,11 @@ def gradients(
         det = (columns[0] * rows[0]).sum(axis=-1)
         inverse = np.stack(rows, axis=-2) / det[..., None, None]
     return np.matmul(derivatives[None], inverse), det
+
+
+def determinants(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of stacks (..., dim, dim) of small matrices, written out: several times faster than linalg.det."""
+    if matrices.shape[-1] == 2:
+        return np.asarray(matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 1, 0])
+    (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(matrices[..., row, :], -1, 0) for row in range(3))
+    return np.asarray(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))

@@ -3,17 +3,16 @@ interface's own operator for the pressures. Nothing but the interface's part cha
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.solvers.active_set import Rows, System
+from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
 from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
 
@@ -67,31 +66,13 @@ class Iterative:
             return np.concatenate([self.hierarchy.cycle(r) + coarse(r), q])
 
         rhs = np.concatenate([-residual + self.operator.T @ fixed, -s * rows.residual[active]])
-        solution = self._krylov(multiply, precondition, rhs, accuracy)
+        solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
+        self.count.iterations += iterations
+        if not done or not np.isfinite(solution).all():
+            raise NotConverged(FAILED)
         dp = fixed
         dp[active] = s * solution[n:]
         return solution[:n], dp
-
-    def _krylov(
-        self, multiply: Apply, precondition: Apply, rhs: NDArray[np.float64], accuracy: float
-    ) -> NDArray[np.float64]:
-        from pyamg.krylov import fgmres
-
-        if not rhs.any():
-            return np.zeros_like(rhs)
-        shape = (len(rhs), len(rhs))
-        matrix = spla.LinearOperator(shape, matvec=multiply, dtype=float)
-        blocks = spla.LinearOperator(shape, matvec=precondition, dtype=float)
-        history: list[float] = []
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            solution, status = fgmres(
-                matrix, rhs, tol=accuracy, restart=RESTART, maxiter=CYCLES, M=blocks, residuals=history
-            )
-        self.count.iterations += max(len(history) - 1, 0)
-        if status != 0 or not np.isfinite(solution).all():
-            raise NotConverged(FAILED)
-        return np.asarray(solution)
 
     def _rigid(self, operator: Any, inverse: Apply) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
