@@ -151,6 +151,7 @@ def arguments() -> argparse.Namespace:
         help="a Python that has Kratos (or variable KRATOS_PYTHON)",
     )
     parser.add_argument("--output", type=Path, default=Path("results-bench"))
+    parser.add_argument("--add", action="store_true", help="keep what earlier calls measured into the same output")
     parser.add_argument("--page", type=Path, help="page to put the table into, between its markers")
     result = parser.parse_args()
     unknown = sorted(set(result.codes) - set(CODES))
@@ -176,6 +177,9 @@ def main() -> None:
     place = machine()
     versions = {"Python": platform.python_version(), **{own.family: own.version or "missing" for own in codes}}
     options.output.mkdir(parents=True, exist_ok=True)
+    before = options.output / "results.json"
+    if options.add and before.is_file():
+        bench.rows += json.loads(before.read_text(encoding="utf-8"))["rows"]
     for case in options.cases:
         for wanted in options.dofs:
             print(f"{case}, {wanted} dofs", file=sys.stderr, flush=True)

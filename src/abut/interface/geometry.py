@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
 from abut.errors import InputError
+from abut.mesh.integrals import determinants
 from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 
@@ -123,10 +124,14 @@ def facet_measure(
     coordinates (facets, q, a, a), and area per reference area (facets, q)."""
     shapes, slopes = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
     x = _nodes(surface, kind, facets)
-    at = np.einsum("qn,fnd->fqd", shapes, x)
-    tangents = np.einsum("qna,fnd->fqda", slopes, x)
-    metric = np.einsum("fqda,fqdb->fqab", tangents, tangents)
-    return at, metric, np.sqrt(np.linalg.det(metric)) * surface.around(at)
+    at = shapes @ x
+    n, (q, k, a) = len(x), slopes.shape
+    # One matrix product: several times faster than einsum.
+    tangents = (x.transpose(0, 2, 1).reshape(-1, k) @ slopes.transpose(1, 0, 2).reshape(k, -1)).reshape(n, -1, q, a)
+    metric = np.empty((n, q, a, a))
+    for i, j in np.ndindex(a, a):
+        metric[..., i, j] = (tangents[..., i] * tangents[..., j]).sum(axis=1)
+    return at, metric, np.sqrt(determinants(metric)) * surface.around(at)
 
 
 def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:

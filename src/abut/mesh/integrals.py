@@ -76,6 +76,8 @@ def gradients(
 
 def determinants(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Of stacks (..., dim, dim) of small matrices, written out: several times faster than linalg.det."""
+    if matrices.shape[-1] == 1:
+        return matrices[..., 0, 0]
     if matrices.shape[-1] == 2:
         return np.asarray(matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 1, 0])
     (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(matrices[..., row, :], -1, 0) for row in range(3))

@@ -47,7 +47,7 @@ def _cycle(multiply: Apply, precondition: Apply, residual: Vector, wanted: float
         image = multiply(images[k])
         for _ in range(2):  # Gram and Schmidt, twice, which is as good as Householder and two products a time
             shares = basis[: k + 1] @ image
-            image = np.asarray(image - shares @ basis[: k + 1])
+            image = image - shares @ basis[: k + 1]
             hessenberg[: k + 1, k] += shares
         length = float(np.linalg.norm(image))
         column = hessenberg[: k + 2, k]
@@ -65,5 +65,5 @@ def _cycle(multiply: Apply, precondition: Apply, residual: Vector, wanted: float
         if not length > 0.0:
             break
         basis[k] = image / length
-    shares = np.linalg.solve(np.triu(hessenberg[:k, :k]), reduced[:k])
-    return shares @ images[:k], k
+    coefficients = np.linalg.solve(np.triu(hessenberg[:k, :k]), reduced[:k])
+    return np.asarray(coefficients @ images[:k]), k
