@@ -29,7 +29,7 @@ SOFT = abut.LinearElastic(young=70e3, poisson=0.3)
 FAULTY = {  # what the one line must say, and its cure; the exit status
     "sliding": ("body 'upper' can shift along x without resistance", "add a support, or a symmetry plane", 4),
     "tie-and-support": ("support on 'upper.bottom' and the tie hold the same nodes", "remove support on 'upper.bottom'", 4),
-    "small-target": ("target 'lower.top' is too small", "add these facets to 'lower.top'", 1),
+    "small-target": ("target 'lower.top' is too small", "add these facets to 'lower.top'", 0),
     "inside-out": ("10 quad4 cells of 'upper' are inverted", "their nodes run the wrong way round: reverse them", 2),
     "metres-and-millimetres": ("one seems to be meshed in metres", "scale the coordinates of 'upper' by 1000", 2),
 }
@@ -95,7 +95,7 @@ def test_bodies_far_apart_and_gaps_that_nothing_closes() -> None:
     assert "lie 20 apart, beyond the reach" in said(far, "error")
     near = check(blocks(box(x=(2, 8), y=(2, 8), z=(10.5, 15), cells=(5, 5, 3))))
     assert "nothing closes the gap of 0.5" in said(near, "warning")
-    assert near.status == 1
+    assert near.status == 0
 
 
 def test_deep_overlap() -> None:
@@ -322,4 +322,4 @@ def test_any_broken_line_ends_in_findings(
     status = main(["check", str(tmp_path / "job.toml")])
     captured = capsys.readouterr()
     assert captured.err == ""
-    assert status in (0, 1, 2, 4), captured.out
+    assert status in (0, 2, 4), captured.out

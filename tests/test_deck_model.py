@@ -312,3 +312,37 @@ def test_nodes_as_a_surface(tmp_path):
         load(tmp_path, alone + PUSH)
     bound = "*EQUATION\n2\n11, 3, 1., 13, 3, -1.\n2\n12, 3, 1., 13, 3, -1.\n2\n14, 3, 1., 13, 3, -1.\n"
     assert len(load(tmp_path, alone + bound + PUSH).model.mesh.surfaces["SLAVE"]) == 1
+
+
+GENERAL = """*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={}
+*CONTACT
+*CONTACT INCLUSIONS, ALL EXTERIOR
+*CONTACT PROPERTY ASSIGNMENT
+ , , I
+"""
+
+
+@pytest.mark.parametrize("kind", ["HARD", "TIED"])
+def test_general_contact_finds_what_a_pair_names(tmp_path, kind):
+    text = BRICKS + "{}" + HELD + PUSH
+    named = solve(tmp_path, text.format(PAIR.replace("HARD", kind)))
+    job = load(tmp_path, text.format(GENERAL.format(kind)))
+    found = abut.solve(job.model)
+    assert any("general contact: found" in note for note in job.notes)
+    assert found.displacement == pytest.approx(named.displacement, abs=1e-12)
+    assert abs(found.contacts[0].force) == pytest.approx(abs(named.contacts[0].force), rel=1e-9, abs=1e-9)
+
+
+def test_general_contact_that_is_not_supported(tmp_path):
+    text = BRICKS + GENERAL.format("HARD") + HELD + PUSH
+    for change, said in (
+        (", ALL EXTERIOR", "only ALL EXTERIOR"),
+        (" , , I", "no .SURFACE INTERACTION named 'J'"),
+        ("*CONTACT INCLUSIONS, ALL EXTERIOR\n", "no .CONTACT INCLUSIONS"),
+        (" , , I", "interaction for single surfaces"),
+    ):
+        other = {"only": "", "no .SURFACE": " , , J", "no .CONTACT": "", "interaction": "SLAVE, MASTER, I"}
+        new = next(value for start, value in other.items() if said.startswith(start))
+        with pytest.raises(abut.InputError, match=said):
+            load(tmp_path, text.replace(change, new))

@@ -12,7 +12,7 @@ from abut import checks
 from abut.errors import AbutError
 
 SEVERITIES = ("error", "warning", "advice", "info")
-SOUND, DOUBTFUL, BAD_INPUT = 0, 1, 2
+SOUND, BAD_INPUT = 0, 2
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,9 @@ class Report:
 
     @property
     def status(self) -> int:
-        """Exit status: 0 nothing worse than advice, 1 warnings, 2 or 4 (the graver one) errors."""
+        """Exit status: 0 no errors (warnings are for the reader), 2 or 4, the graver one, with errors."""
         errors = [f.status for f in self.findings if f.severity == "error"]
-        return max(errors) if errors else DOUBTFUL if self.count("warning") else SOUND
+        return max(errors, default=SOUND)
 
     def count(self, severity: str) -> int:
         return sum(f.severity == severity for f in self.findings)

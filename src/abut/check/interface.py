@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.check.finding import DOUBTFUL, Finding
+from abut.check.finding import Finding
 from abut.check.units import UNLIKE, body_size
 from abut.discretization.pairs import Pair
 from abut.errors import AbutError
@@ -178,7 +178,6 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
                 f"'{pair.contact.contactor}' lies opposite facets of body '{bodies[0]}' that do not "
                 "belong to it, and would sink into them",
                 f"add these facets to '{pair.contact.target}', or let auto = true find the pair",
-                status=DOUBTFUL,
             )
         ]
     if share < LITTLE:

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from abut.cli.run import add_ignore
 from abut.errors import AbutError
 
 if TYPE_CHECKING:
@@ -20,9 +21,10 @@ def add_check(commands: Any) -> None:
         "check",
         help="examine a job without solving it",
         description="Free motions, over-constraint, gaps, normals, mesh and units of a job: each finding with its cure.",
-        epilog="exit status: 0 nothing worse than advice; 1 warnings; 2 bad input; 4 no unique solution",
+        epilog="exit status: 0 no errors; 2 bad input; 4 no unique solution",
     )
-    check.add_argument("job", type=Path, help="the job file")
+    check.add_argument("job", type=Path, help="the job file or deck")
+    add_ignore(check)
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.add_argument("--output", type=Path, metavar="DIR", help="write the free rigid motions to DIR/motions.vtu")
     check.add_argument(
@@ -38,7 +40,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.job.pairs import write_pairs
 
     try:
-        job = load_job(arguments.job)
+        job = load_job(arguments.job, ignore=arguments.ignore)
     except AbutError as error:
         report = Report((from_error(error, "job"),))
         _print(report, arguments.json)

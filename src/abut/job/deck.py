@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from abut.errors import InputError
+from abut.facing import add_surfaces, find_contacts
 from abut.io.abaqus import read_deck
 from abut.io.abaqus.adjust import distance
 from abut.io.abaqus.bonds import Bonds, bonds
@@ -16,9 +17,10 @@ from abut.io.abaqus.courses import Course, combine, courses, scaled, times, zero
 from abut.io.abaqus.elements import FACES
 from abut.io.abaqus.groups import Groups, Piece, pieces
 from abut.io.abaqus.pretension import cut
-from abut.io.abaqus.record import Deck, Numbers, Pair
+from abut.io.abaqus.record import Deck, GeneralContact, Numbers, Pair
 from abut.job.deck_rigid import join, rigid_bodies
 from abut.mesh.check import check_mesh
+from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
@@ -104,9 +106,13 @@ def translate(deck: Deck) -> Translation:
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
         _check_sides(mesh, contact, pair)
+    solids = [_solid(name, piece) for name, piece in parts.items() if name not in moving]
+    if deck.general is not None:
+        mesh, found = _general(deck.general, mesh, solids, contacts, notes)
+        contacts += found
     model = Model(
         mesh,
-        solids=[_solid(name, piece) for name, piece in parts.items() if name not in moving],
+        solids=solids,
         supports=supports,
         loads=loads,
         contacts=contacts,
@@ -176,6 +182,24 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
     return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=pair.clearance or 0.0)
+
+
+def _general(
+    general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
+) -> tuple[Mesh, list[Contact]]:
+    """Pairs of bodies that face each other and that no *CONTACT PAIR or *TIE names; the mesh with their surfaces."""
+    named = [
+        {body for side in (c.contactor, c.target) for body in bodies_at(mesh, mesh.surfaces[side][:, 0])}
+        for c in contacts
+    ]
+    found = [f for f in find_contacts(mesh, solids) if set(f.bodies) not in named]
+    if not found and not contacts:
+        raise InputError(
+            f"{general.place}: *CONTACT INCLUSIONS: no two bodies face each other within half a facet; name their surfaces "
+            "in *CONTACT PAIR"
+        )
+    notes += [f"general contact: {f.note}" for f in found]
+    return add_surfaces(mesh, found), [f.contact(kind="tied" if general.tied else "contact") for f in found]
 
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
+from abut.analysis.remedies import remedies, unsettled
 from abut.io.versions import versions
 from abut.report.describe import tables
 from abut.report.lines import Line, pressure_lines
@@ -42,7 +43,8 @@ def page(solution: Solution, origin: Origin) -> str:
         "reduced": "".join(f"<p class=note>To keep this file small, {escape(text)}.</p>" for text in picture.reduced),
         "certificate": _certificate(solution),
         "comparison": _comparison(solution, origin),
-        "contacts": _contacts(solution),
+        "trouble": _trouble(solution),
+        "contacts": _contacts(solution) + _rigid(solution),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
@@ -134,7 +136,7 @@ def _contacts(solution: Solution) -> str:
     rows = [
         [
             c.name,
-            "(" + ", ".join(number(value) for value in c.force) + ")",
+            _vector(c.force),
             number(c.max_pressure),
             number(c.area),
             number(c.max_penetration),
@@ -147,14 +149,50 @@ def _contacts(solution: Solution) -> str:
     return _table(head, rows, "At the end of the last step") if rows else ""
 
 
+def _rigid(solution: Solution) -> str:
+    rows = [
+        [name, *(_vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
+        for name, r in solution.steps[-1].rigid.items()
+    ]
+    head = ["rigid body", "displacement", "rotation", "force that moves it", "moment about its reference"]
+    return _table(head, rows) if rows else ""
+
+
+def _vector(values: Iterable[float]) -> str:
+    return "(" + ", ".join(number(value) for value in values) + ")"
+
+
+def _trouble(solution: Solution) -> str:
+    """What a reader must know first: where a run did not converge and what helps, and what was left out of a deck."""
+    text = ""
+    if not solution.converged:
+        last = solution.steps[-1].iterations[-1]
+        places = [f"{place}; nodes {_some(place.nodes)}" for place in unsettled(solution.steps[-1])]
+        where = places or [f"nowhere in particular: equilibrium is missed by {last.residual:.1e} of the forces"]
+        text += (
+            f"<section><h2>Not converged</h2><p>Where:</p>{_list(where)}<p>What to try, the most likely first:</p>"
+            f"{_list(map(str, remedies(solution)), 'ol')}</section>"
+        )
+    if solution.ignored:
+        text += f"<section><h2>Left out of the deck, as asked</h2>{_list(solution.ignored)}</section>"
+    return text
+
+
+def _some(nodes: NDArray[np.int64]) -> str:
+    return ", ".join(map(str, nodes[:20].tolist())) + (f", ... ({len(nodes)} in all)" if len(nodes) > 20 else "")
+
+
+def _list(items: Iterable[str], kind: str = "ul") -> str:
+    return f"<{kind}>" + "".join(f"<li>{escape(item)}</li>" for item in items) + f"</{kind}>"
+
+
 def _run(solution: Solution) -> str:
     timings = [[name, f"{seconds:.3g} s"] for name, seconds in solution.timings.items()]
-    notes = "".join(f"<li>{escape(note)}</li>" for note in solution.notes)
     stamp = time.strftime("%Y-%m-%d %H:%M")
     return (
         f"<div class=columns><div>{_table(['stage', 'time'], timings)}</div>"
         f"<div>{_table(['version', ''], [[k, v] for k, v in versions().items()])}</div></div>"
-        f"<ul class=notes>{notes}</ul><p class=note>Written by abut {abut.__version__}, {stamp}.</p>"
+        f"{_list(solution.notes)}<p class=note>Written by abut {abut.__version__}, {stamp}.</p>"
     )
 
 

@@ -12,6 +12,7 @@ from abut.io.abaqus.mesh_cards import MeshCards
 from abut.io.abaqus.record import (
     CyclicSymmetry,
     Equation,
+    GeneralContact,
     Material,
     Numbers,
     Pair,
@@ -121,6 +122,29 @@ def pairs(cards: Sequence[Card], mesh: MeshCards) -> tuple[Pair, ...]:
     for (slave, master), card in clearances.items():
         raise card.error(f"no *CONTACT PAIR of slave {slave} and master {master}")
     return tuple(result)
+
+
+def general_contact(cards: Sequence[Card]) -> GeneralContact | None:
+    """Contact of everything outside, if the deck asks for it, with the interaction given to all of it."""
+    overclosures = _overclosures(cards)
+    found: Card | None = None
+    for card in of(cards, "CONTACT INCLUSIONS"):
+        if not card.has("ALL EXTERIOR"):
+            raise card.error("only ALL EXTERIOR is supported; name single surfaces in *CONTACT PAIR")
+        found = card
+    overclosure = "HARD"
+    for card in of(cards, "CONTACT PROPERTY ASSIGNMENT"):
+        for line in card.lines:
+            if line.text(0) or line.text(1):
+                raise line.error("an interaction for single surfaces is not supported; name them in *CONTACT PAIR")
+            name = line.text(2)
+            if name.upper() not in overclosures:
+                raise line.error(f"no *SURFACE INTERACTION named {name!r}{nearest(name, overclosures)}")
+            overclosure = overclosures[name.upper()]
+    if found is None:
+        for card in of(cards, "CONTACT"):
+            raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
+    return None if found is None else GeneralContact(overclosure, found.place)
 
 
 def _sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:

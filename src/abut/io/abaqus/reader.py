@@ -11,6 +11,7 @@ from abut.io.abaqus.mesh_cards import MeshCards, mesh_cards
 from abut.io.abaqus.model_cards import (
     cyclic_symmetry,
     equations,
+    general_contact,
     materials,
     pairs,
     pretension_sections,
@@ -34,12 +35,11 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     mesh = mesh_cards(sifted.cards)
     known = amplitudes(sifted.cards)
     pair_list = pairs(sifted.cards, mesh)
-    for pair in pair_list:
-        if pair.overclosure not in ("HARD", "TIED"):
-            notes.append(
-                f"contact '{pair.name}': PRESSURE-OVERCLOSURE={pair.overclosure} replaced by exact contact, without "
-                "penetration"
-            )
+    general = general_contact(sifted.cards)
+    named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
+    for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
+        if overclosure not in ("HARD", "TIED"):
+            notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
     return Deck(
         path=str(path),
         nodes=mesh.nodes,
@@ -50,6 +50,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         surfaces={surface.name: surface for surface in mesh.surfaces.values()},
         sections=sections(sifted.cards, mesh, materials(sifted.cards)),
         pairs=pair_list,
+        general=general,
         equations=equations(sifted.cards, mesh),
         rigid=rigid_bodies(sifted.cards, mesh),
         transforms=transforms(sifted.cards, mesh),
@@ -77,7 +78,7 @@ def read_mesh_only(path: Path) -> Deck:
         str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
         {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
         sections(cards, mesh, None),
-        (), (), (), (), (), (), (), {}, {}, (), (), (), (),
+        (), None, (), (), (), (), (), (), {}, {}, (), (), (), (),
     )  # fmt: skip
 
 

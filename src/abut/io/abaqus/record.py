@@ -70,6 +70,19 @@ class Pair:
 
 
 @dataclass(frozen=True)
+class GeneralContact:
+    """Contact of all exterior surfaces; overclosure as for a pair."""
+
+    overclosure: str
+    place: Place
+
+    @property
+    def tied(self) -> bool:
+        """Whether what touches is glued."""
+        return self.overclosure == "TIED"
+
+
+@dataclass(frozen=True)
 class Equation:
     """Terms (node, direction 1..3, coefficient); value: their sum, with ``curve`` its course over the steps."""
 
@@ -169,6 +182,7 @@ class Deck:
     surfaces: Mapping[str, Faces]
     sections: tuple[Section, ...]
     pairs: tuple[Pair, ...]
+    general: GeneralContact | None
     equations: tuple[Equation, ...]
     rigid: tuple[RigidBody, ...]
     transforms: tuple[Transform, ...]

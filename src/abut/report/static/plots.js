@@ -102,7 +102,7 @@ function drawPlots(data) {
     const colours = ["accent", "second", "third", "good", "bad", "soft"];
     for (const [key, title] of [["force", "Contact force"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
       if (!data.history.contacts.length) break;
-      plot(history, title, "share of the load", data.history.factor,
+      plot(history, title, "time (share of the load, where no amplitude says otherwise)", data.history.factor,
         data.history.contacts.map((c, i) => ({ label: c.name, values: c[key], colour: colours[i % colours.length] })));
     }
   }
