@@ -176,6 +176,46 @@ def test_a_failed_check_leads_the_page(tmp_path: Path) -> None:
     assert "Not converged at step 1" in page.text
 
 
+def test_trouble_comes_before_the_certificate(tmp_path: Path) -> None:
+    """Where a run failed with facets and nodes, three remedies, and what of a deck was left out."""
+    from dataclasses import replace
+
+    from abut.analysis.remedies import remedies
+
+    solution = solution_of("quad4")
+    step = replace(solution.steps[-1], converged=False, cycling={"blocks": np.array([1, 2])})
+    failed = replace(solution, steps=(step,), ignored=("*FRICTION (deck.inp:12)",))
+    page = Page(write_report(failed, tmp_path / "report.html"))
+    assert page.text.index("Not converged") < page.text.index("Certificate")
+    assert "facets [1, 2] do not settle" in page.text
+    surface = solution.contacts[0].contactor
+    assert ", ".join(map(str, np.unique(surface.nodes[[1, 2], :2]))) in page.text
+    assert len(remedies(failed)) == 3
+    assert all(str(remedy) in page.text for remedy in remedies(failed))
+    assert "*FRICTION (deck.inp:12)" in page.text
+    sound = Page(write_report(solution, tmp_path / "sound.html"))
+    assert "What to try" not in sound.text
+    assert "Left out" not in sound.text
+
+
+def test_rigid_bodies_show_what_moves_them(tmp_path: Path) -> None:
+    tool = make.rectangle([0, 1], [1, 2], cells=[3, 2])
+    block = make.rectangle([0, 2], [0, 1], cells=[4, 2])
+    model = abut.Model(
+        make.join({"block": block, "tool": tool}),
+        plane="strain",
+        solids=[abut.Solid("block", STEEL)],
+        rigid=[abut.Rigid("tool", x=0.0, y=-0.01, rz=0.0)],
+        supports=[abut.Support("block.bottom", x=0, y=0)],
+        contacts=[abut.Contact("block.top", "tool.bottom")],
+    )
+    solution = abut.solve(model)
+    page = Page(write_report(solution, tmp_path / "report.html"))
+    force = solution.steps[-1].rigid["tool"].force
+    assert force[1] == pytest.approx(solution.contacts[0].force[1], rel=1e-9)
+    assert f"{force[1]:.6g}" in page.text
+
+
 def test_without_contact_there_is_a_report_too(tmp_path: Path) -> None:
     mesh = make.join({"a": make.box([0, 1], [0, 1], [0, 1], cells=[2, 2, 2])})
     model = abut.Model(
