@@ -23,7 +23,7 @@ from abut.solvers.multigrid import hierarchy
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
 
-SECONDS = {"direct": {2: 1.0, 3: 15.0}, "amg": {2: 2.0, 3: 3.0}}  # to set up 100 000 displacements on one core, by dim
+SECONDS = {"direct": {2: 1.0, 3: 8.0}, "amg": {2: 0.7, 3: 1.0}}  # to set up 100 000 displacements on one core, by dim
 GROWTH = {"direct": {2: 1.5, 3: 1.7}, "amg": {2: 1.0, 3: 1.0}}  # powers of the size that fit 10 000 to 150 000
 
 

@@ -1,0 +1,101 @@
+"""What stays the same over all load steps of a model: supports, stiffness, loads, pairs, the system to solve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.analysis.clock import Clock
+from abut.analysis.holding import Holding, holding
+from abut.analysis.loads import Loads, loads
+from abut.analysis.regularisation import Regularisation, regularise
+from abut.discretization.pairs import Pair, pairs
+from abut.discretization.supports import Supports, supports
+from abut.errors import InputError
+from abut.model import Model
+from abut.solids.elements import stiffness
+from abut.solvers.active_set import System
+from abut.solvers.blocks import newton_step
+from abut.state import Observer, Phase
+
+
+@dataclass(frozen=True)
+class Problem:
+    """stiffness: of all points, (dim n_points, dim n_points); idle: motions that nothing resists nor drives; system: in the
+    free displacements, without a linear solver yet."""
+
+    held: Supports
+    stiffness: Any
+    loaded: Loads
+    held_by: Holding
+    idle: Regularisation
+    system: System
+
+    @property
+    def n_free(self) -> int:
+        return len(self.system.load)
+
+
+def problem(model: Model, observe: Observer, note: Callable[[str], None], clock: Clock) -> Problem:
+    """Assemble a model. Raises InputError and SingularModelError for one that cannot be solved."""
+    observe(Phase("assembling the stiffness"))
+    held = supports(model)
+    materials = {solid.body: solid.material for solid in model.solids}
+    full = stiffness(model.mesh, materials, model.plane, model.integration)
+    loaded = loads(model)
+    clock.mark("assembly")
+    observe(Phase("cutting and integrating the interface"))
+    every = pairs(model, held)
+    _describe(every, note)
+    clock.mark("interface")
+    observe(Phase("looking for motions that nothing holds"))
+    held_by = holding(model.mesh, held, every)
+    reduced = held.reduce(full)
+    idle = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
+    for text in idle.notes:
+        note(text)
+    held_by, reduced = held_by.helped_by(idle.gram), idle.added_to(reduced)
+    n_free = reduced.shape[0]
+    operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
+    _check_finite(reduced.data, loaded.forces)
+    system = System(
+        stiffness=reduced,
+        load=held.free.T @ (loaded.forces - full @ held.prescribed),  # theory (F9)
+        pairs=every,
+        operator=operator,
+        complete=held_by.complete,
+        freed=held_by.freed,
+        step=partial(newton_step, reduced, operator),
+    )
+    note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
+    clock.mark("set-up")
+    return Problem(held, full, loaded, held_by, idle, system)
+
+
+def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
+    for p in pairs:
+        facets = len(p.contactor)
+        covered = int((p.coupling.segments > 0).sum())
+        note(
+            f"contact '{p.contact.name}': {p.coupling.segments.sum()} segments on {covered} of {facets} facets, "
+            f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (without support or fixed)"
+        )
+        if p.repeated:
+            note(
+                f"contact '{p.contact.name}': equations tie displacements of its surfaces together, so that its pressure is "
+                "one of many; the smallest is taken"
+            )
+
+
+def _check_finite(*numbers: NDArray[np.float64]) -> None:
+    """Every number may be sound by itself, and still a product too large for a computer."""
+    if not all(np.isfinite(values).all() for values in numbers):
+        raise InputError(
+            "stiffnesses or forces are too large to compute with; check the units of materials, loads, mesh"
+        )
