@@ -32,6 +32,7 @@ from report import Row
 CASE = re.compile(r"(flat|tilted|hertz)-(hex8|hex20|tet10)")
 MARGIN = 1.5  # times differ between runs on a busy machine: a run is left out only if it would be this much too long
 ENOUGH = 15.0  # seconds spent on one code and mesh after which no run is repeated
+SMALLER = " already at a smaller size"
 NUMBERS = ("seconds", "wall", "cpu", "peak_mb")
 
 
@@ -76,7 +77,8 @@ class Bench:
         for other in reversed(self.rows):
             if all(other[key] == row[key] for key in ("case", "cores", "code")) and other["dofs"] < row["dofs"]:
                 if other["status"].startswith(("time limit", "memory limit", "not run")):
-                    return f"not run: {other['status'].removeprefix('not run: ')} already at a smaller size"
+                    reason = other["status"].removeprefix("not run: ").removesuffix(SMALLER)
+                    return f"not run: {reason}{SMALLER}"
                 least = other.get("wall", 0.0) * row["dofs"] / other["dofs"]
                 return f"not run: it would take more than {self.limit:.0f} s" if least > MARGIN * self.limit else ""
         return ""
