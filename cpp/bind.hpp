@@ -1,10 +1,17 @@
 // What every binding file needs: array types of the contract with Python (C-contiguous, no silent conversion).
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <new>
 #include <utility>
 #include <vector>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 namespace abut {
 namespace nb = nanobind;
@@ -20,6 +27,44 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> &&data, std
     shape = {owned->size()};
   nb::capsule owner(owned, [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
   return nb::ndarray<nb::numpy, T>(owned->data(), shape.size(), shape.data(), owner);
+}
+
+// Memory that is not cleared first: whoever asks for it fills it. Large pieces ask for large pages, since a million
+// small ones cost seconds to hand out.
+template <class T> class Buffer {
+public:
+  explicit Buffer(std::size_t n) : count(n) {
+    std::size_t bytes = std::max<std::size_t>(n * sizeof(T), 1);
+#ifdef __linux__
+    if (bytes >= LARGE_PAGE) {
+      bytes = (bytes + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
+      memory.reset(static_cast<T *>(std::aligned_alloc(LARGE_PAGE, bytes)));
+      if (memory)
+        madvise(memory.get(), bytes, MADV_HUGEPAGE);
+    } else
+#endif
+      memory.reset(static_cast<T *>(std::malloc(bytes)));
+    if (!memory)
+      throw std::bad_alloc();
+  }
+  T &operator[](std::size_t i) { return memory.get()[i]; }
+  T *data() { return memory.get(); }
+  std::size_t size() const { return count; }
+  T *release() { return memory.release(); }
+
+private:
+  static constexpr std::size_t LARGE_PAGE = std::size_t(2) << 20;
+  struct Free {
+    void operator()(T *p) const noexcept { std::free(p); }
+  };
+  std::unique_ptr<T, Free> memory;
+  std::size_t count;
+};
+
+template <class T> nb::ndarray<nb::numpy, T> to_numpy(Buffer<T> &&buffer) {
+  T *owned = buffer.release();
+  nb::capsule owner(owned, [](void *p) noexcept { std::free(p); });
+  return nb::ndarray<nb::numpy, T>(owned, {buffer.size()}, owner);
 }
 
 void bind_cells(nb::module_ &m);

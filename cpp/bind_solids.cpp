@@ -46,7 +46,7 @@ static nb::tuple node_pattern(std::int64_t n_points, Vector<std::int64_t> start,
 static nb::tuple block_pattern(Vector<std::int64_t> indptr, Vector<std::int32_t> indices, int dim) {
   const std::int64_t rows = std::int64_t(indptr.shape(0)) - 1;
   std::vector<std::int64_t> start(rows * dim + 1, 0);
-  std::vector<std::int32_t> columns(indices.shape(0) * dim * dim);
+  Buffer<std::int32_t> columns(indices.shape(0) * dim * dim);
   std::size_t k = 0;
   for (std::int64_t i = 0; i < rows; ++i)
     for (int a = 0; a < dim; ++a) {

@@ -2,6 +2,7 @@
 // choice of rows and columns.
 #include "bind.hpp"
 #include "parallel.hpp"
+#include <algorithm>
 
 namespace abut {
 
@@ -60,7 +61,7 @@ static nb::ndarray<nb::numpy, T> block_product(Vector<std::int32_t> indptr, Vect
   const std::size_t rows = indptr.shape(0) - 1, r = blocks.shape(1), c = blocks.shape(2);
   if (indices.shape(0) != blocks.shape(0) || std::size_t(indptr(rows)) > blocks.shape(0))
     throw nb::value_error("pattern and blocks disagree");
-  std::vector<T> y(rows * r);
+  Buffer<T> y(rows * r);
   {
     nb::gil_scoped_release release;
     const auto multiply = rows_of<T>(int(r), int(c));
@@ -89,8 +90,8 @@ static nb::tuple principal_submatrix(Vector<std::int32_t> indptr, Vector<std::in
     }
   for (std::int64_t i = 0; i < size; ++i)
     start[i + 1] += start[i];
-  std::vector<std::int32_t> columns(start[size]);
-  std::vector<double> values(start[size]);
+  Buffer<std::int32_t> columns(start[size]);
+  Buffer<double> values(start[size]);
   {
     nb::gil_scoped_release release;
     std::size_t to = 0;
@@ -105,6 +106,83 @@ static nb::tuple principal_submatrix(Vector<std::int32_t> indptr, Vector<std::in
   return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)), to_numpy(std::move(values)));
 }
 
+// The rows of a CSR matrix whose places lie in one block row, walked block column by block column.
+struct BlockRow {
+  const Vector<std::int32_t> &indptr, &indices, &place;
+  int dim;
+  std::int32_t first, last; // scalar rows
+
+  // Calls visit(column) for every block column, in ascending order, and take(row, k, column) for every entry k in it.
+  template <class Visit, class Take> void walk(Visit visit, Take take) const {
+    std::int32_t at[8];
+    for (std::int32_t i = first; i < last; ++i)
+      at[i - first] = indptr(i);
+    for (;;) {
+      std::int32_t column = -1;
+      for (std::int32_t i = first; i < last; ++i)
+        if (at[i - first] < indptr(i + 1)) {
+          const std::int32_t own = place(indices(at[i - first])) / dim;
+          if (column < 0 || own < column)
+            column = own;
+        }
+      if (column < 0)
+        return;
+      visit(column);
+      for (std::int32_t i = first; i < last; ++i)
+        for (std::int32_t &k = at[i - first]; k < indptr(i + 1) && place(indices(k)) / dim == column; ++k)
+          take(i, k, column);
+    }
+  }
+};
+
+// A CSR matrix with sorted rows as one of dim x dim blocks, times factor: row and column i go to place[i], which
+// ascends; the diagonal is one where nothing goes to.
+static nb::tuple padded_blocks(Vector<std::int32_t> indptr, Vector<std::int32_t> indices, Vector<double> data,
+                               Vector<std::int32_t> place, int dim, std::int64_t block_rows, double factor) {
+  const std::size_t rows = indptr.shape(0) - 1;
+  if (place.shape(0) != rows || indices.shape(0) != data.shape(0) || dim < 1 || dim > 8)
+    throw nb::value_error("matrix and places disagree");
+  std::vector<std::int32_t> first(block_rows + 1, 0), start(block_rows + 1, 0);
+  for (std::size_t i = 0; i < rows; ++i)
+    ++first[place(i) / dim + 1];
+  for (std::int64_t b = 0; b < block_rows; ++b)
+    first[b + 1] += first[b];
+  const std::size_t parts = indices.shape(0) < FEW_ENTRIES ? 1 : thread_count(), area = std::size_t(dim) * dim;
+  auto row = [&](std::int64_t b) { return BlockRow{indptr, indices, place, dim, first[b], first[b + 1]}; };
+  auto each = [&](auto work) {
+    run_parts(parts, [&](std::size_t part) {
+      for (std::int64_t b = block_rows * part / parts; b < std::int64_t(block_rows * (part + 1) / parts); ++b)
+        work(b);
+    });
+  };
+  each([&](std::int64_t b) {
+    row(b).walk([&](std::int32_t) { ++start[b + 1]; }, [](std::int32_t, std::int32_t, std::int32_t) {});
+  });
+  for (std::int64_t b = 0; b < block_rows; ++b)
+    start[b + 1] += start[b];
+  Buffer<std::int32_t> columns(start[block_rows]);
+  Buffer<double> blocks(start[block_rows] * area);
+  each([&](std::int64_t b) {
+    std::int64_t at = start[b] - 1;
+    row(b).walk(
+        [&](std::int32_t column) {
+          columns[++at] = column;
+          double *block = &blocks[at * area];
+          std::fill(block, block + area, 0.0);
+          if (column == b) {
+            for (int a = 0; a < dim; ++a)
+              block[a * dim + a] = 1.0;
+            for (std::int32_t i = first[b]; i < first[b + 1]; ++i)
+              block[(place(i) % dim) * (dim + 1)] = 0.0;
+          }
+        },
+        [&](std::int32_t i, std::int32_t k, std::int32_t) {
+          blocks[at * area + place(i) % dim * dim + place(indices(k)) % dim] += factor * data(k);
+        });
+  });
+  return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)), to_numpy(std::move(blocks)));
+}
+
 void bind_sparse(nb::module_ &m) {
   const char *text =
       "Product of a block sparse row matrix, blocks (n, r, c), with a vector; single or double precision.";
@@ -115,6 +193,12 @@ void bind_sparse(nb::module_ &m) {
   m.def("principal_submatrix", &principal_submatrix, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(),
         nb::arg("data").noconvert(), nb::arg("place").noconvert(), nb::arg("size"),
         "CSR (indptr, indices, data) of the rows and columns i with place[i] >= 0, ascending, < size.");
+  m.def("padded_blocks", &padded_blocks, nb::arg("indptr").noconvert(), nb::arg("indices").noconvert(),
+        nb::arg("data").noconvert(), nb::arg("place").noconvert(), nb::arg("dim"), nb::arg("block_rows"),
+        nb::arg("factor"),
+        "BSR (indptr, indices, blocks, flat) of factor times a CSR matrix with sorted rows, row and column i at "
+        "place[i], "
+        "ascending, with ones on the diagonal elsewhere; every block row must have an entry on its diagonal.");
 }
 
 } // namespace abut

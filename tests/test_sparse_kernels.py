@@ -11,9 +11,10 @@ import pyamg
 import pytest
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from pyamg.aggregation import fit_candidates, standard_aggregation
 
-from abut._core import block_product, principal_submatrix
-from abut.solvers.cycle import SMOOTHED, Levels, single_precision
+from abut._core import block_product, padded_blocks, principal_submatrix
+from abut.solvers.cycle import SMOOTHED, Levels, coarse_matrix, inverse, level
 
 SHAPES = [(1, 1), (2, 2), (2, 3), (3, 3), (3, 6), (6, 3), (6, 6), (4, 5)]
 
@@ -62,15 +63,40 @@ def test_principal_submatrix() -> None:
     assert (got != matrix[kept][:, kept]).nnz == 0
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+def test_padded_blocks(dim: int) -> None:
+    """Rows and columns at their places, ones on the diagonal where nothing goes."""
+    random = np.random.default_rng(9)
+    size = 40 * dim
+    place = np.flatnonzero(random.random(size) < 0.7)
+    place = np.union1d(place, dim * np.arange(40))  # something in every block row
+    matrix = (sp.random(len(place), len(place), 0.1, random_state=10) + sp.identity(len(place))).tocsr()
+    matrix.sort_indices()
+    indptr, indices, blocks = padded_blocks(
+        matrix.indptr, matrix.indices, matrix.data, place.astype(np.int32), dim, 40, 0.5
+    )
+    got = sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size)).toarray()
+    expected = np.eye(size)
+    expected[place, place] = 0.0
+    expected[np.ix_(place, place)] += 0.5 * matrix.toarray()
+    assert got == pytest.approx(expected, abs=1e-15)
+
+
 def hierarchy() -> tuple[list, Levels]:
+    """Three levels on an elastic plate: their matrices, and the cycle on them."""
     matrix, near_null = pyamg.gallery.linear_elasticity((20, 20), format="bsr")
-    levels = pyamg.smoothed_aggregation_solver(matrix, B=near_null, max_coarse=10).levels
-    return levels, single_precision(levels)
+    matrices, levels = [matrix], []
+    for _ in range(2):
+        graph = sp.csr_matrix((np.ones(len(matrices[-1].indices)), matrices[-1].indices, matrices[-1].indptr))
+        tentative, near_null = fit_candidates(standard_aggregation(graph)[0], near_null)
+        levels.append(level(matrices[-1], tentative))
+        matrices.append(coarse_matrix(matrices[-1], levels[-1]))
+    return matrices, Levels(levels, inverse(matrices[-1]))
 
 
 def twin(levels: list, ours: Levels, residual: NDArray[np.float64], number: int = 0) -> NDArray[np.float64]:
     """The same cycle in double precision, smoothing by the three-term recurrence of Chebyshev polynomials written out."""
-    matrix = levels[number].A.toarray()
+    matrix = levels[number].toarray()
     if number == len(levels) - 1:
         return np.linalg.pinv(matrix, hermitian=True) @ residual
     inverse = np.diag(1.0 / np.diag(matrix))
@@ -82,22 +108,23 @@ def twin(levels: list, ours: Levels, residual: NDArray[np.float64], number: int 
         error = error @ (np.eye(len(matrix)) - inverse @ matrix / root)
     smooth = (np.eye(len(matrix)) - error) @ np.linalg.inv(matrix)
     x = smooth @ residual
-    below = twin(levels, ours, levels[number].R @ (residual - matrix @ x), number + 1)
-    x = x + levels[number].P @ below
+    interpolation = ours.levels[number].smooth
+    below = twin(levels, ours, interpolation.T @ (residual - matrix @ x), number + 1)
+    x = x + interpolation @ below
     return x + smooth @ (residual - matrix @ x)
 
 
 def test_cycle_equals_its_twin_in_double_precision() -> None:
     levels, ours = hierarchy()
-    assert len(levels) > 2
-    residual = np.random.default_rng(6).standard_normal(levels[0].A.shape[0])
+    assert len(levels) == 3
+    residual = np.random.default_rng(6).standard_normal(levels[0].shape[0])
     expected = twin(levels, ours, residual)
     assert np.linalg.norm(ours.cycle(residual) - expected) < 1e-4 * np.linalg.norm(expected)
 
 
 def test_cycle_is_symmetric_and_positive() -> None:
     levels, ours = hierarchy()
-    x, y = np.random.default_rng(7).standard_normal((2, levels[0].A.shape[0]))
+    x, y = np.random.default_rng(7).standard_normal((2, levels[0].shape[0]))
     assert x @ ours.cycle(y) == pytest.approx(y @ ours.cycle(x), rel=1e-3)
     assert x @ ours.cycle(x) > 0
 
@@ -106,6 +133,13 @@ def test_cycle_is_symmetric_and_positive() -> None:
 def test_cycle_is_linear_in_any_unit(scale: float) -> None:
     """Single precision ends at 1e38; residuals do not."""
     levels, ours = hierarchy()
-    x = np.random.default_rng(8).standard_normal(levels[0].A.shape[0])
+    x = np.random.default_rng(8).standard_normal(levels[0].shape[0])
     assert ours.cycle(scale * x) == pytest.approx(scale * ours.cycle(x), rel=1e-5)
     assert not ours.cycle(0.0 * x).any()
+
+
+def test_coarse_matrix_is_galerkins() -> None:
+    matrices, ours = hierarchy()
+    smooth = ours.levels[0].smooth
+    expected = (smooth.T @ matrices[0] @ smooth).toarray()
+    assert matrices[1].toarray() == pytest.approx(expected, abs=1e-13 * np.abs(expected).max())

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from abut._core import block_product
 
 SMOOTHED = (0.05, 1.1)  # share of the spectrum's end that smoothing damps; its upper end is an estimate from below
+JACOBI = 4 / 3  # over the largest eigenvalue: damping of the smoothed aggregates (Vanek, Mandel and Brezina 1996)
+SINGULAR = 1e-10  # eigenvalue of the coarsest matrix over its largest that counts as zero
 PROBES = 10  # Lanczos steps for that estimate
 
 Single = NDArray[np.float32]
@@ -24,12 +26,13 @@ Blocks = tuple[NDArray[np.int32], NDArray[np.int32], Single]  # indptr, indices,
 
 @dataclass(frozen=True)
 class Level:
-    """matrix, diagonal and largest eigenvalue of diagonal^-1 matrix; interpolate from, restrict to the next level; degree
-    of the polynomial that smoothes."""
+    """matrix, diagonal and largest eigenvalue of diagonal^-1 matrix; smooth: the interpolation in double precision;
+    interpolate from, restrict to the next level; degree of the polynomial that smooths."""
 
     matrix: Blocks
     inverse_diagonal: Single
     largest: float
+    smooth: Any
     interpolate: Blocks
     restrict: Blocks
     degree: int
@@ -61,21 +64,33 @@ class Levels:
         return np.asarray(first + correction + last)
 
 
-def single_precision(levels: Sequence[Any]) -> Levels:
-    """The levels of a PyAMG hierarchy with block sparse matrices, for cycles in single precision."""
-    matrix = levels[-1].A.toarray()
-    return Levels([_level(level) for level in levels[:-1]], np.linalg.pinv(matrix, hermitian=True).astype(np.float32))
-
-
-def _level(level: Any) -> Level:
-    matrix, diagonal = _blocks(level.A), level.A.diagonal()
+def level(matrix: Any, tentative: Any) -> Level:
+    """A level from its matrix and the interpolation of aggregates (both BSR), smoothed by one step of Jacobi's iteration."""
+    blocks, diagonal = _blocks(matrix), matrix.diagonal()
     small = np.finfo(np.float32).eps * diagonal.max()  # coarse functions that small aggregates cannot carry are zero
-    inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small).astype(np.float32)
-    largest = _largest(matrix, inverse)
+    inverse_diagonal = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small)
+    single = inverse_diagonal.astype(np.float32)
+    largest = _largest(blocks, single)
+    image = (matrix @ tentative).tobsr(tentative.blocksize)
+    rows = np.repeat(np.arange(len(image.indptr) - 1), np.diff(image.indptr))
+    image.data *= JACOBI / largest * inverse_diagonal.reshape(-1, image.blocksize[0], 1)[rows]
+    smooth = (tentative - image).tobsr(tentative.blocksize)
     degree = math.ceil(
         math.sqrt(largest)
     )  # flat and stretched cells widen the spectrum, which takes longer polynomials
-    return Level(matrix, inverse, largest, _blocks(level.P), _blocks(level.R), degree)
+    return Level(blocks, single, largest, smooth, _blocks(smooth), _blocks(smooth.T.tobsr()), degree)
+
+
+def coarse_matrix(matrix: Any, own: Level) -> Any:
+    """Galerkin's matrix of the next level, BSR."""
+    block = own.smooth.blocksize
+    image = (matrix @ own.smooth).tobsr(block)
+    return (own.smooth.T.tobsr((block[1], block[0])) @ image).tobsr((block[1], block[1]))
+
+
+def inverse(matrix: Any) -> Single:
+    """Of the coarsest matrix, which may be singular."""
+    return np.linalg.pinv(matrix.toarray(), rcond=SINGULAR, hermitian=True).astype(np.float32)
 
 
 def _blocks(matrix: Any) -> Blocks:

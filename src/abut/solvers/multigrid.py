@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut._core import block_product
+from abut._core import block_product, padded_blocks
 from abut.errors import InputError
-from abut.solvers.cycle import single_precision
+from abut.solvers.cycle import Level, Levels, coarse_matrix, inverse, level
 
 COARSEST = 100  # aggregates whose equations are solved directly
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -37,28 +37,30 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int)
     installed.
     """
     try:
-        import pyamg
+        from pyamg.aggregation import fit_candidates, standard_aggregation
     except ImportError:
         raise InputError(
             'solve.linear: "amg" needs PyAMG, which is not installed: pip install pyamg; or choose "direct"'
         ) from None
     slot, size = _slots(free, dim)
     scale = float(np.median(stiffness.diagonal()))
-    padded = _padded(stiffness, slot, size, dim, scale)
+    fine = level_matrix = _padded(stiffness, slot, size, dim, scale)
     near_null = np.zeros((size, motions.shape[1]))
     near_null[slot] = free.T @ motions
-    levels = pyamg.smoothed_aggregation_solver(
-        padded,
-        B=near_null,
-        strength=("symmetric", {"theta": 0.0}),
-        presmoother=None,  # ours: see cycle.py
-        postsmoother=None,
-        smooth=("jacobi", {"weighting": "local"}),  # by row sums: needs no random vector
-        improve_candidates=None,  # rigid motions need no improving
-        max_coarse=COARSEST,
-    )
-    ours = single_precision(levels.levels)
-    matrix = padded.indptr, padded.indices, padded.data
+    levels: list[Level] = []
+    entries = fine.nnz
+    while level_matrix.shape[0] // level_matrix.blocksize[0] > COARSEST:
+        strong = np.ones(len(level_matrix.indices), dtype=np.int8)  # every neighbour counts
+        graph = sp.csr_matrix((strong, level_matrix.indices, level_matrix.indptr))
+        aggregates, _ = standard_aggregation(graph)
+        if aggregates.shape[1] in (0, graph.shape[0]):
+            break
+        tentative, near_null = fit_candidates(aggregates, near_null)
+        levels.append(level(level_matrix, tentative))
+        level_matrix = coarse_matrix(level_matrix, levels[-1])
+        entries += level_matrix.nnz
+    ours = Levels(levels, inverse(level_matrix))
+    matrix = fine.indptr, fine.indices, fine.data
 
     def place(values: NDArray[np.float64]) -> NDArray[np.float64]:
         whole = np.zeros(size)
@@ -68,22 +70,18 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int)
     return Hierarchy(
         cycle=lambda residual: ours.cycle(place(residual))[slot] / scale,
         product=lambda values: block_product(*matrix, place(values))[slot] * scale,
-        summary=f"multigrid with {len(levels.levels)} levels, complexity {levels.operator_complexity():.2f}",
+        summary=f"multigrid with {len(levels) + 1} levels, complexity {entries / fine.nnz:.2f}",
     )
 
 
 def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale: float) -> Any:
     """The stiffness over ``scale`` with its rows and columns at their slots and ones on the diagonal elsewhere, BSR."""
-    counts = np.zeros(size + 1, dtype=np.int64)
-    counts[slot + 1] = np.diff(stiffness.indptr)
-    entries = stiffness.data / scale, slot.astype(np.int32)[stiffness.indices], np.cumsum(counts).astype(np.int32)
-    padded = sp.csr_matrix(entries, shape=(size, size)).tobsr((dim, dim))
-    empty = np.ones(size)
-    empty[slot] = 0.0
-    row = np.repeat(np.arange(size // dim), np.diff(padded.indptr))
-    on_diagonal = np.flatnonzero(padded.indices == row)
-    padded.data[on_diagonal[:, None], np.arange(dim), np.arange(dim)] += empty.reshape(-1, dim)
-    return padded
+    rows = stiffness if stiffness.has_sorted_indices else stiffness.sorted_indices()
+    indptr, indices, blocks = padded_blocks(
+        rows.indptr.astype(np.int32), rows.indices.astype(np.int32, copy=False), rows.data, slot.astype(np.int32), dim,
+        size // dim, 1.0 / scale,
+    )  # fmt: skip
+    return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
 
 def _slots(free: Any, dim: int) -> tuple[NDArray[np.int64], int]:
