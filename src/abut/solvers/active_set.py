@@ -36,7 +36,8 @@ ACCURATE = 2e-9  # of equilibrium and of closed gaps, where linear systems are s
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
 FINE = 1e-5  # the same once sets repeat
 FINEST = 1e-9  # the same at most, for the final set
-FEW = 0.01  # share of the active set below which changes count as few
+FEW = 0.01  # share of the active set below which changes are too few to foresee where they lead ...
+EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
@@ -88,11 +89,11 @@ def solve_step(
                 return finish_smooth(system, solved, stage, limit, done, observe)
             state, accuracy = solved, max(0.3 * ACCURATE / error, FINEST)
             continue
-        if system.predict is not None and not share and changed.sum() > FEW * active.sum():
+        if system.predict is not None and not share and (count <= EARLY or changed.sum() > FEW * active.sum()):
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 wanted = guess
-        accuracy = min(finest, ROUGH if changed.sum() > FEW * active.sum() else 0.1 * ROUGH)
+        accuracy = finest
         if np.array_equal(system.complete(wanted, system.gap(solved, stage.weights)) | tied, active):
             raise SingularModelError(
                 f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
