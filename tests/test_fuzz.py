@@ -32,6 +32,13 @@ def test_many_damaged_inputs(tmp_path: Path) -> None:
     check(range(FAST, MANY), tmp_path)
 
 
+@pytest.mark.parametrize("number", [1461, 3007])
+def test_a_target_without_a_normal_somewhere_has_its_report(number: int, tmp_path: Path) -> None:
+    """Solved and written; the report, which comes last, used to refuse such a facet."""
+    (result,) = run_all([number], 1, tmp_path)
+    assert (result.status, result.problem) == (0, "")
+
+
 def test_an_input_is_made_by_its_number_alone() -> None:
     assert make(1, 17).files == make(1, 17).files
     assert make(1, 17).files != make(1, 18).files

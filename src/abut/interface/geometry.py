@@ -64,6 +64,16 @@ def facet_sizes(surface: Surface) -> NDArray[np.float64]:
     return (np.where(padded, -np.inf, x).max(axis=1) - np.where(padded, np.inf, x).min(axis=1)).max(axis=1)
 
 
+def area_vectors(surface: Surface) -> NDArray[np.float64]:
+    """Outward normals of each facet by itself at its nodes, as long as its area there, (n_facets, 9, dim), zero where
+    padded."""
+    own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
+    for kind, facets in by_kind(surface):
+        vectors = _area_vectors(surface, kind, facets, node_coordinates(kind))
+        own[facets, : CELLS[kind].nodes] = REFERENCE_AREA.get(CELLS[kind].corners, 1.0) * vectors
+    return own
+
+
 def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded; theory (S1).
 
@@ -71,10 +81,7 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges. Raises InputError for
     a facet without a normal at one of its nodes.
     """
-    own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
-    for kind, facets in by_kind(surface):
-        vectors = _area_vectors(surface, kind, facets, node_coordinates(kind))
-        own[facets, : CELLS[kind].nodes] = REFERENCE_AREA.get(CELLS[kind].corners, 1.0) * vectors
+    own = area_vectors(surface)
     valid = surface.nodes >= 0
     facet, local = np.nonzero(valid)
     node = surface.nodes[facet, local]

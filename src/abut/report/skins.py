@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, CellType
-from abut.interface.geometry import nodal_normals
+from abut.errors import InputError
+from abut.interface.geometry import area_vectors, nodal_normals
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
@@ -72,7 +73,10 @@ class Patch:
 
     @property
     def normals(self) -> NDArray[np.float64]:
-        vectors = self.nodal(nodal_normals(self.surface))
+        try:
+            vectors = self.nodal(nodal_normals(self.surface))
+        except InputError:  # a target may have points without a normal: its facets are shaded each by itself
+            vectors = self.nodal(area_vectors(self.surface))
         return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
 
 
