@@ -125,11 +125,12 @@ def translate(deck: Deck) -> Translation:
 
 
 def _plane(deck: Deck) -> str | None:
-    planes = {block.type.plane: block.code for block in deck.blocks}
+    planes = {block.type.plane: block for block in deck.blocks}
     if len(planes) > 1:
+        codes = " and ".join(sorted(block.code for block in planes.values()))
         raise InputError(
-            f"elements {' and '.join(sorted(planes.values()))} in one deck: abut solves 3D, plane strain, plane stress or "
-            "axisymmetry, not two of them together; use one of the types"
+            f"{list(planes.values())[1].place}: *ELEMENT: elements {codes} in one deck: abut solves 3D, plane strain, "
+            "plane stress or axisymmetry, not two of them together; use one of the types"
         )
     return next(iter(planes))
 

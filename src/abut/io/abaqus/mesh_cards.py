@@ -9,7 +9,7 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.errors import nearest
-from abut.io.abaqus.cards import Card, Line, as_integer, key
+from abut.io.abaqus.cards import Card, Line, Place, as_integer, key
 from abut.io.abaqus.elements import ELEMENTS, FACES, refusal
 from abut.io.abaqus.record import Block, Faces, Numbers
 
@@ -91,7 +91,8 @@ def mesh_cards(cards: Iterable[Card]) -> MeshCards:
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
     named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
     virtual = frozenset(number for number in named if number is not None)
-    return MeshCards(ids, points, _blocks(elements), node_sets, element_sets, _named(surfaces), virtual)
+    places = {key(card.need("TYPE")): card.place for card in reversed(cards) if card.key == "ELEMENT"}
+    return MeshCards(ids, points, _blocks(elements, places), node_sets, element_sets, _named(surfaces), virtual)
 
 
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
@@ -141,12 +142,18 @@ def _elements(
     return np.array(own, dtype=np.int64)
 
 
-def _blocks(elements: dict[int, tuple[str, tuple[int, ...]]]) -> tuple[Block, ...]:
+def _blocks(elements: dict[int, tuple[str, tuple[int, ...]]], places: Mapping[str, Place]) -> tuple[Block, ...]:
     by_code: dict[str, list[int]] = {}
     for number, (code, _) in elements.items():
         by_code.setdefault(code, []).append(number)
     return tuple(
-        Block(code, ELEMENTS[code], np.array(own, np.int64), np.array([elements[i][1] for i in own], np.int64))
+        Block(
+            code,
+            ELEMENTS[code],
+            np.array(own, np.int64),
+            np.array([elements[i][1] for i in own], np.int64),
+            places[code],
+        )
         for code, own in by_code.items()
     )
 

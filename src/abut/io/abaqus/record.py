@@ -16,12 +16,13 @@ Numbers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Block:
-    """Elements of one type: ids (n,), nodes (n, k) node numbers."""
+    """Elements of one type: ids (n,), nodes (n, k) node numbers; place: of the first card with them."""
 
     code: str
     type: ElementType
     ids: Numbers
     nodes: Numbers
+    place: Place
 
 
 @dataclass(frozen=True)
