@@ -13,6 +13,7 @@ from abut.io.abaqus.elements import ELEMENTS
 from abut.mesh.integrals import chunks, gradients
 from abut.mesh.quadrature import stiffness_rule
 from abut.solids.loads import stress_load, surface_area
+from decks import MESH
 
 # Corners, edges whose midpoints follow them, and faces S1, S2, ..., from the figures of the CalculiX manual (sections 6.2
 # and *DLOAD) and of the Abaqus Analysis User's Guide ("Solid element library"), counted from 1 as there.
@@ -102,31 +103,7 @@ def test_node_order_and_faces(code, tmp_path):
     assert np.abs(total).max() < 1e-12  # a closed surface
 
 
-BRICKS = """*HEADING
- two bricks, the second on top
-*NODE, NSET=ALL
-1, 0,0,0
-2, 1,0,0
-3, 1,1,0
-4, 0,1,0
-5, 0,0,1
-6, 1,0,1
-7, 1,1,1
-8, 0,1,1
-11, 0,0,1
-12, 1,0,1
-13, 1,1,1
-14, 0,1,1
-15, 0,0,2
-16, 1,0,2
-17, 1,1,2
-18, 0,1,2
-99, 5,5,5
-*ELEMENT, TYPE=C3D8, ELSET=LOW
-1, 1,2,3,4,5,6,7,8
-*ELEMENT, TYPE=C3D8, ELSET=HIGH
-2, 11,12,13,14,15,16,17,18
-"""
+BRICKS = "*HEADING\n two bricks, the second on top\n" + MESH + "*NODE, NSET=ALL\n99, 5,5,5\n"
 
 
 def test_sets(tmp_path):
@@ -180,17 +157,17 @@ def test_names_that_stand_for_several_things(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (BRICKS.replace("2, 11,12,13", "2, 11,12,33"), r"deck.inp:24: \*ELEMENT: element 2: node 33 does not exist"),
-        (BRICKS.replace("15,16,17,18", "15,16,17"), r":24: \*ELEMENT: element 2 has 7 nodes, but C3D8 needs 8"),
-        (BRICKS.replace("15,16,17,18", "15,16,17,18,1"), r":24: .* has 9 nodes"),
-        (BRICKS.replace("2, 11,12", "1, 11,12"), r":24: .*element 1 is given twice"),
+        (BRICKS.replace("2, 11,12,13", "2, 11,12,33"), r"deck.inp:23: \*ELEMENT: element 2: node 33 does not exist"),
+        (BRICKS.replace("15,16,17,18", "15,16,17"), r":23: \*ELEMENT: element 2 has 7 nodes, but C3D8 needs 8"),
+        (BRICKS.replace("15,16,17,18", "15,16,17,18,1"), r":23: .* has 9 nodes"),
+        (BRICKS.replace("2, 11,12", "1, 11,12"), r":23: .*element 1 is given twice"),
         (BRICKS.replace("18, 0,1,2", "1, 0,1,2"), r":19: .*node 1 is given twice"),
         (BRICKS.replace("18, 0,1,2", "18, 0,l,2"), r":19: \*NODE: y: expected a number, got 'l'"),
         (BRICKS.replace("18, 0,1,2", "18, 0,nan,2"), r":19: \*NODE: y: expected a number, got 'nan'"),
-        (BRICKS.replace("C3D8", "C3D8H"), r":21: \*ELEMENT: element type C3D8H: .*not supported"),
+        (BRICKS.replace("C3D8", "C3D8H"), r":20: \*ELEMENT: element type C3D8H: .*not supported"),
         (BRICKS.replace("C3D8", "S4R"), "S4R: shells are not supported; model the part with solid"),
-        (BRICKS + "*NSET, NSET=A\nBOTOM\n", r":26: \*NSET: no node set named 'BOTOM'; known: ALL"),
-        (BRICKS + "*SURFACE, NAME=A\nLOW, S7\n", r":26: \*SURFACE: face label 'S7': expected S1 to S6"),
+        (BRICKS + "*NSET, NSET=A\nBOTOM\n", r":27: \*NSET: no node set named 'BOTOM'; known: ALL"),
+        (BRICKS + "*SURFACE, NAME=A\nLOW, S7\n", r":27: \*SURFACE: face label 'S7': expected S1 to S6"),
         (BRICKS + "*SURFACE, NAME=A\n", "its data line is missing"),
         (BRICKS + "*SURFACE, NAME=A, TYPE=CYLINDER\n1,1\n", "TYPE=CYLINDER"),
         (BRICKS + "*NSET\n1\n", "parameter NSET is missing"),
