@@ -19,6 +19,7 @@ STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alon
 RESTART, MOST = 100, 300
 REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
 MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi"}
+FACTORS = ("cholesky", "lu")
 PACKAGES = ("mumps", "superlu_dist")
 
 
@@ -96,7 +97,7 @@ def iterate(
     blocks = Blocks(store["stiffness solver"], lower, loose, small, inverse, solver.getType() == "minres")
     solver.getPC().setType("python")
     solver.getPC().setPythonContext(blocks)
-    return _solve(solver, operator, share, n, conditions)
+    return _solve(solver, operator, share, conditions)
 
 
 def factorise(store: Store, n: int, symmetric: bool, share: Vector, conditions: Conditions | None) -> Answer:
@@ -119,10 +120,12 @@ def factorise(store: Store, n: int, symmetric: bool, share: Vector, conditions: 
     solver.setType("fgmres")
     solver.setTolerances(rtol=REFINED, atol=0.0, max_it=REFINEMENTS)
     package = direct_solver()
-    _unless_given("", {"pc_type": "cholesky" if symmetric and package == "mumps" else "lu",
-                       "pc_factor_mat_solver_type": package})  # fmt: skip
-    solver.setFromOptions()
-    return _solve(solver, operator, share, n, conditions)
+    preconditioner = solver.getPC()
+    preconditioner.setType("cholesky" if symmetric and package == "mumps" else "lu")
+    preconditioner.setFactorSolverType(package)
+    if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
+        solver.setFromOptions()
+    return _solve(solver, operator, share, conditions)
 
 
 def direct_solver() -> str:
@@ -162,7 +165,7 @@ class Blocks:
         y.array[:] = out
 
 
-def _solve(solver: Any, operator: Any, share: Vector, n: int, conditions: Conditions | None) -> Answer:
+def _solve(solver: Any, operator: Any, share: Vector, conditions: Conditions | None) -> Answer:
     x, b = operator.createVecs()
     own = np.zeros(0) if conditions is None else conditions.rhs
     b.array[:] = np.concatenate([share, own])
@@ -172,13 +175,12 @@ def _solve(solver: Any, operator: Any, share: Vector, n: int, conditions: Condit
     operator.mult(x, miss)
     miss.axpy(-1.0, b)
     values = np.array(x.array_r)
-    return Answer(
-        values[: len(share)],
-        values[len(share) :],
-        solver.getIterationNumber(),
-        miss.norm() / size if size > 0.0 else 0.0,
-        solver.getConvergedReason(),
+    error = miss.norm() / size if size > 0.0 else 0.0
+    answer = Answer(
+        values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason()
     )
+    solver.destroy()  # now, not when Python finds the time: it holds many vectors, or factors
+    return answer
 
 
 def _unless_given(prefix: str, options: Mapping[str, str]) -> None:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
-from abut.parallel.krylov import Answer, Conditions, direct_solver, factorise, iterate, multigrid
+from abut.parallel.krylov import FACTORS, Answer, Conditions, direct_solver, factorise, iterate, multigrid
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.team import Team
@@ -21,7 +21,6 @@ from abut.solvers.iterative import Count, NotConverged
 from abut.solvers.linear import Prepared
 from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
 
-FACTORS = ("lu", "cholesky")
 Vector = NDArray[np.float64]
 
 

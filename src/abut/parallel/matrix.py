@@ -45,48 +45,73 @@ def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np
     """Build and keep PETSc's matrix of the stiffness on the free displacements.
 
     starts, block: as in ``Layout``; free: (dim n_points, k) change of variables of this part's points, on those k free
-    displacements that move any of them, in the order of the points; slot: (k,) their places. PETSc adds up what several
-    parts have of one entry."""
+    displacements that move any of them, in the order of the points; slot: (k,) their places. Rows at the border between
+    parts get what the others have of them. The stiffness of the part goes, to make room."""
     from petsc4py import PETSc
 
     comm, ints = PETSc.COMM_WORLD, PETSc.IntType
     first, last, n = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1], starts[-1]))
-    reduced = Supports(free, np.zeros((0, 0))).reduce(store["stiffness"])
-    blocks, own = _blocks(reduced, slot, block)
-    mapping = PETSc.LGMap().create(blocks.astype(ints), bsize=block, comm=comm)
-    shared = PETSc.Mat().createIS(((last - first, n), (last - first, n)), lgmapr=mapping, lgmapc=mapping, comm=comm)
-    shared.setISLocalMat(_sequential(own))
-    shared.assemble()
-    matrix = shared.convert("aij", PETSc.Mat())
+    rows = _own_rows(store, slot, free, block, starts // block, comm.tompi4py()).tocsr()
+    shape = ((last - first, n), (last - first, n))
+    csr = rows.indptr.astype(ints, copy=False), rows.indices.astype(ints, copy=False), rows.data
+    matrix = PETSc.Mat().createAIJ(shape, csr=csr, comm=comm)
     matrix.setBlockSize(block)
     padding = np.ones(last - first, dtype=bool)
     padding[slot[(slot >= first) & (slot < last)] - first] = False
-    if padding.any():
-        _set_diagonal(matrix, np.where(padding, _largest(matrix, block), _local(matrix)))
-    store["matrix"], store["padding"] = matrix, padding
+    _set_diagonal(matrix, np.where(padding, _largest(matrix, block), _local(matrix)))
+    store["matrix"] = matrix
 
 
-def _blocks(reduced: Any, slot: NDArray[np.int64], block: int) -> tuple[NDArray[np.int64], Any]:
-    """Numbers of the blocks that the places belong to, and the matrix filled up to whole blocks, ones on the diagonal."""
-    if not len(slot) or block == 1:
-        return slot, reduced
+def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> tuple[NDArray[np.int64], Any]:
+    """Numbers of the blocks that the places belong to, and the stiffness in whole blocks, BSR, ones on the diagonal where
+    there is no free displacement."""
+    reduced = Supports(free, np.zeros((0, 0))).reduce(stiffness)
+    reduced.sort_indices()
     new = np.diff(slot // block, prepend=-1) != 0
     blocks = (slot // block)[new]
     place = block * (np.cumsum(new) - 1) + slot % block
-    reduced.sort_indices()
+    if block == 1 or not len(slot):
+        return blocks, reduced.tobsr((block, block))
     indptr, indices, values = padded_blocks(
-        reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32), reduced.data, place.astype(np.int32), block,
-        len(blocks), 1.0,
+        reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32, copy=False), reduced.data,
+        place.astype(np.int32), block, len(blocks), 1.0,
     )  # fmt: skip
     n = block * len(blocks)
-    return blocks, sp.bsr_matrix((values.reshape(-1, block, block), indices, indptr), shape=(n, n)).tocsr()
+    return blocks, sp.bsr_matrix((values.reshape(-1, block, block), indices, indptr), shape=(n, n))
 
 
-def _sequential(matrix: Any) -> Any:
-    from petsc4py import PETSc
+def _own_rows(
+    store: Store, slot: NDArray[np.int64], free: Any, block: int, starts: NDArray[np.int64], comm: Any
+) -> Any:
+    """The rows of this process, columns numbered as in the whole, BSR: what it has itself and what others have of them.
 
-    csr = tuple(part.astype(PETSc.IntType, copy=False) for part in (matrix.indptr, matrix.indices))
-    return PETSc.Mat().createAIJ(matrix.shape, csr=(*csr, matrix.data), comm=PETSc.COMM_SELF)
+    starts: first block of each process."""
+    blocks, matrix = _blocks(store.pop("stiffness"), slot, free, block)
+    rank, size = comm.rank, matrix.blocksize[0]
+    owner = np.searchsorted(starts, blocks, side="right") - 1
+    shape = (size * int(starts[rank + 1] - starts[rank]), size * int(starts[-1]))
+
+    def part(of: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        rows = np.flatnonzero(owner == of)
+        count = np.diff(matrix.indptr)[rows]
+        entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+        return np.repeat(blocks[rows], count), blocks[matrix.indices[entries]], matrix.data[entries]
+
+    away = [part(of) if of != rank else None for of in range(comm.size)]
+    pieces = [part(rank), *(piece for piece in comm.alltoall(away) if piece is not None)]
+    del away, matrix
+    row, column = (np.concatenate([piece[k] for piece in pieces]) for k in (0, 1))
+    data = np.concatenate([piece[2] for piece in pieces])
+    del pieces
+    order = np.lexsort((column, row))
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (np.diff(row[order]) != 0) | (np.diff(column[order]) != 0)
+    summed = data[order[new]]
+    again = np.flatnonzero(~new)
+    np.add.at(summed, np.cumsum(new)[again] - 1, data[order[again]])
+    count = np.bincount(row[order[new]] - starts[rank], minlength=shape[0] // size)
+    indptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int32)
+    return sp.bsr_matrix((summed, column[order[new]].astype(np.int32), indptr), shape=shape)
 
 
 def _local(matrix: Any) -> NDArray[np.float64]:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.mesh.mesh import Mesh
+from abut.parallel.partition import pieces
 from abut.parallel.team import Store
 from abut.solids.elements import stiffness, stress_sums
 from abut.solids.materials import LinearElastic
+
+PORTION = 8192  # cells assembled at once where the matrix is not kept
 
 
 @dataclass(frozen=True)
@@ -33,15 +37,30 @@ class Part:
 def assemble(store: Store, part: Part) -> None:
     """Keep the part and the stiffness of its cells over its points."""
     store["part"] = part
-    n = part.mesh.points.size
-    store["stiffness"] = (
-        sp.csr_matrix((n, n)) if part.empty else stiffness(part.mesh, part.materials, part.plane, part.integration)
-    )
+    store["stiffness"] = _stiffness(part)
 
 
 def internal(store: Store, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Nodal forces of this part's stresses, (dim n_points, ...)."""
-    return np.asarray(store["stiffness"] @ displacement)
+    """Nodal forces of this part's stresses, (dim n_points, ...). Where the stiffness has made room for the matrix of all
+    parts, it is assembled anew, some cells at a time."""
+    if "stiffness" in store:
+        return np.asarray(store["stiffness"] @ displacement)
+    part: Part = store["part"]
+    nodal = displacement.reshape(-1, part.mesh.dim, *displacement.shape[1:])
+    total = np.zeros_like(nodal)
+    portion = np.arange(part.mesh.n_cells) // PORTION
+    for piece in pieces(part.mesh, portion, portion.max(initial=-1) + 1):
+        own = nodal[piece.points]
+        force = _stiffness(replace(part, mesh=piece.mesh)) @ own.reshape(-1, *own.shape[2:])
+        total[piece.points] += force.reshape(own.shape)
+    return total.reshape(displacement.shape)
+
+
+def _stiffness(part: Part) -> Any:
+    n = part.mesh.points.size
+    if part.empty:
+        return sp.csr_matrix((n, n))
+    return stiffness(part.mesh, part.materials, part.plane, part.integration)
 
 
 def stresses(
