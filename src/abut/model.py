@@ -44,7 +44,7 @@ LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
 MOST_STEPS = 1_000_000  # load steps, and iterations in one
-LINEAR = ("auto", "direct", "amg")
+LINEAR = ("auto", "direct", "amg", "petsc")
 
 
 @dataclass(frozen=True)

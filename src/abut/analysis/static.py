@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,11 @@ def _silent(*_: object) -> None:
 
 
 def solve(
-    model: Model, observer: Observer | None = None, on_step: OnStep | None = None, resume: Sequence[Saved] = ()
+    model: Model,
+    observer: Observer | None = None,
+    on_step: OnStep | None = None,
+    resume: Sequence[Saved] = (),
+    team: Any = None,
 ) -> Solution:
     """Solve a model step by step.
 

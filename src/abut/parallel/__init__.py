@@ -1,0 +1,1 @@
+"""One job on many processes: MPI between them, PETSc for matrices and solvers."""
