@@ -304,10 +304,10 @@ def test_ctrl_c_before_the_first_step_writes_nothing(tmp_path: Path, capsys: pyt
 
     solve = analysis.solve
 
-    def interrupted(*arguments: Any) -> Any:
+    def interrupted(*arguments: Any, **options: Any) -> Any:
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(0.5)  # the thread that answers signals needs a moment
-        return solve(*arguments)
+        return solve(*arguments, **options)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(analysis, "solve", interrupted)

@@ -182,7 +182,8 @@ class Saved:
 class Solution:
     """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state).
 
-    ``complete`` is False while steps are still to come, or where the run was stopped before them."""
+    ``complete`` is False while steps are still to come, or where the run was stopped before them; ``processes``: how many
+    solved it together."""
 
     model: Model
     steps: tuple[Step, ...]
@@ -192,6 +193,7 @@ class Solution:
     timings: Mapping[str, float]
     complete: bool = True
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
+    processes: int = 1
 
     @property
     def converged(self) -> bool:

@@ -3,31 +3,41 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import sys
+import time
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
-from abut.cli.run import add_run
+from abut.cli.run import add_run, passes_on
 from abut.cli.verify import add_infsup, add_verify
 from abut.errors import AbutError, InputError
+from abut.parallel.launch import processes, rank
 
 DONE, BUG, INTERRUPTED, NO_READER = 0, 1, 130, 141
+PAUSE = 2.0  # seconds; mpiexec ends all processes when one fails, so that process 0 must get to its message first
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
-    130 stopped by Ctrl-C (143 by SIGTERM), 1 a bug."""
-    parser = _parser()
-    arguments = parser.parse_args(argv)
+    130 stopped by Ctrl-C (143 by SIGTERM), 1 a bug. Of several processes all but the first keep silent about it."""
+    if processes() > 1:
+        os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when NumPy and the core are imported
+    arguments = _parse(argv)
+    if rank() and not arguments.together:
+        return DONE  # process 0 does it alone
     try:
         return int(arguments.command(arguments))
     except AbutError as error:
-        print(f"abut: error: {error}", file=sys.stderr)
+        if rank():
+            time.sleep(PAUSE)
+        else:
+            print(f"abut: error: {error}", file=sys.stderr, flush=True)
         return error.exit_status
     except MemoryError:
         print(
@@ -52,6 +62,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         return BUG
 
 
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    """Arguments; what abut does not know of them, and PETSc may, as ``petsc``."""
+    parser = _parser()
+    with contextlib.ExitStack() as silence:
+        if rank():
+            silence.enter_context(contextlib.redirect_stdout(None))
+            silence.enter_context(contextlib.redirect_stderr(None))
+        try:
+            arguments, rest = parser.parse_known_args(argv)
+            if rest and not (arguments.together and passes_on(arguments.job, rest)):
+                parser.error(f"unrecognized arguments: {' '.join(rest)}")
+        except SystemExit as end:
+            if rank() and end.code:
+                time.sleep(PAUSE)
+            raise
+    arguments.petsc = rest
+    return arguments
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="abut",
@@ -59,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="example: abut run punch.toml   then open results/fields.pvd in ParaView",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+    parser.set_defaults(together=False)  # whether all processes take part
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add_run(commands)
     add_check(commands)

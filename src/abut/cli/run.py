@@ -4,16 +4,26 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.errors import ConvergenceError, Stopped
+from abut.errors import ConvergenceError, InputError, Stopped
+from abut.parallel.launch import processes
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 if TYPE_CHECKING:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
+    from abut.job import Job
+    from abut.parallel.team import Team
     from abut.state import Iteration, Phase, Saved, Solution
 
 DONE = 0
@@ -24,7 +34,12 @@ STATUS = """exit status:
   4    the model has no unique solution
   130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
        --restart goes on from there
-  1    a bug in abut"""
+  1    a bug in abut
+
+several processes (docs/mpi.md): mpiexec -n N abut run JOB [OPTION OF PETSC ...]
+  needs petsc4py and mpi4py; process 0 speaks, and its exit status counts. Options that abut does not know and PETSc
+  does stand after the job: -ksp_type minres -ksp_monitor. On one process they need linear = "petsc" in the job.
+"""
 
 
 def add_run(commands: Any) -> None:
@@ -44,7 +59,7 @@ def add_run(commands: Any) -> None:
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
-    run.set_defaults(command=_run)
+    run.set_defaults(command=_start, together=True)
 
 
 def add_ignore(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +73,32 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _run(arguments: argparse.Namespace) -> int:
+def passes_on(job: Path, options: Sequence[str]) -> bool:
+    """Whether what abut does not know goes to PETSc: names with one dash, each with a value or none, and PETSc in use."""
+    kinds = "".join("n" if re.match("-[A-Za-z]", option) else "?" if option[:2] == "--" else "v" for option in options)
+    return re.fullmatch("(nv?)+", kinds) is not None and _uses_petsc(job)
+
+
+def _uses_petsc(job: Path) -> bool:
+    """Several processes, or a job that asks for PETSc; of one that cannot be read, load_job says why."""
+    if processes() > 1:
+        return True
+    try:
+        solve = tomllib.loads(job.read_text(encoding="utf-8")).get("solve")
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(solve, dict) and solve.get("linear") == "petsc"
+
+
+def _start(arguments: argparse.Namespace) -> int:
+    if not _uses_petsc(arguments.job):
+        return _run(arguments, None)
+    from abut.parallel.team import lead
+
+    return lead(lambda team: _run(arguments, team), arguments.petsc)
+
+
+def _run(arguments: argparse.Namespace, team: Team | None) -> int:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
     from abut.io.results import summary
@@ -68,7 +108,7 @@ def _run(arguments: argparse.Namespace) -> int:
         Interrupt(_say, leave=progress.close) as interrupt,
     ):
         try:
-            solution, directory = _solve(arguments, progress, interrupt)
+            solution, directory = _solve(arguments, progress, interrupt, team)
         except Stopped as reason:
             progress.close()
             _say(str(reason))
@@ -82,17 +122,22 @@ def _run(arguments: argparse.Namespace) -> int:
     return DONE
 
 
-def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interrupt) -> tuple[Solution, Path]:
+def _solve(
+    arguments: argparse.Namespace, progress: Progress, interrupt: Interrupt, team: Team | None
+) -> tuple[Solution, Path]:
     """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
     from abut.analysis import solve
     from abut.io import restart
+    from abut.io.fields import write_fields
     from abut.io.stream import Stream
     from abut.job import load_job
+    from abut.parallel.pieces import Pieces
     from abut.report import read_origin
     from abut.state import Phase
 
     progress(Phase(f"reading {arguments.job}"))
     job = load_job(arguments.job, ignore=arguments.ignore)
+    _check_linear(job)
     for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
         progress(text)
     directory = arguments.output or job.directory
@@ -100,10 +145,12 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
     before = restart.load_steps(directory, model) if arguments.restart else []
     if before:
         progress(restart.last(before))
-    with Stream(directory, model, before) as stream:
+    fields = write_fields if team is None or team.size == 1 else Pieces(team)
+    with Stream(directory, model, before, fields) as stream:
 
         def told(solution: Solution) -> Solution:
-            return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored)
+            size = 1 if team is None else team.size
+            return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored, processes=size)
 
         def keep(solution: Solution, saved: Saved) -> None:
             stream.step(told(solution), saved)
@@ -114,12 +161,21 @@ def _solve(arguments: argparse.Namespace, progress: Progress, interrupt: Interru
             interrupt.check()
 
         try:
-            solution = told(solve(job.model, observe, keep, before))
+            solution = told(solve(job.model, observe, keep, before, team=team))
         except Stopped:
             raise Stopped(_left(stream.steps, directory)) from None
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))
     return solution, directory
+
+
+def _check_linear(job: Job) -> None:
+    linear = job.model.solve.linear
+    if processes() > 1 and linear not in ("auto", "petsc"):
+        raise InputError(
+            f'{job.path}: solve.linear: "{linear}" runs on one process, but {processes()} were started; take it out, or '
+            'choose "petsc"'
+        )
 
 
 def _say(text: str) -> None:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import BY_CODE, CELLS
+from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
-from abut.model import Model
 from abut.solids.invariants import von_mises
 from abut.state import ContactResult, Step
 
@@ -29,20 +29,22 @@ class Grid:
     cell_data: dict[str, NDArray[Any]]
 
 
-def field_grid(model: Model, step: Step) -> Grid:
+def field_grid(mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> Grid:
     """The whole mesh with displacement, stress, von_mises at points, and the body's number at cells."""
-    mesh = model.mesh
     body = np.zeros(mesh.n_cells, dtype=np.int32)
     for number, cells in enumerate(mesh.bodies.values()):
         body[cells] = number
-    return Grid(
-        mesh.points, tuple((block.kind, block.nodes) for block in mesh.blocks), point_fields(step), {"body": body}
-    )
+    blocks = tuple((block.kind, block.nodes) for block in mesh.blocks)
+    return Grid(mesh.points, blocks, _at_points(displacement, stress), {"body": body})
 
 
 def point_fields(step: Step) -> dict[str, NDArray[np.float64]]:
     """What is known at every point of the mesh: displacement (n, 3), stress (n, 6), von_mises (n,)."""
-    return {"displacement": vectors(step.displacement), "stress": step.stress, "von_mises": von_mises(step.stress)}
+    return _at_points(step.displacement, step.stress)
+
+
+def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    return {"displacement": vectors(displacement), "stress": stress, "von_mises": von_mises(stress)}
 
 
 def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:

@@ -15,7 +15,8 @@ import numpy as np
 
 from abut.analysis.remedies import remedies, unsettled
 from abut.io.atomic import make_directory, write_text
-from abut.io.grids import Grid, contact_grid, field_grid
+from abut.io.fields import WriteFields, found_name, is_whole, write_fields
+from abut.io.grids import contact_grid
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
 from abut.report import Origin, write_report
@@ -23,37 +24,43 @@ from abut.state import Solution, Step
 
 
 def write(
-    solution: Solution, directory: str | Path, origin: Origin | None = None, steps: Sequence[Step] | None = None
+    solution: Solution,
+    directory: str | Path,
+    origin: Origin | None = None,
+    steps: Sequence[Step] | None = None,
+    fields: WriteFields = write_fields,
 ) -> Path:
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
     report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
     each contact. origin: what the report says of the job (its name, its text, what theory expects); steps: those whose
-    VTU files are still to be written, all of them by default.
+    VTU files are still to be written, all of them by default; fields: what writes the fields of a step.
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
     make_directory(folder)
-    write_steps(folder, solution, solution.steps if steps is None else steps)
+    write_steps(folder, solution, solution.steps if steps is None else steps, fields)
     write_index(folder, solution)
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
 
-def write_steps(folder: Path, solution: Solution, steps: Sequence[Step]) -> None:
+def write_steps(folder: Path, solution: Solution, steps: Sequence[Step], fields: WriteFields = write_fields) -> None:
     """The VTU files of some steps."""
     for step in steps:
-        _write_grid(folder / f"fields_{step.number:04d}.vtu", field_grid(solution.model, step))
+        fields(folder, solution.model, step)
         for contact in step.contacts:
-            stem = f"contact_{file_name(contact.name)}"
-            _write_grid(folder / f"{stem}_{step.number:04d}.vtu", contact_grid(step, contact))
+            grid = contact_grid(step, contact)
+            path = folder / _contact_file(contact.name, step)
+            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
 
 
 def write_index(folder: Path, solution: Solution) -> None:
     """The files that tell of all steps."""
-    _write_collection(folder, "fields", solution)
+    _write_collection(folder, "fields", solution.steps, [found_name(folder, step.number) for step in solution.steps])
     for contact in solution.contacts:
-        _write_collection(folder, f"contact_{file_name(contact.name)}", solution)
+        files = [_contact_file(contact.name, step) for step in solution.steps]
+        _write_collection(folder, f"contact_{file_name(contact.name)}", solution.steps, files)
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
@@ -71,6 +78,7 @@ def summary(solution: Solution) -> dict[str, Any]:
         "status": status(solution),
         "dofs": solution.dofs,
         "solver": solution.solver,
+        "processes": solution.processes,
         "steps": [_step_summary(step) for step in solution.steps],
         "certificate": {
             "passed": all(check.passed for check in solution.certificate),
@@ -101,10 +109,14 @@ def status(solution: Solution) -> str:
     return "converged" if solution.complete else "incomplete"
 
 
-def step_files(step: Step) -> list[str]:
-    """Names of the files that hold one step."""
-    stems = ["fields", *(f"contact_{file_name(contact.name)}" for contact in step.contacts)]
-    return [f"{stem}_{step.number:04d}.vtu" for stem in stems]
+def is_written(folder: Path, step: Step) -> bool:
+    """Whether all files of a step are there."""
+    contacts = [_contact_file(contact.name, step) for contact in step.contacts]
+    return is_whole(folder, step.number) and all((folder / name).is_file() for name in contacts)
+
+
+def _contact_file(contact: str, step: Step) -> str:
+    return f"contact_{file_name(contact)}_{step.number:04d}.vtu"
 
 
 def _step_summary(step: Step) -> dict[str, Any]:
@@ -183,17 +195,12 @@ def _log(solution: Solution) -> str:
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
-def _write_grid(path: Path, grid: Grid) -> None:
-    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
-
-
-def _write_collection(folder: Path, stem: str, solution: Solution) -> None:
-    files = "".join(
-        f'    <DataSet timestep="{step.factor:.12g}" part="0" file="{stem}_{step.number:04d}.vtu"/>\n'
-        for step in solution.steps
+def _write_collection(folder: Path, stem: str, steps: Sequence[Step], files: Sequence[str]) -> None:
+    entries = "".join(
+        f'    <DataSet timestep="{step.factor:.12g}" part="0" file="{file}"/>\n' for step, file in zip(steps, files)
     )
     write_text(
         folder / f"{stem}.pvd",
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>\n'
-        f"{files}  </Collection>\n</VTKFile>\n",
+        f"{entries}  </Collection>\n</VTKFile>\n",
     )

@@ -10,8 +10,9 @@ from types import TracebackType
 
 from abut.errors import InputError
 from abut.io.atomic import make_directory, remove_leftovers
+from abut.io.fields import WriteFields, write_fields
 from abut.io.restart import clear, save_step
-from abut.io.results import step_files, write, write_index, write_steps
+from abut.io.results import is_written, write, write_index, write_steps
 from abut.report import Origin
 from abut.state import Iteration, Phase, Saved, Solution, Step
 
@@ -26,12 +27,20 @@ class Stream:
     an iteration at once and becomes ``run.jsonl`` at the end. A run that ends before its first step leaves nothing, not
     even a directory that was not there before.
 
-    model: what a restart compares (``abut.io.restart.description``); resumed: records of the steps done before.
+    model: what a restart compares (``abut.io.restart.description``); resumed: records of the steps done before; fields:
+    what writes the fields of a step.
     Raises InputError where the directory cannot be written.
     """
 
-    def __init__(self, directory: Path, model: Mapping[str, str], resumed: Sequence[Saved] = ()) -> None:
+    def __init__(
+        self,
+        directory: Path,
+        model: Mapping[str, str],
+        resumed: Sequence[Saved] = (),
+        fields: WriteFields = write_fields,
+    ) -> None:
         self.directory = directory
+        self._fields = fields
         self._model = model
         self._resumed = len(resumed)
         self._written: set[int] = set()
@@ -64,7 +73,7 @@ class Stream:
         """Write the last step of the solution so far."""
         if not self._resumed and not self._written:
             clear(self.directory)  # of an earlier run: it would no longer fit
-        write_steps(self.directory, solution, self._missing(solution))
+        write_steps(self.directory, solution, self._missing(solution), self._fields)
         self._written.add(saved.number)
         write_index(self.directory, solution)
         save_step(self.directory, self._model, saved)
@@ -72,7 +81,7 @@ class Stream:
     def finish(self, solution: Solution, origin: Origin | None = None) -> None:
         """Write what is still to be written, and the report, which says where the job comes from (``origin``); restart data
         stay only where there is something left to do."""
-        write(solution, self.directory, origin, self._missing(solution))
+        write(solution, self.directory, origin, self._missing(solution), self._fields)
         self._written.add(len(solution.steps))
         if solution.converged and solution.complete:
             clear(self.directory)
@@ -83,9 +92,7 @@ class Stream:
             step
             for step in solution.steps
             if step.number not in self._written
-            and not (
-                step.number <= self._resumed and all((self.directory / name).is_file() for name in step_files(step))
-            )
+            and not (step.number <= self._resumed and is_written(self.directory, step))
         ]
 
     def __enter__(self) -> Stream:

@@ -117,7 +117,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp",
         "times": "ends of the load steps, rising to 1, where they are unequal",
-        "linear": "linear solver; auto takes multigrid (amg) for large 3D models",
+        "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step",
     },
     "OutputTable": {"directory": "folder of the results, beside the job file"},

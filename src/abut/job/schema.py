@@ -172,7 +172,7 @@ class ContactTable(Table):
 
 class SolveTable(Table):
     steps: int = SolveOptions.steps
-    linear: Literal["auto", "direct", "amg"] = "auto"
+    linear: Literal["auto", "direct", "amg", "petsc"] = "auto"
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None
 

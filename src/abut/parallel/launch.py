@@ -1,0 +1,84 @@
+"""How many processes a run was started on, and whether what it takes is installed: said without importing any of it."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from pathlib import Path
+
+from abut.errors import InputError
+
+LAUNCHERS = (  # what each tells its processes: how many there are, and which one this is
+    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"),  # mpiexec of Open MPI
+    ("PMI_SIZE", "PMI_RANK"),  # mpiexec of MPICH and Intel MPI; srun --mpi=pmi2
+    ("SLURM_STEP_NUM_TASKS", "PMIX_RANK"),  # srun --mpi=pmix
+    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),  # srun by other ways; a batch script itself has no step
+)
+DEBIAN = Path("/usr/lib/petscdir")  # petsc4py of Debian and Ubuntu is in here, for PETSC_DIR to choose
+PYTHON = Path("lib/python3/dist-packages")
+RECIPE = """it takes petsc4py and mpi4py, which belong to an MPI and are not on PyPI ready to use:
+  Debian, Ubuntu: apt-get install python3-petsc4py python3-mpi4py python3-venv
+                  export PETSC_DIR=$(echo /usr/lib/petscdir/petsc3*/*-real)
+                  /usr/bin/python3 -m venv --system-site-packages mpi
+                  mpi/bin/pip install ".[mpi]" "numpy<2"      (in abut's folder)
+  conda:          conda install -c conda-forge petsc4py mpi4py
+                  pip install ".[mpi]"
+(docs/mpi.md says more)"""
+
+
+def processes() -> int:
+    """How many processes were started together, as whoever started them says; 1 where nobody does."""
+    return _told()[0]
+
+
+def rank() -> int:
+    """Which of them this one is, from 0; process 0 leads and speaks."""
+    return _told()[1]
+
+
+def _told() -> tuple[int, int]:
+    for names in LAUNCHERS:
+        size, own = (os.environ.get(name, "") for name in names)
+        if size.isdecimal() and own.isdecimal():
+            return max(int(size), 1), int(own)
+    return 1, 0
+
+
+def require() -> None:
+    """Raise InputError, with what to install, where petsc4py or mpi4py are missing, do not fit, or know of other processes
+    than were started. Starts MPI."""
+    try:
+        library = importlib.import_module("petsc4py.lib").ImportPETSc()  # unlike petsc4py.PETSc, does not start PETSc
+    except (ImportError, AttributeError, ValueError) as error:  # the latter two: compiled for another NumPy
+        raise InputError(f"{_missing('petsc4py', error)}: {_hint()}{RECIPE}") from None
+    if library.ScalarType().dtype.kind != "f":
+        raise InputError(
+            "petsc4py is compiled for complex numbers; abut needs one for real numbers: set PETSC_DIR to it (Debian: "
+            f'{DEBIAN}/petsc3*/*-real; conda: petsc="*=real*")'
+        )
+    try:
+        world = importlib.import_module("mpi4py.MPI").COMM_WORLD
+    except (ImportError, RuntimeError) as error:  # the latter: no MPI library
+        raise InputError(f"{_missing('mpi4py', error)}: {RECIPE}") from None
+    if world.size != processes():
+        raise InputError(
+            f"{processes()} processes were started, but mpi4py knows of {world.size}: mpiexec belongs to another MPI than "
+            "mpi4py; use the mpiexec that was installed with it"
+        )
+
+
+def _missing(name: str, error: Exception) -> str:
+    if getattr(error, "name", None) == name:
+        return f"{name} is not installed for this Python"
+    reason = (str(error).strip().splitlines() or [type(error).__name__])[0]
+    return f"{name} cannot be loaded ({reason})"
+
+
+def _hint() -> str:
+    """What to set where Debian's petsc4py is there but Python has not been told."""
+    if os.environ.get("PETSC_DIR"):
+        return ""
+    found = sorted(str(path) for path in DEBIAN.glob("petsc3*/*-real") if (path / PYTHON / "petsc4py").is_dir())
+    return (
+        f"it is on this machine, for Debian's own Python after\n  export PETSC_DIR={found[-1]}\nElse " if found else ""
+    )
