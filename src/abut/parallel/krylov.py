@@ -18,7 +18,8 @@ Vector = NDArray[np.float64]
 STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alone
 RESTART, MOST = 100, 300
 REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
-MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi"}
+MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi", "mg_coarse_sub_pc_type": "svd"}
+NOTHING = 1e-9  # singular value of the coarsest matrix over the stiffness' diagonal: a motion that contact alone resists
 FACTORS = ("cholesky", "lu")
 PACKAGES = ("mumps", "superlu_dist")
 
@@ -65,7 +66,8 @@ def multigrid(store: Store, motions: Vector) -> str:
     options = PETSc.Options()
     if options.hasName("pc_type") and not options.hasName(STIFFNESS + "pc_type"):
         options[STIFFNESS + "pc_type"] = options.getString("pc_type")
-    _unless_given(STIFFNESS, MULTIGRID)
+    drop = NOTHING * matrix.getDiagonal().max()[1]
+    _unless_given(STIFFNESS, {**MULTIGRID, "mg_coarse_sub_pc_svd_zero_sing": f"{drop:.3e}"})
     solver.setFromOptions()
     solver.setUp()
     store["stiffness solver"] = solver

@@ -21,6 +21,7 @@ from abut.solvers.iterative import Count, NotConverged
 from abut.solvers.linear import Prepared
 from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
 
+ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
 
 
@@ -112,7 +113,7 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
     count, parts = Count(), interfaces(system.pairs)
     solver = Iterative(matrix, system.operator, parts, loose, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ loose))
-    iterative = replace(system, step=solver.step, exact=False, predict=predict)
+    iterative = replace(system, step=solver.step, exact=False, accurate=ACCURATE, predict=predict)
     name = f"PETSc Krylov with {kind}"
     return Prepared(iterative, lambda outcome, _: outcome, name, f"{name}, {_processes(team)}", count)
 

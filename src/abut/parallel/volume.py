@@ -23,6 +23,8 @@ from abut.parallel.team import Team
 from abut.solvers.active_set import System
 from abut.solvers.linear import Prepared, chosen
 
+LARGE = {1: 5_000, 2: 5_000}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
+
 
 @dataclass(frozen=True)
 class Spread:
@@ -90,9 +92,8 @@ class Spread:
         """As in ``Volume``; PETSc options come first."""
         if wants_factors():
             return "direct"
-        if wants_iterations():
-            return chosen("amg", len(system.load), system.pairs, self.model.mesh, held.coupled)
-        return chosen("auto", len(system.load), system.pairs, self.model.mesh, held.coupled)
+        linear = "amg" if wants_iterations() else "auto"
+        return chosen(linear, len(system.load), system.pairs, self.model.mesh, held.coupled, LARGE)
 
     def prepare(
         self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]

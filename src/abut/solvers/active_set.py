@@ -32,7 +32,6 @@ from abut.state import Iteration
 __all__ = ["Laws", "Outcome", "Rows", "Stage", "System", "Unknowns", "following", "solve_step", "start"]
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
-ACCURATE = 2e-9  # of equilibrium and of closed gaps, where linear systems are solved iteratively
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
 FINE = 1e-5  # the same once sets repeat
 FINEST = 1e-9  # the same at most, for the final set
@@ -69,7 +68,7 @@ def solve_step(
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
     finest = ROUGH
-    accuracy = 0.1 * ACCURATE if state.active.all() else ROUGH  # closed all over may well be the answer
+    accuracy = 0.1 * system.accurate if state.active.all() else ROUGH  # closed all over may well be the answer
     for count in range(1, limit + 1):
         clock = time.perf_counter()
         active = system.complete(state.active, system.gap(state, stage.weights)) | tied
@@ -85,9 +84,9 @@ def solve_step(
         history.append(active)
         if not changed.any():
             error = max(row.residual, closure)
-            if system.exact or error <= ACCURATE:
+            if system.exact or error <= system.accurate:
                 return finish_smooth(system, solved, stage, limit, done, observe)
-            state, accuracy = solved, max(0.3 * ACCURATE / error, FINEST)
+            state, accuracy = solved, max(0.3 * system.accurate / error, FINEST)
             continue
         if system.predict is not None and not share and (count <= EARLY or changed.sum() > FEW * active.sum()):
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)

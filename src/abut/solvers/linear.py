@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any
@@ -51,8 +51,10 @@ def choose(linear: str, system: System, mesh: Mesh, coupled: bool) -> str:
     return chosen(linear, len(system.load), system.pairs, mesh, coupled)
 
 
-def chosen(linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool) -> str:
-    """The same from the number of free displacements and the contact pairs."""
+def chosen(
+    linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool, sizes: Mapping[int, int] = LARGE
+) -> str:
+    """The same from the number of free displacements and the contact pairs; sizes: from where on multigrid wins."""
     if linear == "amg" and coupled:
         raise InputError(
             'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
@@ -61,7 +63,7 @@ def chosen(linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled:
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
-    large = mesh.dim == 3 and n_free >= LARGE[degree]
+    large = mesh.dim == 3 and n_free >= sizes[degree]
     able = not coupled and find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 

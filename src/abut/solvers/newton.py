@@ -16,6 +16,7 @@ from abut.state import Iteration
 
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
 NO_PRESSURE = 1e-300
+ACCURATE = 2e-9  # of equilibrium and of closed gaps, where linear systems are solved iteratively
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class System:
     load: (n_free, n_histories) by each history of the model, theory (F9); operator: all pairs stacked, (n, n_free).
     complete: adds to an active set that lets a body go the multipliers closest to contact; freed: says in words which
     body it lets go. step: (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by
-    ``accuracy`` or, where ``exact``, to rounding. predict: (gap, pressure, active, tied) -> a guess at the final active
+    ``accuracy`` or, where ``exact``, to rounding; accurate: of equilibrium and of closed gaps, where it is not. predict: (gap, pressure, active, tied) -> a guess at the final active
     set, where one is cheap. compliance, opening: where displacements have been eliminated, the gaps that come of them, by
     pressures (n, n) and by each history (n, n_histories).
     """
@@ -78,6 +79,7 @@ class System:
     freed: Callable[[NDArray[np.bool_]], str]
     step: Step
     exact: bool = True
+    accurate: float = ACCURATE
     predict: Predict | None = None
     compliance: NDArray[np.float64] | None = None
     opening: NDArray[np.float64] | None = None
