@@ -210,7 +210,7 @@ def test_what_nobody_knows_is_refused(
         started(monkeypatch, size, rank)
         with pytest.raises(SystemExit) as end:
             main(["run", str(path), *options])
-        assert end.value.code == 2
+        assert end.value.code == (0 if rank else 2)  # mpiexec ends all when one fails: process 0 speaks first
         said = capsys.readouterr().err
         assert said == "" if rank else said.endswith(f"unrecognized arguments: {' '.join(options)}\n")
     with pytest.raises(SystemExit):
