@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,23 +15,26 @@ from abut.analysis.clock import Clock
 from abut.analysis.holding import Holding, holding
 from abut.analysis.loads import Loads, loads
 from abut.analysis.regularisation import Regularisation, regularise
+from abut.analysis.volume import Volume, whole
 from abut.discretization.pairs import Pair, pairs
 from abut.discretization.supports import Supports, supports
 from abut.errors import InputError
 from abut.model import Model
-from abut.solids.elements import stiffness
 from abut.solvers.active_set import System
 from abut.solvers.blocks import newton_step
 from abut.state import Observer, Phase
 
+if TYPE_CHECKING:
+    from abut.parallel.team import Team
+
 
 @dataclass(frozen=True)
 class Problem:
-    """stiffness: of all points, (dim n_points, dim n_points); idle: motions that nothing resists nor drives; system: in the
+    """volume: the bodies, assembled; idle: motions that nothing resists nor drives; system: in the
     free displacements, without a linear solver yet."""
 
     held: Supports
-    stiffness: Any
+    volume: Volume
     loaded: Loads
     held_by: Holding
     idle: Regularisation
@@ -42,31 +45,32 @@ class Problem:
         return len(self.system.load)
 
 
-def problem(model: Model, observe: Observer, note: Callable[[str], None], clock: Clock) -> Problem:
-    """Assemble a model. Raises InputError and SingularModelError for one that cannot be solved."""
-    observe(Phase("assembling the stiffness"))
-    held = supports(model)
-    materials = {solid.body: solid.material for solid in model.solids}
-    full = stiffness(model.mesh, materials, model.plane, model.integration)
-    loaded = loads(model)
+def problem(
+    model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None = None
+) -> Problem:
+    """Assemble a model, by a team of processes where there is one. Raises InputError and SingularModelError for one that
+    cannot be solved."""
+    held, loaded = supports(model), loads(model)
+    clock.mark("set-up")
+    volume = _volume(model, observe, note, clock, team)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    every = pairs(model, held)
+    every = pairs(model, held, volume.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("looking for motions that nothing holds"))
     held_by = holding(model.mesh, held, every)
-    reduced = held.reduce(full)
+    reduced = volume.reduce(held)
     idle = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
     for text in idle.notes:
         note(text)
     held_by, reduced = held_by.helped_by(idle.gram), idle.added_to(reduced)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
-    _check_finite(reduced.data, loaded.forces)
+    _check_finite(reduced.diagonal(), loaded.forces)
     system = System(
         stiffness=reduced,
-        load=held.free.T @ (loaded.forces - full @ held.prescribed),  # theory (F9)
+        load=held.free.T @ (loaded.forces - volume.internal(held.prescribed)),  # theory (F9)
         pairs=every,
         operator=operator,
         complete=held_by.complete,
@@ -75,7 +79,26 @@ def problem(model: Model, observe: Observer, note: Callable[[str], None], clock:
     )
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
-    return Problem(held, full, loaded, held_by, idle, system)
+    return Problem(held, volume, loaded, held_by, idle, system)
+
+
+def _volume(
+    model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None
+) -> Volume:
+    if team is None:
+        observe(Phase("assembling the stiffness"))
+        result: Volume = whole(model)
+    else:
+        from abut.parallel.volume import deal_out
+
+        observe(Phase(f"dealing the cells out to {team.size} processes"))
+        parts = deal_out(model, team)
+        note(parts.summary)
+        clock.mark("partition")
+        observe(Phase("assembling the stiffness"))
+        result = parts.assembled()
+    clock.mark("assembly")
+    return result
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
@@ -94,7 +117,8 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
 
 
 def _check_finite(*numbers: NDArray[np.float64]) -> None:
-    """Every number may be sound by itself, and still a product too large for a computer."""
+    """Every number may be sound by itself, and still a product too large for a computer. No entry of a stiffness is larger
+    than the largest on its diagonal."""
     if not all(np.isfinite(values).all() for values in numbers):
         raise InputError(
             "stiffnesses or forces are too large to compute with; check the units of materials, loads, mesh"

@@ -43,7 +43,7 @@ class Regularisation:
         if not len(self):
             return matrix
         springs = sp.csr_matrix((self.stiffness, (self.columns, self.columns)), shape=matrix.shape)
-        return (matrix + springs).tocsr()
+        return matrix + springs
 
     def force(self, free: NDArray[np.float64]) -> float:
         """Largest force in a spring at free displacements (n_free,)."""

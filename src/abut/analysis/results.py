@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
 from abut.analysis.loads import Loads
+from abut.analysis.volume import Volume
 from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
 from abut.model import Model
-from abut.solids.elements import nodal_stress
 from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
 
 
 def step_result(
     model: Model,
-    stiffness: Any,
+    volume: Volume,
     loaded: Loads,
     displacement: NDArray[np.float64],
     system: System,
@@ -40,13 +39,11 @@ def step_result(
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    internal = stiffness @ displacement
+    internal = volume.internal(displacement)
     reaction = internal - loaded.forces @ stage.weights - contact_force
     nodal = displacement.reshape(-1, dim)
     carried = reaction if held.links is None else reaction - held.links.forces(reaction)
     by_supports = carried.reshape(-1, dim)
-    temperatures = {solid.body: time * solid.temperature for solid in model.solids}
-    materials = {solid.body: solid.material for solid in model.solids}
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
         if own.any():
@@ -58,15 +55,7 @@ def step_result(
         converged=outcome.converged,
         iterations=outcome.iterations,
         displacement=nodal,
-        stress=nodal_stress(
-            model.mesh,
-            materials,
-            temperatures,
-            nodal,
-            model.plane,
-            loaded.temperature @ stage.weights,
-            model.integration,
-        ),
+        stress=volume.stress(nodal, time, loaded.temperature @ stage.weights),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)

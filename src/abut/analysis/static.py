@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,11 @@ from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solvers.active_set import Outcome, Stage, following, solve_step, start
 from abut.solvers.iterative import NotConverged
-from abut.solvers.linear import Prepared, choose, expected_seconds, prepare
+from abut.solvers.linear import Prepared, expected_seconds
 from abut.state import Observer, OnStep, Phase, Saved, Solution, Step
+
+if TYPE_CHECKING:
+    from abut.parallel.team import Team
 
 ABSURD = 1e6  # displacement over model size that no units explain
 
@@ -33,14 +36,15 @@ def solve(
     observer: Observer | None = None,
     on_step: OnStep | None = None,
     resume: Sequence[Saved] = (),
-    team: Any = None,
+    team: Team | None = None,
 ) -> Solution:
     """Solve a model step by step.
 
     ``observer`` is called with every iteration (``abut.state.Iteration``), with stages that begin (``abut.state.Phase``)
     and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the solution so far after each
     converged step, and what it takes to go on from there; ``resume``: such records of all steps done before, in order,
-    of the same model: the run goes on after the last of them.
+    of the same model: the run goes on after the last of them. ``team``: processes that share the work
+    (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
     Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
     """
@@ -53,7 +57,11 @@ def solve(
         observe(text)
 
     clock = Clock()
-    own = problem(model, observe, note, clock)
+    if team is None and model.solve.linear == "petsc":
+        from abut.parallel.team import start_team
+
+        team = start_team()
+    own = problem(model, observe, note, clock, team)
     held, system = own.held, own.system
     steps: list[Step] = []
 
@@ -62,7 +70,7 @@ def solve(
         size = f"{own.n_free:,}".replace(",", " ")
         observe(Phase(f"{what} {size} displacements", expected_seconds(kind, own.n_free, model.dim)))
         loose = held.coordinates(own.held_by.free)
-        result = prepare(kind, system, held.free, own.held_by.rigid.together, loose, model.dim)
+        result = own.volume.prepare(kind, system, held, own.held_by.rigid.together, loose)
         note(result.note)
         return result
 
@@ -71,7 +79,7 @@ def solve(
         spring = own.idle.force(outcome.unknowns.displacement) if len(own.idle) else None
         displacement = own.idle.without_motions(displacement)
         _check_size(model, displacement, note)
-        step = step_result(model, own.stiffness, own.loaded, displacement, system, outcome, stage, time, steps, held)
+        step = step_result(model, own.volume, own.loaded, displacement, system, outcome, stage, time, steps, held)
         return replace(step, spring=spring)
 
     def so_far(complete: bool) -> Solution:
@@ -79,8 +87,8 @@ def solve(
 
     times = [t for t in model.solve.ends if not resume or t > resume[-1].factor * (1.0 + 1e-12)]
     check_order(resume, own.n_free, system.operator.shape[0])
-    kind = choose(model.solve.linear, system, model.mesh, held.coupled)
-    if resume and model.solve.linear == "auto":
+    kind = own.volume.choose(system, held)
+    if resume and model.solve.linear in ("auto", "petsc"):
         kind = resume[-1].linear
     solver = linear_solver(kind)
     state = start(solver.system)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.discretization.supports import Supports
 from abut.errors import InputError
-from abut.interface.coupling import Coupling, couple, default_reach
+from abut.interface.coupling import Couple, Coupling, couple, default_reach
 from abut.interface.geometry import facet_sizes, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
@@ -84,18 +84,19 @@ class Pair:
         return int(self.operator.shape[0])
 
 
-def pairs(model: Model, held: Supports) -> list[Pair]:
+def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
     """All contact pairs of a model. Two-pass node-to-segment makes two of one contact, each side as contactor once.
+    couple: cuts and integrates, as ``abut.interface.coupling.couple``.
 
     Raises InputError where two surfaces do not face each other."""
     result = []
     for contact in model.contacts:
-        result.append(pair(model, contact, held))
+        result.append(pair(model, contact, held, couple))
         if contact.method == "node-to-segment-two-pass":
             back = replace(
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
-            result.append(pair(model, back, held))
+            result.append(pair(model, back, held, couple))
     tied_together = bool(model.equations or model.rigid)
     return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
 
@@ -110,11 +111,11 @@ def _repeats(operator: Any) -> bool:
     return bool(values[0] < DEPENDENT * values[-1])
 
 
-def pair(model: Model, contact: Contact, held: Supports) -> Pair:
+def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple) -> Pair:
     """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
     contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
     tied = contact.kind == "tied"
-    coupling, space = _couple(contact, contactor, target, _reach(held, contactor, target))
+    coupling, space = _couple(contact, contactor, target, _reach(held, contactor, target), couple)
     sizes = facet_sizes(contactor)
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
@@ -140,7 +141,9 @@ def pair(model: Model, contact: Contact, held: Supports) -> Pair:
     )  # fmt: skip
 
 
-def _couple(contact: Contact, contactor: Surface, target: Surface, reach: float) -> tuple[Coupling, PressureSpace]:
+def _couple(
+    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple
+) -> tuple[Coupling, PressureSpace]:
     """The coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":

@@ -6,8 +6,9 @@ pressure spaces of ``abut.interface.pressure`` are combinations of these rows. "
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -98,6 +99,7 @@ def couple(
     componentwise: bool = False,
     keep_points: bool = False,
     adjust: float = 0.0,
+    only: NDArray[np.bool_] | None = None,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
 
@@ -108,6 +110,8 @@ def couple(
     reach:  largest distance between the surfaces, length; see ``default_reach``.
     componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points.
     adjust: gaps and overlaps up to this size count as zero, length.
+    only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
+            facets add up to the whole: ``added``.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
     if contactor.dim != target.dim:
@@ -118,18 +122,22 @@ def couple(
         if len(surface) == 0:
             raise InputError(f"surface '{surface.name}' has no facets")
     tables = rule_tables(rule)
-    order_c, split_c = _plan(contactor, tables, points)
-    order_t, split_t = _plan(target, tables, points)
     normals = nodal_normals(contactor)
+    facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
+    part = contactor if only is None else _some(contactor, facets)
+    order_c, split_c = _plan(part, tables, points)
+    order_t, split_t = _plan(target, tables, points)
     if points == "auto":
-        order_c = np.where(_varying(contactor, normals), np.maximum(order_c, CURVED_POINTS), order_c).astype(np.int32)
+        order_c = np.where(_varying(part, normals[facets]), np.maximum(order_c, CURVED_POINTS), order_c)
     raw = couple_surfaces(
-        contactor.points, contactor.kinds, contactor.nodes, normals,
-        target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
+        part.points, part.kinds, part.nodes, np.ascontiguousarray(normals[facets]),
+        target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
         degree, not componentwise, keep_points, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
         no_gap(contactor, target, adjust),
     )  # fmt: skip
+    if only is not None:
+        raw = _among_all(raw, facets, len(contactor))
     offset, n_points = _columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)
     target_part = _matrix(raw["target"], 9 * len(contactor), n_points, offset)
@@ -145,6 +153,70 @@ def couple(
         segments=raw["segments"],
         points=_points(raw, contactor, target) if keep_points else None,
     )
+
+
+class Couple(Protocol):
+    """``couple``, or what has it done by others."""
+
+    def __call__(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+        """As ``couple``."""
+        ...
+
+
+def added(parts: Sequence[Coupling]) -> Coupling:
+    """The coupling of all facets from those of disjoint ones."""
+    points = [part.points for part in parts if part.points is not None]
+    return Coupling(
+        degree=parts[0].degree,
+        operator=sum(part.operator for part in parts).tocsr(),
+        contactor_part=sum(part.contactor_part for part in parts).tocsr(),
+        target_part=sum(part.target_part for part in parts).tocsr(),
+        gap=np.sum([part.gap for part in parts], axis=0),
+        weight=np.sum([part.weight for part in parts], axis=0),
+        mass=np.sum([part.mass for part in parts], axis=0),
+        covered=np.sum([part.covered for part in parts], axis=0),
+        segments=np.sum([part.segments for part in parts], axis=0, dtype=np.int32),
+        points=_together(points) if points else None,
+    )
+
+
+def _together(parts: Sequence[IntegrationPoints]) -> IntegrationPoints:
+    """All points, in the order of their facets."""
+    facet = np.concatenate([part.facet for part in parts])
+    order = np.argsort(facet, kind="stable")
+    return IntegrationPoints(
+        facet=facet[order],
+        target_facet=np.concatenate([part.target_facet for part in parts])[order],
+        weight=np.concatenate([part.weight for part in parts])[order],
+        gap=np.concatenate([part.gap for part in parts])[order],
+        normal=np.concatenate([part.normal for part in parts])[order],
+        pressure=sp.vstack([part.pressure for part in parts]).tocsr()[order],
+        gap_operator=sp.vstack([part.gap_operator for part in parts]).tocsr()[order],
+    )
+
+
+def _some(surface: Surface, facets: NDArray[np.int64]) -> Surface:
+    return replace(
+        surface,
+        kinds=np.ascontiguousarray(surface.kinds[facets]),
+        nodes=np.ascontiguousarray(surface.nodes[facets]),
+        cells=surface.cells[facets],
+        local=surface.local[facets],
+    )
+
+
+def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:
+    """What was integrated on some facets, at its place among all n."""
+    result = dict(raw)
+    for name in ("gap", "weight", "mass", "covered", "segments"):
+        result[name] = np.zeros((n, *raw[name].shape[1:]), dtype=raw[name].dtype)
+        result[name][facets] = raw[name]
+    for name in ("contactor", "target"):
+        row, column, value = raw[name]
+        result[name] = 9 * facets[row // 9] + row % 9, column, value
+    if "point_contactor_facet" in raw:
+        result["point_contactor_facet"] = facets[raw["point_contactor_facet"]]
+    return result
 
 
 def _plan(

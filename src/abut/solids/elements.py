@@ -131,7 +131,12 @@ def body_load(
     return load.ravel()
 
 
-def nodal_stress(
+def nodal_stress(*args, **kw):
+    total, count = stress_sums(*args, **kw)
+    return total / np.maximum(count, 1.0)[:, None]
+
+
+def stress_sums(
     mesh: Mesh,
     materials: Mapping[str, LinearElastic],
     temperatures: Mapping[str, float],
@@ -181,7 +186,7 @@ def nodal_stress(
         at_nodes = np.einsum("nq,cqs->cns", _to_nodes(kind, xi), voigt)
         np.add.at(total, nodes, at_nodes)
         np.add.at(count, nodes, deforms)
-    return total / np.maximum(count, 1.0)[:, None]
+    return total, count
 
 
 def _to_nodes(kind: str, xi: NDArray[np.float64]) -> NDArray[np.float64]:

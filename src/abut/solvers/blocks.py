@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,47 @@ from numpy.typing import NDArray
 
 from abut.solvers import direct
 from abut.solvers.newton import Rows
+
+
+@dataclass(frozen=True)
+class Saddle:
+    """[K, -coupled^T; lower, corner] (du, q) = (rhs_u, rhs_p), theory (V1), scaled so that all blocks have entries of one
+    size, theory (V2). ``symmetric``: lower is -coupled, and corner diagonal. Pressures that nothing couples are known at
+    once: their rows and columns hold nothing but the diagonal."""
+
+    coupled: Any
+    lower: Any
+    corner: Any
+    rhs_u: NDArray[np.float64]
+    rhs_p: NDArray[np.float64]
+    symmetric: bool
+    fixed: NDArray[np.float64]
+    known: NDArray[np.bool_]
+    scale: NDArray[np.float64]
+
+    def pressure(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Change of the pressures by the scaled unknowns."""
+        return np.where(self.known, self.fixed, self.scale * q)
+
+
+def saddle(unit: float, operator: Any, rows: Rows, residual: NDArray[np.float64]) -> Saddle:
+    """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked; residual:
+    K u - B^T p - f."""
+    s = unit / _row_max(operator)
+    known = rows.decoupled
+    fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
+    rhs_u = -residual + operator.T @ fixed
+    ones = sp.diags(np.where(known, -unit, 0.0))
+    free = sp.diags((~known).astype(float))
+    coupled = (sp.diags(s) @ free @ operator).tocsr()
+    if rows.symmetric:
+        rhs_p = np.where(known, 0.0, -rows.residual * s)
+        return Saddle(coupled, -coupled, ones, rhs_u, rhs_p, True, fixed, known, s)
+    by_displacement, by_pressure = free @ rows.by_displacement, free @ rows.by_pressure @ free @ sp.diags(s)
+    t = unit / np.maximum(_row_max(by_displacement), _row_max(by_pressure, 0.0))
+    rhs_p = np.where(known, 0.0, t * (-rows.residual - rows.by_pressure @ fixed))
+    lower, corner = sp.diags(t) @ by_displacement, sp.diags(t) @ by_pressure + ones
+    return Saddle(coupled, lower, corner, rhs_u, rhs_p, False, fixed, known, s)
 
 
 def newton_step(
@@ -22,35 +64,19 @@ def newton_step(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
-    stiffness: (n_u, n_u) sparse symmetric; operator B: (n, n_u), all pairs stacked; residual: K u - B^T p - f.
+    stiffness: (n_u, n_u) sparse symmetric; operator and residual as in ``saddle``.
     accuracy: not needed, the solution is direct.
     """
-    n = len(pressure)
-    if n == 0:
+    if len(pressure) == 0:
         return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
-    # Pressures are scaled so that both blocks have entries of one size: dp = s q, law rows times t; theory (V2).
-    unit = np.median(stiffness.diagonal())
-    s = unit / _row_max(operator)
-    # Decoupled pressures take their value at once.
-    known = rows.decoupled
-    fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
-    rhs_u = -residual + operator.T @ fixed
-    ones = sp.diags(np.where(known, -unit, 0.0))
-    free = sp.diags((~known).astype(float))
-    coupled = (sp.diags(s) @ free @ operator).tocsr()
-    if rows.symmetric:
+    s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
+    if s.symmetric:
         upper = sp.triu(stiffness, format="csr")
-        matrix = sp.bmat([[upper, -coupled.T], [None, ones]], format="csr")
-        rhs_p = np.where(known, 0.0, -rows.residual * s)
+        matrix = sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr")
     else:
-        by_displacement, by_pressure = free @ rows.by_displacement, free @ rows.by_pressure @ free @ sp.diags(s)
-        t = unit / np.maximum(_row_max(by_displacement), _row_max(by_pressure, 0.0))
-        matrix = sp.bmat(
-            [[stiffness, -coupled.T], [sp.diags(t) @ by_displacement, sp.diags(t) @ by_pressure + ones]], format="csr"
-        )
-        rhs_p = np.where(known, 0.0, t * (-rows.residual - rows.by_pressure @ fixed))
-    solution = direct.solve(store_diagonal(matrix), np.concatenate([rhs_u, rhs_p]), symmetric=rows.symmetric)
-    return solution[: len(residual)], np.where(known, fixed, s * solution[len(residual) :])
+        matrix = sp.bmat([[stiffness, -s.coupled.T], [s.lower, s.corner]], format="csr")
+    solution = direct.solve(store_diagonal(matrix), np.concatenate([s.rhs_u, s.rhs_p]), symmetric=s.symmetric)
+    return solution[: len(residual)], s.pressure(solution[len(residual) :])
 
 
 def _row_max(matrix: Any, empty: float = 1.0) -> NDArray[np.float64]:

@@ -1,0 +1,224 @@
+"""Linear systems of displacements and pressures by PETSc: Krylov iterations or factorisation, on all processes.
+
+Displacements are spread over the processes; rows and columns of pressures, one dimension lower, belong to process 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.parallel.team import Store
+
+Vector = NDArray[np.float64]
+STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alone
+RESTART, MOST = 100, 300
+REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
+MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi"}
+FACTORS = ("cholesky", "lu")
+PACKAGES = ("mumps", "superlu_dist")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Of a linear solution, on each process: its share of the displacements, all pressures on process 0; iterations;
+    error: residual over the right-hand side; reason: PETSc's word for how it ended, below zero where it failed."""
+
+    displacement: Vector
+    pressure: Vector
+    iterations: int
+    error: float
+    reason: int
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What stands beside the stiffness, on process 0: coupled, lower (n, n_places), corner (n, n) and right-hand side as in
+    ``abut.solvers.blocks.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,)."""
+
+    coupled: Any
+    lower: Any
+    corner: Any
+    rhs: Vector
+    inverse: Callable[[Vector], Vector] | None = None
+
+
+def multigrid(store: Store, motions: Vector) -> str:
+    """Set up and keep the preconditioner of the stiffness, and return PETSc's name of it. motions: (n_own, m) orthonormal
+    rigid motions, this process's share."""
+    from petsc4py import PETSc
+
+    matrix = store["matrix"]
+    vectors = []
+    for column in motions.T:
+        vectors.append(matrix.createVecLeft())
+        vectors[-1].array[:] = column
+    matrix.setNearNullSpace(PETSc.NullSpace().create(vectors=vectors, comm=matrix.comm))
+    solver = PETSc.KSP().create(matrix.comm)
+    solver.setOperators(matrix)
+    solver.setOptionsPrefix(STIFFNESS)
+    solver.setType("preonly")
+    options = PETSc.Options()
+    if options.hasName("pc_type") and not options.hasName(STIFFNESS + "pc_type"):
+        options[STIFFNESS + "pc_type"] = options.getString("pc_type")
+    _unless_given(STIFFNESS, MULTIGRID)
+    solver.setFromOptions()
+    solver.setUp()
+    store["stiffness solver"] = solver
+    return str(solver.getPC().getType())
+
+
+def iterate(
+    store: Store, accuracy: float, n: int, small: Vector, share: Vector, loose: Vector, conditions: Conditions | None
+) -> Answer:
+    """Solve by Krylov iterations until the residual is ``accuracy`` times the right-hand side.
+
+    n: how many pressures; share: of the right-hand side; loose: (n_own, m) share of rigid motions that multigrid does not
+    see, small: (m, m) inverse of their resistance."""
+    from petsc4py import PETSc
+
+    matrix = store["matrix"]
+    lower = _rows(matrix, n, None if conditions is None else conditions.lower)
+    operator = matrix
+    if n:
+        operator = PETSc.Mat().createNest([[matrix, PETSc.Mat().createTranspose(lower)], [lower, None]], comm=matrix.comm)
+        operator.assemble()
+    solver = PETSc.KSP().create(matrix.comm)
+    solver.setOperators(operator)
+    solver.setType("fgmres" if n else "cg")
+    solver.setGMRESRestart(RESTART)
+    solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
+    solver.setFromOptions()
+    inverse = None if conditions is None else conditions.inverse
+    blocks = Blocks(store["stiffness solver"], lower, loose, small, inverse, solver.getType() == "minres")
+    solver.getPC().setType("python")
+    solver.getPC().setPythonContext(blocks)
+    return _solve(solver, operator, share, conditions)
+
+
+def factorise(store: Store, n: int, symmetric: bool, share: Vector, conditions: Conditions | None) -> Answer:
+    """Solve by a factorisation of the whole matrix, and refinement."""
+    from petsc4py import PETSc
+
+    matrix = operator = store["matrix"]
+    if n:
+        own = conditions or Conditions(None, None, None, np.zeros(0))
+        coupled, lower = _rows(matrix, n, own.coupled), _rows(matrix, n, own.lower)
+        upper = coupled.transpose(PETSc.Mat())
+        upper.scale(-1.0)
+        corner = _square(matrix.comm, n, own.corner)
+        nest = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
+        nest.assemble()
+        operator = nest.convert("aij", PETSc.Mat())
+    operator.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
+    solver = PETSc.KSP().create(matrix.comm)
+    solver.setOperators(operator)
+    solver.setType("fgmres")
+    solver.setTolerances(rtol=REFINED, atol=0.0, max_it=REFINEMENTS)
+    package = direct_solver()
+    preconditioner = solver.getPC()
+    preconditioner.setType("cholesky" if symmetric and package == "mumps" else "lu")
+    preconditioner.setFactorSolverType(package)
+    if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
+        solver.setFromOptions()
+    return _solve(solver, operator, share, conditions)
+
+
+def direct_solver() -> str:
+    """The package that factorises: PETSc's own does so on one process only."""
+    from petsc4py import PETSc
+
+    return next((name for name in PACKAGES if PETSc.Sys.hasExternalPackage(name)), "petsc")
+
+
+class Blocks:
+    """Preconditioner of theory (V11): the interface's own operator for the pressures, then multigrid for the
+    displacements; for MINRES, which wants it symmetric, each by itself."""
+
+    def __init__(self, stiffness: Any, lower: Any, loose: Vector, small: Vector, inverse: Any, apart: bool) -> None:
+        self.stiffness, self.lower, self.loose, self.small = stiffness, lower, loose, small
+        self.inverse, self.apart = inverse, apart
+        self.residual, self.answer = stiffness.getOperators()[0].createVecs()
+        self.pressure = lower.createVecLeft()
+
+    def apply(self, _: Any, x: Any, y: Any) -> None:
+        """y = P x, for PETSc."""
+        n = self.residual.getLocalSize()
+        into, out = x.array_r, np.empty(len(x.array_r))
+        if self.inverse is not None:
+            q = self.inverse(into[n:])
+            out[n:] = q if self.apart else -q
+            self.pressure.array[:] = out[n:]
+        self.residual.array[:] = into[:n]
+        if not self.apart and self.lower.getSize()[0]:
+            self.pressure.scale(-1.0)
+            self.lower.multTransposeAdd(self.pressure, self.residual, self.residual)
+        self.stiffness.solve(self.residual, self.answer)
+        out[:n] = self.answer.array_r
+        if self.small.size:
+            shares = self.residual.comm.tompi4py().allreduce(self.loose.T @ self.residual.array_r)
+            out[:n] += self.loose @ (self.small @ shares)
+        y.array[:] = out
+
+
+def _solve(solver: Any, operator: Any, share: Vector, conditions: Conditions | None) -> Answer:
+    x, b = operator.createVecs()
+    own = np.zeros(0) if conditions is None else conditions.rhs
+    b.array[:] = np.concatenate([share, own])
+    solver.solve(b, x)
+    size = b.norm()
+    miss = b.duplicate()
+    operator.mult(x, miss)
+    miss.axpy(-1.0, b)
+    values = np.array(x.array_r)
+    error = miss.norm() / size if size > 0.0 else 0.0
+    answer = Answer(
+        values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason()
+    )
+    solver.destroy()  # now, not when Python finds the time: it holds many vectors, or factors
+    return answer
+
+
+def _unless_given(prefix: str, options: Mapping[str, str]) -> None:
+    """Set PETSc's options, but for those that the user has set."""
+    from petsc4py import PETSc
+
+    database = PETSc.Options()
+    for name, value in options.items():
+        if not database.hasName(prefix + name):
+            database[prefix + name] = value
+
+
+def _rows(matrix: Any, n: int, rows: Any) -> Any:
+    """A matrix (n, n_places) with all of its rows on process 0, which has them as CSR."""
+    from petsc4py import PETSc
+
+    columns = matrix.getSizes()[1]
+    return PETSc.Mat().createAIJ(((_own(matrix.comm, n), n), columns), csr=_csr(rows), comm=matrix.comm)
+
+
+def _square(comm: Any, n: int, rows: Any) -> Any:
+    """A matrix (n, n) that is all on process 0."""
+    from petsc4py import PETSc
+
+    own = _own(comm, n)
+    return PETSc.Mat().createAIJ(((own, n), (own, n)), csr=_csr(rows), comm=comm)
+
+
+def _own(comm: Any, n: int) -> int:
+    return 0 if comm.rank else n
+
+
+def _csr(rows: Any) -> tuple[NDArray[Any], NDArray[Any], Vector]:
+    from petsc4py import PETSc
+
+    ints = PETSc.IntType
+    if rows is None:
+        return np.zeros(1, ints), np.zeros(0, ints), np.zeros(0)
+    rows = rows.tocsr()
+    rows.sort_indices()
+    return rows.indptr.astype(ints), rows.indices.astype(ints), rows.data

@@ -1,0 +1,146 @@
+"""The stiffness on the free displacements as a matrix of PETSc's, and what process 0 has of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import padded_blocks
+from abut.discretization.supports import Supports
+from abut.parallel.partition import Layout
+from abut.parallel.team import Store, Team
+
+
+@dataclass(frozen=True)
+class Distributed:
+    """On process 0: (n_free, n_free), as far as the search for the active set asks for it."""
+
+    team: Team
+    layout: Layout
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """As of any matrix."""
+        n = len(self.layout.slot)
+        return n, n
+
+    def diagonal(self) -> NDArray[np.float64]:
+        """(n_free,)."""
+        return self.layout.values(self.team.each(_diagonal))
+
+    def __matmul__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.layout.values(self.team.each(_product, own=self.layout.shares(values)))
+
+    def __add__(self, springs: Any) -> Distributed:
+        """With a diagonal matrix added; the matrix itself changes."""
+        self.team.each(_stiffen, own=self.layout.shares(springs.diagonal()))
+        return self
+
+
+def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np.int64], free: Any) -> None:
+    """Build and keep PETSc's matrix of the stiffness on the free displacements.
+
+    starts, block: as in ``Layout``; free: (dim n_points, k) change of variables of this part's points, on those k free
+    displacements that move any of them, in the order of the points; slot: (k,) their places. Rows at the border between
+    parts get what the others have of them. The stiffness of the part goes, to make room."""
+    from petsc4py import PETSc
+
+    comm, ints = PETSc.COMM_WORLD, PETSc.IntType
+    first, last, n = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1], starts[-1]))
+    rows = _own_rows(store, slot, free, block, starts // block, comm.tompi4py()).tocsr()
+    shape = ((last - first, n), (last - first, n))
+    csr = rows.indptr.astype(ints, copy=False), rows.indices.astype(ints, copy=False), rows.data
+    matrix = PETSc.Mat().createAIJ(shape, csr=csr, comm=comm)
+    matrix.setBlockSize(block)
+    padding = np.ones(last - first, dtype=bool)
+    padding[slot[(slot >= first) & (slot < last)] - first] = False
+    _set_diagonal(matrix, np.where(padding, _largest(matrix, block), _local(matrix)))
+    store["matrix"] = matrix
+
+
+def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> tuple[NDArray[np.int64], Any]:
+    """Numbers of the blocks that the places belong to, and the stiffness in whole blocks, BSR, ones on the diagonal where
+    there is no free displacement."""
+    reduced = Supports(free, np.zeros((0, 0))).reduce(stiffness)
+    reduced.sort_indices()
+    new = np.diff(slot // block, prepend=-1) != 0
+    blocks = (slot // block)[new]
+    place = block * (np.cumsum(new) - 1) + slot % block
+    if block == 1 or not len(slot):
+        return blocks, reduced.tobsr((block, block))
+    indptr, indices, values = padded_blocks(
+        reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32, copy=False), reduced.data,
+        place.astype(np.int32), block, len(blocks), 1.0,
+    )  # fmt: skip
+    n = block * len(blocks)
+    return blocks, sp.bsr_matrix((values.reshape(-1, block, block), indices, indptr), shape=(n, n))
+
+
+def _own_rows(
+    store: Store, slot: NDArray[np.int64], free: Any, block: int, starts: NDArray[np.int64], comm: Any
+) -> Any:
+    """The rows of this process, columns numbered as in the whole, BSR: what it has itself and what others have of them.
+
+    starts: first block of each process."""
+    blocks, matrix = _blocks(store.pop("stiffness"), slot, free, block)
+    rank, size = comm.rank, matrix.blocksize[0]
+    owner = np.searchsorted(starts, blocks, side="right") - 1
+    shape = (size * int(starts[rank + 1] - starts[rank]), size * int(starts[-1]))
+
+    def part(of: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        rows = np.flatnonzero(owner == of)
+        count = np.diff(matrix.indptr)[rows]
+        entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+        return np.repeat(blocks[rows], count), blocks[matrix.indices[entries]], matrix.data[entries]
+
+    away = [part(of) if of != rank else None for of in range(comm.size)]
+    pieces = [part(rank), *(piece for piece in comm.alltoall(away) if piece is not None)]
+    del away, matrix
+    row, column = (np.concatenate([piece[k] for piece in pieces]) for k in (0, 1))
+    data = np.concatenate([piece[2] for piece in pieces])
+    del pieces
+    order = np.lexsort((column, row))
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (np.diff(row[order]) != 0) | (np.diff(column[order]) != 0)
+    summed = data[order[new]]
+    again = np.flatnonzero(~new)
+    np.add.at(summed, np.cumsum(new)[again] - 1, data[order[again]])
+    count = np.bincount(row[order[new]] - starts[rank], minlength=shape[0] // size)
+    indptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int32)
+    return sp.bsr_matrix((summed, column[order[new]].astype(np.int32), indptr), shape=shape)
+
+
+def _local(matrix: Any) -> NDArray[np.float64]:
+    """This process's share of the diagonal."""
+    return np.array(matrix.getDiagonal().array)
+
+
+def _largest(matrix: Any, block: int) -> NDArray[np.float64]:
+    """The largest diagonal entry of each block, for all of its rows."""
+    return np.repeat(_local(matrix).reshape(-1, block).max(axis=1), block)
+
+
+def _set_diagonal(matrix: Any, values: NDArray[np.float64]) -> None:
+    diagonal = matrix.createVecLeft()
+    diagonal.array[:] = values
+    matrix.setDiagonal(diagonal)
+
+
+def _diagonal(store: Store) -> NDArray[np.float64]:
+    return _local(store["matrix"])
+
+
+def _stiffen(store: Store, springs: NDArray[np.float64]) -> None:
+    _set_diagonal(store["matrix"], _local(store["matrix"]) + springs)
+
+
+def _product(store: Store, share: NDArray[np.float64]) -> NDArray[np.float64]:
+    matrix = store["matrix"]
+    x, y = matrix.createVecs()
+    x.array[:] = share
+    matrix.mult(x, y)
+    return np.array(y.array)

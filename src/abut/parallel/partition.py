@@ -1,0 +1,149 @@
+"""Who does what: cells dealt out by SCOTCH or ParMETIS, points and free displacements to whoever has a cell there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.mesh.exterior import coded_facets
+from abut.mesh.mesh import CellBlock, Mesh
+from abut.parallel.team import Store, Team
+
+FEW = 10  # cells a process below which they are dealt out in their order: a partitioner would leave processes empty
+PARTITIONERS = ("ptscotch", "parmetis")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What one process has of a mesh: its cells over the points they use; points, cells: their numbers in the whole."""
+
+    mesh: Mesh
+    points: NDArray[np.int64]
+    cells: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where free displacements stand in PETSc's vectors, which have the processes' shares one after the other.
+
+    slot: (n_free,) place of each; starts: (size + 1,) first place of each process; block: places a point, of which
+    those that no free displacement takes are padding.
+    """
+
+    slot: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    block: int
+
+    def shares(self, values: NDArray[np.float64]) -> list[tuple[NDArray[np.float64]]]:
+        """Values (n_free, ...) as each process's share of a vector, zero on padding."""
+        whole = np.zeros((self.starts[-1], *values.shape[1:]))
+        whole[self.slot] = values
+        return [(share,) for share in np.split(whole, self.starts[1:-1])]
+
+    def values(self, shares: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Back again."""
+        return np.asarray(np.concatenate(shares)[self.slot])
+
+
+def owners(mesh: Mesh, team: Team) -> NDArray[np.int64]:
+    """The process of each cell, (n_cells,)."""
+    if team.size == 1 or mesh.n_cells <= FEW * team.size:
+        return np.sort(np.arange(mesh.n_cells) % team.size)
+    graph = cell_graph(mesh)
+    bounds = np.linspace(0, mesh.n_cells, team.size + 1).astype(np.int64)
+    rows = [
+        (graph.indptr[a : b + 1] - graph.indptr[a], graph.indices[graph.indptr[a] : graph.indptr[b]])
+        for a, b in zip(bounds, bounds[1:])
+    ]
+    return np.concatenate(team.each(_partition, mesh.n_cells, own=rows)).astype(np.int64)
+
+
+def cell_graph(mesh: Mesh) -> Any:
+    """Cells that share a facet, (n_cells, n_cells) CSR."""
+    code, row = coded_facets(mesh)
+    order = np.lexsort(code.T)
+    same = np.flatnonzero((code[order[1:]] == code[order[:-1]]).all(axis=1))
+    one, other = row[order[same], 0], row[order[same + 1], 0]
+    graph = sp.csr_matrix((np.ones(len(one), dtype=np.int8), (one, other)), shape=(mesh.n_cells,) * 2)
+    return (graph + graph.T).tocsr()
+
+
+def _partition(store: Store, n: int, indptr: NDArray[np.int32], indices: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The process of each cell among this one's rows of the graph."""
+    from petsc4py import PETSc
+
+    ints = PETSc.IntType
+    weights = np.ones(len(indices))
+    graph = PETSc.Mat().createAIJ(
+        ((len(indptr) - 1, n), (len(indptr) - 1, n)), csr=(indptr.astype(ints), indices.astype(ints), weights)
+    )
+    graph.assemble()
+    graph = graph.convert("mpiadj", PETSc.Mat())
+    partitioning = PETSc.MatPartitioning().create(graph.comm)
+    partitioning.setAdjacency(graph)
+    partitioning.setType(next(name for name in PARTITIONERS if PETSc.Sys.hasExternalPackage(name)))
+    partitioning.setFromOptions()
+    result = PETSc.IS()
+    partitioning.apply(result)
+    return np.array(result.getIndices(), dtype=np.int32)
+
+
+def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int) -> list[Piece]:
+    """The mesh of each process. Names of bodies stay even where a piece has none of their cells; surfaces and node sets
+    are left out."""
+    result = []
+    place = np.zeros(len(mesh.points), dtype=np.int32)
+    number = np.zeros(mesh.n_cells, dtype=np.int64)
+    for rank in range(size):
+        cells = np.flatnonzero(owner == rank)
+        number[cells] = np.arange(len(cells))
+        own = [
+            (block.kind, block.nodes[cells[(cells >= first) & (cells < first + len(block.nodes))] - first])
+            for block, first in zip(mesh.blocks, mesh.starts.tolist())
+        ]
+        points = np.unique(np.concatenate([nodes.ravel() for _, nodes in own])).astype(np.int64)
+        place[points] = np.arange(len(points))
+        piece = replace(
+            mesh,
+            points=mesh.points[points],
+            blocks=tuple(CellBlock(kind, place[nodes]) for kind, nodes in own),
+            bodies={name: number[held[owner[held] == rank]] for name, held in mesh.bodies.items()},
+            surfaces={},
+            node_sets={},
+        )
+        result.append(Piece(piece, points, cells))
+    return result
+
+
+def point_owners(pieces: Sequence[Piece], n_points: int) -> NDArray[np.int64]:
+    """The process of each point, one that has a cell there: (n_points,)."""
+    result = np.zeros(n_points, dtype=np.int64)
+    for rank, piece in reversed(list(enumerate(pieces))):
+        result[piece.points] = rank
+    return result
+
+
+def layout(free: Any, owner: NDArray[np.int64], dim: int, size: int, coupled: bool) -> Layout:
+    """Places for the columns of ``free`` (dim n_points, n_free), each with the process (``owner``) of its point. Points are
+    filled up to ``dim`` places, unless columns are ``coupled``: those go with their first point, one place each."""
+    columns = free.tocsc()
+    columns.sort_indices()
+    point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
+    if coupled:
+        order = np.argsort(owner[point], kind="stable")
+        slot = np.empty(len(point), dtype=np.int64)
+        slot[order] = np.arange(len(point))
+        count = np.bincount(owner[point], minlength=size)
+        return Layout(slot, np.concatenate([[0], np.cumsum(count)]).astype(np.int64), 1)
+    used, number, degrees = np.unique(point, return_inverse=True, return_counts=True)
+    local = np.empty(len(point), dtype=np.int64)
+    local[np.argsort(point, kind="stable")] = np.arange(len(point)) - np.repeat(np.cumsum(degrees) - degrees, degrees)
+    place = np.empty(len(used), dtype=np.int64)
+    place[np.argsort(owner[used], kind="stable")] = np.arange(len(used))
+    count = np.bincount(owner[used], minlength=size)
+    return Layout(dim * place[number] + local, dim * np.concatenate([[0], np.cumsum(count)]).astype(np.int64), dim)

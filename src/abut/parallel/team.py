@@ -1,0 +1,88 @@
+"""The processes of a run: process 0 leads, all of them work. What is done where is a function and its arguments.
+
+The serial code runs on process 0 as it is; what is as large as the volume (stiffness, products, linear solutions, stresses)
+it has done by all processes, itself among them, each on its part of the cells.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from typing import Any
+
+Store = dict[str, Any]  # what a process keeps between calls
+
+
+class Team:
+    """The processes that were started together, or this one alone."""
+
+    def __init__(self, comm: Any) -> None:
+        self.comm = comm
+        self.store: Store = {}
+
+    @property
+    def size(self) -> int:
+        """How many processes there are."""
+        return int(self.comm.size)
+
+    def each(self, function: Callable[..., Any], *shared: Any, own: Sequence[tuple[Any, ...]] | None = None) -> list[Any]:
+        """Call function(store, *shared, *own[rank]) on every process and return the results by rank; for process 0.
+
+        function: of a module, as it travels by its name; store: a dict that each process keeps for itself."""
+        self.comm.bcast((function, shared))
+        arguments = own or [()] * self.size
+        self.comm.scatter([None, *arguments[1:]])  # its own share does not travel, and may be what cannot be pickled
+        mine = self._done(function, (*shared, *arguments[0]))
+        return [mine, *self.comm.gather(None)[1:]]
+
+    def serve(self) -> None:
+        """Take part in what process 0 asks for until it is done; for the others."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # process 0 ends the run in order, after its iteration
+        while (task := self.comm.bcast(None)) is not None:
+            function, shared = task
+            self.comm.gather(self._done(function, (*shared, *self.comm.scatter(None))))
+
+    def dismiss(self) -> None:
+        """Let the others go."""
+        self.comm.bcast(None)
+
+    def _done(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        try:
+            return function(self.store, *arguments)
+        except Exception:
+            if self.size == 1:
+                raise
+            # The others wait inside the same call for a message that will not come.
+            traceback.print_exc()
+            print(f"abut: process {self.comm.rank} failed: the run ends", file=sys.stderr, flush=True)
+            self.comm.Abort(1)
+
+
+def lead(function: Callable[[Team], int], options: Sequence[str] = ()) -> int:
+    """Process 0 returns function(team); the others serve it until then, and return 0.
+
+    options: for PETSc, as on a command line. Raises InputError where petsc4py or mpi4py are missing."""
+    team = start_team(options)
+    if team.comm.rank:
+        team.serve()
+        return 0
+    try:
+        return function(team)
+    finally:
+        team.dismiss()
+
+
+def start_team(options: Sequence[str] = ()) -> Team:
+    """The processes this one was started with. Raises InputError where petsc4py or mpi4py are missing."""
+    from abut.parallel.launch import require
+
+    require()
+    import petsc4py
+
+    petsc4py.init(["abut", "-no_signal_handler", *options])
+    from mpi4py import MPI
+
+    return Team(MPI.COMM_WORLD)

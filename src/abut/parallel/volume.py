@@ -1,0 +1,110 @@
+"""The bodies of a model on many processes: process 0 has the whole mesh and every process its part of the cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.analysis.volume import materials, temperatures
+from abut.discretization.supports import Supports
+from abut.interface.coupling import Coupling
+from abut.mesh.surface import Surface
+from abut.model import Model
+from abut.parallel import part
+from abut.parallel.interface import couple
+from abut.parallel.linear import prepare_direct, prepare_iterative, wants_factors, wants_iterations
+from abut.parallel.matrix import Distributed, reduce
+from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
+from abut.parallel.team import Team
+from abut.solvers.active_set import System
+from abut.solvers.linear import Prepared, chosen
+
+
+@dataclass(frozen=True)
+class Spread:
+    """As ``abut.analysis.volume.Volume``, by a team. owner: (n_cells,) process of each cell; pieces: by process."""
+
+    model: Model
+    team: Team
+    owner: NDArray[np.int64]
+    pieces: Sequence[Piece]
+
+    @property
+    def summary(self) -> str:
+        """For the log."""
+        cells = [len(piece.cells) for piece in self.pieces]
+        return f"{self.team.size} processes with {min(cells)} to {max(cells)} cells each"
+
+    def assembled(self) -> Spread:
+        """Have every process assemble its part."""
+        m = self.model
+        own = [(part.Part(piece.mesh, materials(m), m.plane, m.integration),) for piece in self.pieces]
+        self.team.each(part.assemble, own=own)
+        return self
+
+    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+        """Every facet of the contactor by the process that has its cell."""
+        return couple(self.team, self.owner[contactor.cells], contactor, target, degree, **options)
+
+    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As in ``Volume``."""
+        dim = self.model.dim
+        nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
+        own = [(nodal[piece.points].reshape(dim * len(piece.points), *displacement.shape[1:]),) for piece in self.pieces]
+        total = np.zeros_like(nodal)
+        for piece, force in zip(self.pieces, self.team.each(part.internal, own=own)):
+            total[piece.points] += force.reshape(-1, *nodal.shape[1:])
+        return total.reshape(displacement.shape)
+
+    def reduce(self, held: Supports) -> Distributed:
+        """As in ``Volume``, a matrix of PETSc's."""
+        dim = self.model.dim
+        places = layout(
+            held.free, point_owners(self.pieces, len(self.model.mesh.points)), dim, self.team.size, held.coupled
+        )
+        own = []
+        for piece in self.pieces:
+            rows = held.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
+            used = np.flatnonzero(np.diff(rows.indptr))
+            own.append((places.slot[used], rows[:, used].tocsr()))
+        self.team.each(reduce, places.starts, places.block, own=own)
+        return Distributed(self.team, places)
+
+    def stress(
+        self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """As in ``Volume``."""
+        own = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
+        total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
+        sums = self.team.each(part.stresses, temperatures(self.model, time), own=own)
+        for piece, (stress, cells) in zip(self.pieces, sums):
+            total[piece.points] += stress
+            count[piece.points] += cells
+        return np.asarray(total / np.maximum(count, 1.0)[:, None])
+
+    def choose(self, system: System, held: Supports) -> str:
+        """As in ``Volume``; PETSc options come first."""
+        if wants_factors():
+            return "direct"
+        if wants_iterations():
+            return chosen("amg", len(system.load), system.pairs, self.model.mesh, held.coupled)
+        return chosen("auto", len(system.load), system.pairs, self.model.mesh, held.coupled)
+
+    def prepare(
+        self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
+    ) -> Prepared:
+        """As in ``Volume``."""
+        matrix: Distributed = system.stiffness
+        if kind == "direct":
+            return prepare_direct(matrix, system)
+        return prepare_iterative(matrix, system, held.free.T @ motions, loose)
+
+
+def deal_out(model: Model, team: Team) -> Spread:
+    """Divide the cells of a model among the processes of a team."""
+    owner = owners(model.mesh, team)
+    return Spread(model, team, owner, pieces(model.mesh, owner, team.size))
