@@ -104,7 +104,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
     from abut.io.results import summary
 
     with (
-        Progress(silent=arguments.quiet or arguments.json) as progress,
+        Progress(silent=arguments.quiet or arguments.json, plain=processes() > 1) as progress,
         Interrupt(_say, leave=progress.close) as interrupt,
     ):
         try:

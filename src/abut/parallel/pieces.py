@@ -56,8 +56,7 @@ class Pieces:
         remove_pieces(folder, step.number, first=len(names))
 
     def _deal(self, mesh: Mesh) -> None:
-        each = -(-mesh.n_cells // self._team.size)
-        owner = np.arange(mesh.n_cells) // each  # in the order of the file, so that only the last may have none
+        owner = np.sort(np.arange(mesh.n_cells) % self._team.size)  # in the order of the file; the last may have none
         shares = pieces(mesh, owner, self._team.size)
         self._points = [share.points for share in shares]
         self._team.each(keep_mesh, own=[(share.mesh,) for share in shares])
