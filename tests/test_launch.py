@@ -132,22 +132,11 @@ def test_what_is_missing_is_said_with_the_recipe(monkeypatch: pytest.MonkeyPatch
         launch.require()
 
 
-def refuse_petsc(patch: pytest.MonkeyPatch) -> None:
-    """abut.parallel.team as it is without petsc4py."""
-    without(patch, "petsc4py")
-
-    def lead(*_: Any) -> int:
-        launch.require()
-        raise AssertionError
-
-    patch.setitem(sys.modules, "abut.parallel.team", SimpleNamespace(lead=lead))
-
-
 def test_without_petsc_only_process_0_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = job(tmp_path)
-    refuse_petsc(monkeypatch)
+    without(monkeypatch, "petsc4py")
     said = []
     for rank in range(3):
         started(monkeypatch, 3, rank)
@@ -161,7 +150,7 @@ def test_without_petsc_only_process_0_says_so(
 def test_a_job_may_ask_for_petsc_on_one_process(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    refuse_petsc(monkeypatch)
+    without(monkeypatch, "petsc4py")
     assert main(["run", str(job(tmp_path, linear="petsc"))]) == 2
     assert "petsc4py is not installed" in capsys.readouterr().err
 
@@ -174,7 +163,8 @@ def led(patch: pytest.MonkeyPatch) -> list[list[str]]:
         given.append(options)
         return int(function(None))
 
-    patch.setitem(sys.modules, "abut.parallel.team", SimpleNamespace(lead=lead))
+    patch.setattr("abut.parallel.team.lead", lead)
+    patch.setattr("abut.cli.run.unused", lambda options: [])
     return given
 
 

@@ -54,3 +54,11 @@ def test_check_speaks_once(mpirun: Run, tmp_path: Path) -> None:
     result = mpirun(2, "check", "--json", job(tmp_path))
     assert result.returncode == 0, result.stderr
     assert json.loads(result.stdout)["status"] == 0
+
+
+def test_options_reach_petsc_and_slips_are_named(mpirun: Run, tmp_path: Path) -> None:
+    result = mpirun(2, "run", "--quiet", job(tmp_path, steps=1), "-ksp_type", "fgmres", "-ksp_tpye", "cg")
+    assert result.returncode == 0, result.stderr
+    assert "PETSc did not use -ksp_tpye: misspelt" in result.stderr
+    notes = json.loads((tmp_path / "results" / "summary.json").read_text())["notes"]
+    assert [note for note in notes if "did not use" in note] == [result.stderr.strip().removeprefix("abut: ")]
