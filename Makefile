@@ -1,4 +1,4 @@
-# make demo | make test | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
+# make demo | make test | make mpi | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -13,6 +13,21 @@ demo: .venv/installed-demo
 
 test: .venv/installed-test
 	$(BIN)/python -m pytest -n 2 --durations=10
+
+# Many processes: petsc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
+MPI_PYTHON ?= /usr/bin/python3
+MPI_BIN := .venv-mpi/bin
+PETSC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/petscdir/petsc3*/*-real)))
+
+.venv-mpi/installed: pyproject.toml CMakeLists.txt $(wildcard cpp/*) $(shell find src -name '*.py' 2>/dev/null)
+	test -x $(MPI_BIN)/python || $(MPI_PYTHON) -m venv --system-site-packages .venv-mpi
+	$(MPI_BIN)/python -m pip install --quiet --upgrade pip
+	$(MPI_BIN)/python -m pip install --quiet ".[mpi,test]" \
+	  "numpy<$$($(MPI_PYTHON) -c 'import numpy; print(int(numpy.__version__.split(".")[0]) + 1)')"
+	touch $@
+
+mpi: .venv-mpi/installed
+	PETSC_DIR=$(PETSC_DIR) ABUT_MPI_TESTS=required $(MPI_BIN)/python -m pytest --durations=5 tests/mpi
 
 lint: .venv/installed-lint
 	$(BIN)/ruff check src tests examples bench docs
@@ -29,7 +44,7 @@ build:
 	$(BIN)/cmake -S . -B build/dev -DPython_EXECUTABLE=$(abspath $(BIN)/python) -DCMAKE_LIBRARY_OUTPUT_DIRECTORY=$(CURDIR)/src/abut/_core
 	$(BIN)/cmake --build build/dev
 
-.PHONY: demo test lint docs build bench
+.PHONY: demo test mpi lint docs build bench
 
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py

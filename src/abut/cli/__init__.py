@@ -20,7 +20,7 @@ from abut.errors import AbutError, InputError
 from abut.parallel.launch import processes, rank
 
 DONE, BUG, INTERRUPTED, NO_READER = 0, 1, 130, 141
-PAUSE = 2.0  # seconds; mpiexec ends all processes when one fails, so that process 0 must get to its message first
+PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 0 must get to its message first
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -67,16 +67,15 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser = _parser()
     with contextlib.ExitStack() as silence:
         if rank():
-            silence.enter_context(contextlib.redirect_stdout(None))
-            silence.enter_context(contextlib.redirect_stderr(None))
+            nowhere = silence.enter_context(open(os.devnull, "w"))
+            silence.enter_context(contextlib.redirect_stdout(nowhere))
+            silence.enter_context(contextlib.redirect_stderr(nowhere))
         try:
             arguments, rest = parser.parse_known_args(argv)
             if rest and not (arguments.together and passes_on(arguments.job, rest)):
                 parser.error(f"unrecognized arguments: {' '.join(rest)}")
         except SystemExit as end:
-            if rank() and end.code:
-                time.sleep(PAUSE)
-            raise
+            raise SystemExit(DONE if rank() else end.code) from None  # process 0 says the same, and ends them all
     arguments.petsc = rest
     return arguments
 

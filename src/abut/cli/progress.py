@@ -26,11 +26,11 @@ class Progress:
     Notes and iterations are lines. On a terminal a live line below them says which stage it is, for how long, how long it
     may take, and how long all load steps will. Elsewhere (a file, a pipe) stages that will take long are lines, and
     another line follows wherever nothing else was printed for a while, each after twice the time of the one before.
-    ``silent``: no output at all.
+    ``silent``: no output at all; ``plain``: no live line, as mpiexec makes every output look like a terminal.
     """
 
-    def __init__(self, silent: bool = False) -> None:
-        self._silent = silent
+    def __init__(self, silent: bool = False, plain: bool = False) -> None:
+        self._silent, self._plain = silent, plain
         self._live: Status | None = None
         self._stage: Phase | None = None
         self._lock = threading.Lock()
@@ -114,7 +114,7 @@ class Progress:
     def __enter__(self) -> Progress:
         if self._silent:
             return self
-        if sys.stdout.isatty():
+        if sys.stdout.isatty() and not self._plain:
             from rich.console import Console
 
             self._live = Console().status("reading", spinner="line")

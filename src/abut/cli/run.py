@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from abut.errors import ConvergenceError, InputError, Stopped
-from abut.parallel.launch import processes
+from abut.parallel.launch import processes, unused
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -104,7 +104,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
     from abut.io.results import summary
 
     with (
-        Progress(silent=arguments.quiet or arguments.json) as progress,
+        Progress(silent=arguments.quiet or arguments.json, plain=processes() > 1) as progress,
         Interrupt(_say, leave=progress.close) as interrupt,
     ):
         try:
@@ -164,9 +164,20 @@ def _solve(
             solution = told(solve(job.model, observe, keep, before, team=team))
         except Stopped:
             raise Stopped(_left(stream.steps, directory)) from None
+        if text := _unused(arguments.petsc):
+            _say(text)
+            solution = replace(solution, notes=(*solution.notes, text))
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))
     return solution, directory
+
+
+def _unused(options: Sequence[str]) -> str:
+    """What became of options that PETSc did not ask for; empty where there are none."""
+    names = unused(options) if options else []
+    return (
+        f"PETSc did not use {', '.join(names)}: misspelt, or of no use to the solver that was chosen" if names else ""
+    )
 
 
 def _check_linear(job: Job) -> None:

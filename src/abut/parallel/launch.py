@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from abut.errors import InputError
@@ -65,6 +67,19 @@ def require() -> None:
             f"{processes()} processes were started, but mpi4py knows of {world.size}: mpiexec belongs to another MPI than "
             "mpi4py; use the mpiexec that was installed with it"
         )
+
+
+def unused(options: Sequence[str]) -> list[str]:
+    """Those of the options given to PETSc that it has not asked for so far: misspelt, or of no use to what was run."""
+    database = ctypes.CDLL(importlib.import_module("petsc4py.PETSc").__file__)
+    result = []
+    for option in options:
+        asked = ctypes.c_int(1)
+        if option[:1] == "-" and option[1:2].isalpha():  # petsc4py itself can tell from 3.20 on only
+            database.PetscOptionsUsed(None, option[1:].encode(), ctypes.byref(asked))
+        if not asked.value:
+            result.append(option)
+    return result
 
 
 def _missing(name: str, error: Exception) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -16,8 +15,9 @@ from abut.io.atomic import write_text
 from abut.io.fields import list_name, piece_name, remove_pieces, whole_name
 from abut.io.grids import Grid, field_grid
 from abut.io.vtu import write_vtu
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.mesh import Mesh
 from abut.model import Model
+from abut.parallel.partition import pieces
 from abut.state import Step
 
 if TYPE_CHECKING:
@@ -56,9 +56,10 @@ class Pieces:
         remove_pieces(folder, step.number, first=len(names))
 
     def _deal(self, mesh: Mesh) -> None:
-        shares = [part(mesh, cells) for cells in np.array_split(np.arange(mesh.n_cells), self._team.size)]
-        self._points = [points for _, points in shares]
-        self._team.each(keep_mesh, own=[(own,) for own, _ in shares])
+        owner = np.sort(np.arange(mesh.n_cells) % self._team.size)  # in the order of the file; the last may have none
+        shares = pieces(mesh, owner, self._team.size)
+        self._points = [share.points for share in shares]
+        self._team.each(keep_mesh, own=[(share.mesh,) for share in shares])
 
 
 def keep_mesh(store: Store, mesh: Mesh) -> None:
@@ -108,26 +109,3 @@ def listing(pieces: Sequence[str], arrays: dict[str, list[tuple[str, str, int]]]
         f'  <PUnstructuredGrid GhostLevel="0">\n{data}    <PPoints>\n{tag("Points", "Float64", 3)}    </PPoints>\n'
         f"{sources}  </PUnstructuredGrid>\n</VTKFile>\n"
     )
-
-
-def part(mesh: Mesh, cells: NDArray[Any]) -> tuple[Mesh, NDArray[np.int64]]:
-    """Some cells (ascending) as a mesh of its own, and the numbers of its points in the whole. Names of bodies stay even
-    where they have none of the cells; surfaces and node sets are left out."""
-    blocks = [
-        (block.kind, block.nodes[cells[(cells >= first) & (cells < first + len(block.nodes))] - first])
-        for block, first in zip(mesh.blocks, mesh.starts)
-    ]
-    points = np.unique(np.concatenate([nodes.ravel() for _, nodes in blocks])).astype(np.int64)
-    place = np.zeros(len(mesh.points), dtype=np.int32)
-    place[points] = np.arange(len(points))
-    number = np.full(mesh.n_cells, -1)
-    number[cells] = np.arange(len(cells))
-    own = replace(
-        mesh,
-        points=mesh.points[points],
-        blocks=tuple(CellBlock(kind, place[nodes]) for kind, nodes in blocks),
-        bodies={name: number[held][number[held] >= 0] for name, held in mesh.bodies.items()},
-        surfaces={},
-        node_sets={},
-    )
-    return own, points

@@ -1,0 +1,114 @@
+"""What a run on several processes leaves on disk is what a serial one leaves, in pieces."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from launcher import environment
+from numpy.typing import NDArray
+
+from abut.cli import main
+from test_pieces import names, probe, read, volume
+from test_restart import STEPS, job, stop_in
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+ROOT = Path(__file__).parents[2]
+BLOCKS = ROOT / "examples" / "two-blocks" / "job.toml"
+
+
+def listed(folder: Path) -> list[str]:
+    return re.findall(r'file="([^"]*)"', (folder / "fields.pvd").read_text())
+
+
+def test_pieces_of_a_run_are_the_whole(mpirun: Run, tmp_path: Path) -> None:
+    """On three processes, then on two into the same directory, beside a serial run. Fields to 1e-8: the linear solution of
+    either is accurate to about 1e-10."""
+    serial, parts = tmp_path / "serial", tmp_path / "parts"
+    assert main(["run", "--quiet", str(BLOCKS), "--output", str(serial)]) == 0
+    for size in (3, 2):
+        result = mpirun(size, "run", BLOCKS, "--output", parts, "--json")
+        assert result.returncode == 0, result.stderr
+        assert json.loads(result.stdout)["processes"] == size
+    assert names(parts) == ["fields_0001.pvtu", "fields_0001_0000.vtu", "fields_0001_0001.vtu"]
+    assert listed(parts) == ["fields_0001.pvtu"]
+    one, other = read(serial / "fields_0001.vtu"), read(parts / "fields_0001.pvtu")
+    assert one.GetNumberOfCells() == other.GetNumberOfCells()
+    assert volume(other) == pytest.approx(volume(one), rel=1e-12)
+    low, high = (np.array(one.GetBounds())[i::2] for i in (0, 1))
+    places = low + (high - low) * np.random.default_rng(1).uniform(0.02, 0.98, (100, 3))
+    places = places[[_inside(one, place) for place in places]]
+    assert len(places) > 20
+    expected, found = probe(one, places), probe(other, places)
+    for key, values in expected.items():
+        assert np.abs(found[key] - values).max() <= 1e-8 * np.abs(values).max(), key
+
+
+def _inside(grid: Any, place: NDArray[np.float64]) -> bool:
+    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(grid)
+    locator.BuildLocator()
+    return bool(locator.FindCell(list(place)) >= 0)
+
+
+def test_restart_on_another_number_of_processes(mpirun: Run, tmp_path: Path) -> None:
+    """From one process to two and back: each step keeps the files it has, and the results are those of one run."""
+    whole, path = job(tmp_path / "whole"), job(tmp_path / "parts")
+    assert main(["run", "--quiet", str(whole)]) == 0
+    stop_in(path, 3)
+    result = mpirun(2, "run", "--quiet", "--restart", path)
+    assert result.returncode == 0, result.stderr
+    results = path.parent / "results"
+    assert listed(results) == [f"fields_{i:04d}.{'vtu' if i < 3 else 'pvtu'}" for i in range(1, STEPS + 1)]
+    one, other = (json.loads((p.parent / "results" / "summary.json").read_text()) for p in (whole, path))
+    forces = [[step["contacts"][0]["force"] for step in summary["steps"]] for summary in (one, other)]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-7, atol=1e-7 * np.abs(forces[0]).max())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_stopping_process_0_stops_all_in_order(tmp_path: Path) -> None:
+    """SIGTERM to the process that leads: the steps done are whole, and a serial run goes on from them."""
+    path = job(tmp_path, steps=60)
+    command = ["mpiexec", "-n", "2", sys.executable, "-c", TELL, "run", str(path)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
+    results = tmp_path / "results"
+    end = time.monotonic() + 60.0
+    while not (results / "fields_0002.pvtu").exists():
+        assert time.monotonic() < end
+        assert process.poll() is None
+        time.sleep(0.02)
+    os.kill(int((tmp_path / "leader").read_text()), signal.SIGTERM)
+    out, _ = process.communicate(timeout=60.0)
+    assert process.returncode == 143, out
+    summary = json.loads((results / "summary.json").read_text())
+    assert summary["status"] == "incomplete"
+    done = len(summary["steps"])
+    assert f"steps 1 to {done} are in" in out
+    assert listed(results) == [f"fields_{i:04d}.pvtu" for i in range(1, done + 1)]
+    for name in listed(results):
+        assert read(results / name).GetNumberOfCells() > 0
+    assert not [p.name for p in results.iterdir() if p.name.startswith(".")]
+    job(tmp_path, steps=STEPS)
+    assert main(["run", "--quiet", "--restart", str(path)]) == 0
+
+
+TELL = """
+import os, pathlib, sys
+from abut.cli import main
+from abut.parallel.launch import rank
+if rank() == 0:
+    pathlib.Path(sys.argv[2]).with_name("leader").write_text(str(os.getpid()))
+sys.exit(main(sys.argv[1:]))
+"""

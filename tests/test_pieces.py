@@ -1,0 +1,239 @@
+"""Fields in pieces: together they are the whole, as VTK's own reader sees it; nothing of an earlier run stays."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import abut
+from abut.errors import InputError
+from abut.io.fields import is_whole, write_fields
+from abut.io.grids import field_grid
+from abut.io.results import is_written, write
+from abut.mesh.make import box, join, rectangle
+from abut.parallel.pieces import KEY, Pieces
+from abut.state import Solution
+
+Grid = Any
+
+
+class Team:
+    """A team of processes that take turns; what goes to one and comes back is pickled, as by MPI."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.stores: list[dict[str, Any]] = [{} for _ in range(size)]
+
+    def each(self, function: Callable[..., Any], *shared: Any, own: list[tuple[Any, ...]] | None = None) -> list[Any]:
+        sent = [pickle.dumps((function, *shared, *mine)) for mine in own or [()] * self.size]
+        calls = [pickle.loads(text) for text in sent]
+        return [call(store, *arguments) for store, (call, *arguments) in zip(self.stores, calls)]
+
+
+@pytest.fixture(scope="module")
+def blocks() -> Solution:
+    """Two blocks under their own weight, of hexahedra of second and wedges of first order."""
+    mesh = join(
+        {
+            "upper": box(z=(1.0, 2.0), cells=(2, 3, 2), cell="wedge6"),
+            "lower": box(x=(0.0, 1.5), cells=(3, 2, 2), cell="hex20"),
+        }
+    )
+    steel = abut.LinearElastic(young=2e5, poisson=0.3, density=1.0)
+    model = abut.Model(
+        mesh,
+        solids=[abut.Solid("upper", steel), abut.Solid("lower", steel)],
+        supports=[
+            abut.Support("lower.bottom", x=0, y=0, z=0),
+            abut.Support("upper.left", x=0),
+            abut.Support("upper.back", y=0),
+        ],
+        loads=[abut.Gravity((0.0, 0.0, -10.0))],
+        contacts=[abut.Contact("upper.bottom", "lower.top", name="c")],
+    )
+    return abut.solve(model)
+
+
+@pytest.fixture(scope="module")
+def plane() -> Solution:
+    """A plane model without contact: vectors get a third component."""
+    model = abut.Model(
+        join({"b": rectangle(cells=(3, 2), cell="quad8")}),
+        plane="strain",
+        solids=[abut.Solid("b", abut.LinearElastic(1.0, 0.3))],
+        supports=[abut.Support("b.bottom", x=0, y=0), abut.Support("b.top", x=0, y=-0.1)],
+    )
+    return abut.solve(model)
+
+
+def read(path: Path) -> Grid:
+    from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
+    reader = (vtkXMLPUnstructuredGridReader if path.suffix == ".pvtu" else vtkXMLUnstructuredGridReader)()
+    problems: list[str] = []
+    reader.AddObserver("ErrorEvent", lambda *_: problems.append("error"))
+    reader.SetFileName(str(path))
+    reader.Update()
+    assert not problems
+    return reader.GetOutput()
+
+
+def volume(grid: Grid) -> float:
+    """Sum of the cells' sizes, by VTK."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    data = sizes.GetOutput().GetCellData()
+    return float(sum(vtk_to_numpy(data.GetArray(name)).sum() for name in ("Area", "Volume")))
+
+
+def probe(grid: Grid, places: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Point data interpolated at places, and cell data there, by VTK's cells. (Its probe filter misses some in wedges.)"""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonDataModel import vtkGenericCell, vtkStaticCellLocator
+
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(grid)
+    locator.BuildLocator()
+    cell, weights = vtkGenericCell(), [0.0] * grid.GetMaxCellSize()
+    point_data, cell_data = (
+        {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+        for data in (grid.GetPointData(), grid.GetCellData())
+    )
+    found: dict[str, list[Any]] = {name: [] for name in (*point_data, *cell_data)}
+    for place in places:
+        number = locator.FindCell(list(place), 0.0, cell, [0.0] * 3, weights)
+        assert number >= 0, place
+        nodes = [cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())]
+        for name, values in point_data.items():
+            found[name].append(np.array(weights[: len(nodes)]) @ values[nodes])
+        for name, values in cell_data.items():
+            found[name].append(values[number])
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("fields_*"))
+
+
+@pytest.mark.parametrize("size", [2, 3])
+@pytest.mark.parametrize("name", ["blocks", "plane"])
+def test_pieces_are_the_whole(name: str, size: int, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    solution = request.getfixturevalue(name)
+    whole, parts = write(solution, tmp_path / "whole"), tmp_path / "parts"
+    write(replace(solution, processes=size), parts, fields=Pieces(Team(size)))
+    assert names(parts) == ["fields_0001.pvtu", *(f"fields_0001_{i:04d}.vtu" for i in range(size))]
+    assert (parts / "fields.pvd").read_text() == (whole / "fields.pvd").read_text().replace(".vtu", ".pvtu")
+    assert json.loads((parts / "summary.json").read_text())["processes"] == size
+    assert json.loads((whole / "summary.json").read_text())["processes"] == 1
+    one, other = read(whole / "fields_0001.vtu"), read(parts / "fields_0001.pvtu")
+    assert one.GetNumberOfCells() == other.GetNumberOfCells()
+    kinds = [sorted(grid.GetCellType(i) for i in range(grid.GetNumberOfCells())) for grid in (one, other)]
+    assert kinds[0] == kinds[1]
+    assert volume(other) == pytest.approx(volume(one), rel=1e-12)
+    mesh = solution.model.mesh
+    middles = np.concatenate([mesh.points[block.nodes].mean(axis=1) for block in mesh.blocks])
+    places = np.pad(middles + 0.01, ((0, 0), (0, 3 - mesh.dim)))  # inside cells, off their symmetry
+    expected, found = probe(one, places), probe(other, places)
+    assert list(found) == list(expected) == ["displacement", "stress", "von_mises", "body"]
+    for key, values in expected.items():
+        assert np.abs(found[key] - values).max() <= 1e-12 * np.abs(values).max(), key
+    assert np.ptp(expected["von_mises"]) > 0.0  # what is compared is not constant
+
+
+def test_pyvista_reads_pieces(blocks: Solution, tmp_path: Path) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    write(blocks, tmp_path, fields=Pieces(Team(3)))
+    grid = pyvista.read(tmp_path / "fields_0001.pvtu")
+    assert grid.n_cells == blocks.model.mesh.n_cells
+    assert {"displacement", "stress", "von_mises"} <= set(grid.point_data)
+    assert set(np.unique(grid.cell_data["body"])) == {0, 1}
+    reader = pyvista.get_reader(tmp_path / "fields.pvd")
+    assert reader.read()[0].n_cells == grid.n_cells
+
+
+def test_the_mesh_travels_once(blocks: Solution, tmp_path: Path) -> None:
+    team = Team(2)
+    pieces = Pieces(team)
+    step = blocks.steps[0]
+    pieces(tmp_path, blocks.model, step)
+    kept = [store[KEY] for store in team.stores]
+    pieces(tmp_path, blocks.model, replace(step, number=2))
+    assert all(a is store[KEY] for a, store in zip(kept, team.stores))
+    assert is_whole(tmp_path, 2)
+
+
+def test_more_processes_than_cells(plane: Solution, tmp_path: Path) -> None:
+    write(plane, tmp_path, fields=Pieces(Team(8)))
+    assert len(names(tmp_path)) == 1 + 6
+    assert read(tmp_path / "fields_0001.pvtu").GetNumberOfCells() == 6
+
+
+def test_nothing_of_another_number_of_processes_stays(plane: Solution, tmp_path: Path) -> None:
+    step = plane.steps[0]
+    other = tmp_path / "fields_00011_0000.vtu"  # of step 11: not this one's
+    other.write_text("")
+    for size in (4, 2, 1, 3):
+        writer = write_fields if size == 1 else Pieces(Team(size))
+        write(plane, tmp_path, fields=writer)
+        pieces = [f"fields_0001_{i:04d}.vtu" for i in range(size)]
+        expected = ["fields_0001.vtu"] if size == 1 else ["fields_0001.pvtu", *pieces]
+        assert sorted({*names(tmp_path)} - {other.name}) == expected
+        assert f'file="{expected[0]}"' in (tmp_path / "fields.pvd").read_text()
+        assert is_written(tmp_path, step)
+    assert other.exists()
+    (tmp_path / "fields_0001_0002.vtu").unlink()
+    assert not is_written(tmp_path, step)
+
+
+def test_the_list_is_never_there_before_its_pieces(
+    plane: Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run that is killed while it writes pieces leaves no file that names them, not even an old one."""
+    write(plane, tmp_path, fields=Pieces(Team(3)))
+    team, seen = Team(2), []
+    each = team.each
+
+    def killed(function: Any, *shared: Any, own: Any = None) -> Any:
+        seen.append((tmp_path / "fields_0001.pvtu").exists())
+        if function.__name__ == "write_piece":
+            raise KeyboardInterrupt
+        return each(function, *shared, own=own)
+
+    monkeypatch.setattr(team, "each", killed)
+    with pytest.raises(KeyboardInterrupt):
+        Pieces(team)(tmp_path, plane.model, plane.steps[0])
+    assert seen[-1] is False
+
+
+def test_a_piece_that_cannot_be_written(plane: Solution, tmp_path: Path) -> None:
+    """Raised by process 0, after all have answered."""
+    team = Team(2)
+    writer = Pieces(team)
+    (tmp_path / "fields_0001_0001.vtu").mkdir()
+    with pytest.raises(InputError, match=r"cannot write .*fields_0001_0001\.vtu"):
+        writer(tmp_path, plane.model, plane.steps[0])
+    assert not (tmp_path / "fields_0001.pvtu").exists()
+
+
+def test_arrays_named_are_those_written(blocks: Solution, tmp_path: Path) -> None:
+    """Name, type and components in the list fit each piece: VTK drops what does not."""
+    write(blocks, tmp_path, fields=Pieces(Team(2)))
+    step = blocks.steps[0]
+    grid = field_grid(blocks.model.mesh, step.displacement, step.stress)
+    data = read(tmp_path / "fields_0001.pvtu")
+    for found, expected in ((data.GetPointData(), grid.point_data), (data.GetCellData(), grid.cell_data)):
+        assert [found.GetArrayName(i) for i in range(found.GetNumberOfArrays())] == list(expected)
+        for key, values in expected.items():
+            assert found.GetArray(key).GetNumberOfComponents() == values[0].size
