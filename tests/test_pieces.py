@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 import abut
 from abut.errors import InputError
-from abut.io.fields import is_whole, write_fields
+from abut.io.fields import write_fields
 from abut.io.grids import field_grid
 from abut.io.results import is_written, write
 from abut.mesh.make import box, join, rectangle
-from abut.parallel.pieces import KEY, Pieces
+from abut.parallel.part import Part
+from abut.parallel.partition import pieces
+from abut.parallel.pieces import Pieces
 from abut.state import Solution
 
 Grid = Any
@@ -31,11 +33,22 @@ class Team:
     def __init__(self, size: int) -> None:
         self.size = size
         self.stores: list[dict[str, Any]] = [{} for _ in range(size)]
+        self.store = self.stores[0]
 
     def each(self, function: Callable[..., Any], *shared: Any, own: list[tuple[Any, ...]] | None = None) -> list[Any]:
         sent = [pickle.dumps((function, *shared, *mine)) for mine in own or [()] * self.size]
         calls = [pickle.loads(text) for text in sent]
         return [call(store, *arguments) for store, (call, *arguments) in zip(self.stores, calls)]
+
+
+def dealt(size: int, solution: Solution) -> Team:
+    """A team that has its parts of a solution's mesh."""
+    team, mesh = Team(size), solution.model.mesh
+    parts = pieces(mesh, np.sort(np.arange(mesh.n_cells) % size), size)
+    for store, part in zip(team.stores, parts):
+        store["part"] = Part(part.mesh, {}, None, {})
+    team.store["pieces"] = parts
+    return team
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +145,7 @@ def names(folder: Path) -> list[str]:
 def test_pieces_are_the_whole(name: str, size: int, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     solution = request.getfixturevalue(name)
     whole, parts = write(solution, tmp_path / "whole"), tmp_path / "parts"
-    write(replace(solution, processes=size), parts, fields=Pieces(Team(size)))
+    write(replace(solution, processes=size), parts, fields=Pieces(dealt(size, solution)))
     assert names(parts) == ["fields_0001.pvtu", *(f"fields_0001_{i:04d}.vtu" for i in range(size))]
     assert (parts / "fields.pvd").read_text() == (whole / "fields.pvd").read_text().replace(".vtu", ".pvtu")
     assert json.loads((parts / "summary.json").read_text())["processes"] == size
@@ -154,7 +167,7 @@ def test_pieces_are_the_whole(name: str, size: int, tmp_path: Path, request: pyt
 
 def test_pyvista_reads_pieces(blocks: Solution, tmp_path: Path) -> None:
     pyvista = pytest.importorskip("pyvista")
-    write(blocks, tmp_path, fields=Pieces(Team(3)))
+    write(blocks, tmp_path, fields=Pieces(dealt(3, blocks)))
     grid = pyvista.read(tmp_path / "fields_0001.pvtu")
     assert grid.n_cells == blocks.model.mesh.n_cells
     assert {"displacement", "stress", "von_mises"} <= set(grid.point_data)
@@ -163,19 +176,8 @@ def test_pyvista_reads_pieces(blocks: Solution, tmp_path: Path) -> None:
     assert reader.read()[0].n_cells == grid.n_cells
 
 
-def test_the_mesh_travels_once(blocks: Solution, tmp_path: Path) -> None:
-    team = Team(2)
-    pieces = Pieces(team)
-    step = blocks.steps[0]
-    pieces(tmp_path, blocks.model, step)
-    kept = [store[KEY] for store in team.stores]
-    pieces(tmp_path, blocks.model, replace(step, number=2))
-    assert all(a is store[KEY] for a, store in zip(kept, team.stores))
-    assert is_whole(tmp_path, 2)
-
-
 def test_more_processes_than_cells(plane: Solution, tmp_path: Path) -> None:
-    write(plane, tmp_path, fields=Pieces(Team(8)))
+    write(plane, tmp_path, fields=Pieces(dealt(8, plane)))
     assert len(names(tmp_path)) == 1 + 6
     assert read(tmp_path / "fields_0001.pvtu").GetNumberOfCells() == 6
 
@@ -185,7 +187,7 @@ def test_nothing_of_another_number_of_processes_stays(plane: Solution, tmp_path:
     other = tmp_path / "fields_00011_0000.vtu"  # of step 11: not this one's
     other.write_text("")
     for size in (4, 2, 1, 3):
-        writer = write_fields if size == 1 else Pieces(Team(size))
+        writer = write_fields if size == 1 else Pieces(dealt(size, plane))
         write(plane, tmp_path, fields=writer)
         pieces = [f"fields_0001_{i:04d}.vtu" for i in range(size)]
         expected = ["fields_0001.vtu"] if size == 1 else ["fields_0001.pvtu", *pieces]
@@ -201,8 +203,8 @@ def test_the_list_is_never_there_before_its_pieces(
     plane: Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A run that is killed while it writes pieces leaves no file that names them, not even an old one."""
-    write(plane, tmp_path, fields=Pieces(Team(3)))
-    team, seen = Team(2), []
+    write(plane, tmp_path, fields=Pieces(dealt(3, plane)))
+    team, seen = dealt(2, plane), []
     each = team.each
 
     def killed(function: Any, *shared: Any, own: Any = None) -> Any:
@@ -219,7 +221,7 @@ def test_the_list_is_never_there_before_its_pieces(
 
 def test_a_piece_that_cannot_be_written(plane: Solution, tmp_path: Path) -> None:
     """Raised by process 0, after all have answered."""
-    team = Team(2)
+    team = dealt(2, plane)
     writer = Pieces(team)
     (tmp_path / "fields_0001_0001.vtu").mkdir()
     with pytest.raises(InputError, match=r"cannot write .*fields_0001_0001\.vtu"):
@@ -229,7 +231,7 @@ def test_a_piece_that_cannot_be_written(plane: Solution, tmp_path: Path) -> None
 
 def test_arrays_named_are_those_written(blocks: Solution, tmp_path: Path) -> None:
     """Name, type and components in the list fit each piece: VTK drops what does not."""
-    write(blocks, tmp_path, fields=Pieces(Team(2)))
+    write(blocks, tmp_path, fields=Pieces(dealt(2, blocks)))
     step = blocks.steps[0]
     grid = field_grid(blocks.model.mesh, step.displacement, step.stress)
     data = read(tmp_path / "fields_0001.pvtu")

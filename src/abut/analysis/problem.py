@@ -82,9 +82,7 @@ def problem(
     return Problem(held, volume, loaded, held_by, idle, system)
 
 
-def _volume(
-    model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None
-) -> Volume:
+def _volume(model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None) -> Volume:
     if team is None:
         observe(Phase("assembling the stiffness"))
         result: Volume = whole(model)

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.discretization.supports import Supports
-from abut.interface.coupling import Couple, couple
+from abut.interface.coupling import Coupling, couple
+from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.solids.elements import nodal_stress, stiffness
 from abut.solids.materials import LinearElastic
@@ -22,9 +23,8 @@ from abut.solvers.linear import Prepared, choose, prepare
 class Volume(Protocol):
     """The bodies of a model, assembled."""
 
-    @property
-    def couple(self) -> Couple:
-        """Cuts and integrates the interface of a contact pair."""
+    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+        """Cut and integrate the interface of a contact pair, as ``abut.interface.coupling.couple``."""
         ...
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -38,8 +38,8 @@ class Volume(Protocol):
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Nodal averages (n_points, 6) under displacements (n_points, dim) and nodal changes of temperature (n_points,); whole
-        solids are heated by their share at ``time``."""
+        """Nodal averages (n_points, 6) under displacements (n_points, dim) and nodal changes of temperature (n_points,);
+        whole solids are heated by their share at ``time``."""
         ...
 
     def choose(self, system: System, held: Supports) -> str:
@@ -61,7 +61,9 @@ class Whole:
     model: Model
     matrix: Any
 
-    couple = staticmethod(couple)
+    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+        """As in ``Volume``."""
+        return couple(contactor, target, degree, **options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Volume``."""

@@ -6,9 +6,9 @@ pressure spaces of ``abut.interface.pressure`` are combinations of these rows. "
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -155,12 +155,7 @@ def couple(
     )
 
 
-class Couple(Protocol):
-    """``couple``, or what has it done by others."""
-
-    def __call__(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
-        """As ``couple``."""
-        ...
+Couple = Callable[..., Coupling]  # ``couple``, or what has it done by others
 
 
 def added(parts: Sequence[Coupling]) -> Coupling:

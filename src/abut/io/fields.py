@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 from abut.io.grids import field_grid
@@ -34,11 +34,11 @@ def piece_name(number: int, process: int) -> str:
     return f"fields_{number:04d}_{process:04d}.vtu"
 
 
-def remove_pieces(folder: Path, number: int, first: int = 0) -> None:
-    """Remove pieces of a step from process ``first`` on."""
+def remove_pieces(folder: Path, number: int, but: Collection[str] = ()) -> None:
+    """Remove the pieces of a step, ``but`` some names."""
     for path in folder.glob(f"fields_{number:04d}_*.vtu"):
         process = path.stem.rpartition("_")[2]
-        if process.isdecimal() and int(process) >= first:
+        if process.isdecimal() and path.name not in but:
             path.unlink(missing_ok=True)
 
 

@@ -19,7 +19,9 @@ STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alon
 RESTART, MOST = 100, 300
 REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
 MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi", "mg_coarse_sub_pc_type": "svd"}
-NOTHING = 1e-9  # singular value of the coarsest matrix over the stiffness' diagonal: a motion that contact alone resists
+NOTHING = (
+    1e-9  # singular value of the coarsest matrix over the stiffness' diagonal: a motion that contact alone resists
+)
 FACTORS = ("cholesky", "lu")
 PACKAGES = ("mumps", "superlu_dist")
 
@@ -87,7 +89,9 @@ def iterate(
     lower = _rows(matrix, n, None if conditions is None else conditions.lower)
     operator = matrix
     if n:
-        operator = PETSc.Mat().createNest([[matrix, PETSc.Mat().createTranspose(lower)], [lower, None]], comm=matrix.comm)
+        operator = PETSc.Mat().createNest(
+            [[matrix, PETSc.Mat().createTranspose(lower)], [lower, None]], comm=matrix.comm
+        )
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(operator)

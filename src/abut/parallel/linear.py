@@ -161,5 +161,3 @@ def displacement(answers: list[Answer], layout: Layout) -> Vector:
 
 def _processes(team: Team) -> str:
     return "1 process" if team.size == 1 else f"{team.size} processes"
-
-

@@ -13,6 +13,7 @@ from abut._core import padded_blocks
 from abut.discretization.supports import Supports
 from abut.parallel.partition import Layout
 from abut.parallel.team import Store, Team
+from abut.solvers.blocks import store_diagonal
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> t
     blocks = (slot // block)[new]
     place = block * (np.cumsum(new) - 1) + slot % block
     if block == 1 or not len(slot):
-        return blocks, reduced.tobsr((block, block))
+        return blocks, store_diagonal(reduced).tobsr((block, block))
     indptr, indices, values = padded_blocks(
         reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32, copy=False), reduced.data,
         place.astype(np.int32), block, len(blocks), 1.0,
@@ -91,15 +92,9 @@ def _own_rows(
     owner = np.searchsorted(starts, blocks, side="right") - 1
     shape = (size * int(starts[rank + 1] - starts[rank]), size * int(starts[-1]))
 
-    def part(of: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        rows = np.flatnonzero(owner == of)
-        count = np.diff(matrix.indptr)[rows]
-        entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
-        return np.repeat(blocks[rows], count), blocks[matrix.indices[entries]], matrix.data[entries]
-
-    away = [part(of) if of != rank else None for of in range(comm.size)]
-    pieces = [part(rank), *(piece for piece in comm.alltoall(away) if piece is not None)]
-    del away, matrix
+    away = [_rows(matrix, blocks, owner == of) if of != rank else None for of in range(comm.size)]
+    pieces = [_rows(matrix, blocks, owner == rank), *(piece for piece in comm.alltoall(away) if piece is not None)]
+    del away, matrix  # each is as large as the stiffness
     row, column = (np.concatenate([piece[k] for piece in pieces]) for k in (0, 1))
     data = np.concatenate([piece[2] for piece in pieces])
     del pieces
@@ -112,6 +107,16 @@ def _own_rows(
     count = np.bincount(row[order[new]] - starts[rank], minlength=shape[0] // size)
     indptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int32)
     return sp.bsr_matrix((summed, column[order[new]].astype(np.int32), indptr), shape=shape)
+
+
+def _rows(
+    matrix: Any, blocks: NDArray[np.int64], which: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Row, column and values of the entries in some block rows, numbered as in the whole."""
+    rows = np.flatnonzero(which)
+    count = np.diff(matrix.indptr)[rows]
+    entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+    return np.repeat(blocks[rows], count), blocks[matrix.indices[entries]], matrix.data[entries]
 
 
 def _local(matrix: Any) -> NDArray[np.float64]:

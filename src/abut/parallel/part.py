@@ -73,5 +73,3 @@ def stresses(
     return stress_sums(
         part.mesh, part.materials, temperatures, displacement, part.plane, nodal, part.integration
     )  # fmt: skip
-
-

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,7 @@ def owners(mesh: Mesh, team: Team) -> NDArray[np.int64]:
     bounds = np.linspace(0, mesh.n_cells, team.size + 1).astype(np.int64)
     rows = [
         (graph.indptr[a : b + 1] - graph.indptr[a], graph.indices[graph.indptr[a] : graph.indptr[b]])
-        for a, b in zip(bounds, bounds[1:])
+        for a, b in pairwise(bounds)
     ]
     return np.concatenate(team.each(_partition, mesh.n_cells, own=rows)).astype(np.int64)
 

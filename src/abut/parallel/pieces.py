@@ -17,54 +17,38 @@ from abut.io.grids import Grid, field_grid
 from abut.io.vtu import write_vtu
 from abut.mesh.mesh import Mesh
 from abut.model import Model
-from abut.parallel.partition import pieces
+from abut.parallel.partition import Piece
 from abut.state import Step
 
 if TYPE_CHECKING:
     from abut.parallel.team import Store, Team
 
-KEY = "mesh of the piece"
 VTK_TYPES = {"float64": "Float64", "int32": "Int32"}
 
 
 class Pieces:
-    """Writes the fields of a step (``abut.io.fields.WriteFields``) as a piece of each process.
-
-    The mesh goes to the processes with the first step, the fields of their points with each step."""
+    """Writes the fields of a step (``abut.io.fields.WriteFields``) as a piece of each process, its part of the cells."""
 
     def __init__(self, team: Team) -> None:
         self._team = team
-        self._points: list[NDArray[np.int64]] = []
 
     def __call__(self, folder: Path, model: Model, step: Step) -> None:
         """Raises InputError where a file cannot be written."""
-        if not self._points:
-            self._deal(model.mesh)
+        dealt: Sequence[Piece] = self._team.store["pieces"]
         listed = folder / list_name(step.number)
         listed.unlink(missing_ok=True)  # of an earlier run: it is never there beside pieces that are not its own
         own = [
-            (folder.absolute() / piece_name(step.number, process), step.displacement[points], step.stress[points])
-            for process, points in enumerate(self._points)
+            (folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points])
+            for process, p in enumerate(dealt)
         ]
         written = [result for result in self._team.each(write_piece, own=own) if result is not None]
         for result in written:
             if isinstance(result, InputError):
                 raise result
-        names = [piece_name(step.number, process) for process, points in enumerate(self._points) if len(points)]
+        names = [piece_name(step.number, process) for process, p in enumerate(dealt) if len(p.cells)]
         write_text(listed, listing(names, written[0]))
         (folder / whole_name(step.number)).unlink(missing_ok=True)
-        remove_pieces(folder, step.number, first=len(names))
-
-    def _deal(self, mesh: Mesh) -> None:
-        owner = np.sort(np.arange(mesh.n_cells) % self._team.size)  # in the order of the file; the last may have none
-        shares = pieces(mesh, owner, self._team.size)
-        self._points = [share.points for share in shares]
-        self._team.each(keep_mesh, own=[(share.mesh,) for share in shares])
-
-
-def keep_mesh(store: Store, mesh: Mesh) -> None:
-    """Keep this process's part of the mesh."""
-    store[KEY] = mesh
+        remove_pieces(folder, step.number, but=names)
 
 
 def write_piece(
@@ -74,7 +58,7 @@ def write_piece(
 
     Returns the arrays by place (name, type, components); None where it has no cells; the error where it cannot be
     written: one process must not raise while the others wait for it."""
-    mesh: Mesh = store[KEY]
+    mesh: Mesh = store["part"].mesh
     if mesh.n_cells == 0:
         return None
     grid = field_grid(mesh, displacement, stress)

@@ -27,7 +27,9 @@ class Team:
         """How many processes there are."""
         return int(self.comm.size)
 
-    def each(self, function: Callable[..., Any], *shared: Any, own: Sequence[tuple[Any, ...]] | None = None) -> list[Any]:
+    def each(
+        self, function: Callable[..., Any], *shared: Any, own: Sequence[tuple[Any, ...]] | None = None
+    ) -> list[Any]:
         """Call function(store, *shared, *own[rank]) on every process and return the results by rank; for process 0.
 
         function: of a module, as it travels by its name; store: a dict that each process keeps for itself."""

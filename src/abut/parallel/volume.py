@@ -23,7 +23,10 @@ from abut.parallel.team import Team
 from abut.solvers.active_set import System
 from abut.solvers.linear import Prepared, chosen
 
-LARGE = {1: 5_000, 2: 5_000}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
+LARGE = {
+    1: 5_000,
+    2: 5_000,
+}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,9 @@ class Spread:
         """As in ``Volume``."""
         dim = self.model.dim
         nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
-        own = [(nodal[piece.points].reshape(dim * len(piece.points), *displacement.shape[1:]),) for piece in self.pieces]
+        own = [
+            (nodal[piece.points].reshape(dim * len(piece.points), *displacement.shape[1:]),) for piece in self.pieces
+        ]
         total = np.zeros_like(nodal)
         for piece, force in zip(self.pieces, self.team.each(part.internal, own=own)):
             total[piece.points] += force.reshape(-1, *nodal.shape[1:])
@@ -108,4 +113,6 @@ class Spread:
 def deal_out(model: Model, team: Team) -> Spread:
     """Divide the cells of a model among the processes of a team."""
     owner = owners(model.mesh, team)
-    return Spread(model, team, owner, pieces(model.mesh, owner, team.size))
+    dealt = pieces(model.mesh, owner, team.size)
+    team.store["owner"], team.store["pieces"] = owner, dealt
+    return Spread(model, team, owner, dealt)

@@ -66,9 +66,10 @@ class System:
     load: (n_free, n_histories) by each history of the model, theory (F9); operator: all pairs stacked, (n, n_free).
     complete: adds to an active set that lets a body go the multipliers closest to contact; freed: says in words which
     body it lets go. step: (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by
-    ``accuracy`` or, where ``exact``, to rounding; accurate: of equilibrium and of closed gaps, where it is not. predict: (gap, pressure, active, tied) -> a guess at the final active
-    set, where one is cheap. compliance, opening: where displacements have been eliminated, the gaps that come of them, by
-    pressures (n, n) and by each history (n, n_histories).
+    ``accuracy`` or, where ``exact``, to rounding; accurate: of equilibrium and of closed gaps, where it is not. predict:
+    (gap, pressure, active, tied) -> a guess at the final active set, where one is cheap. compliance, opening: where
+    displacements have been eliminated, the gaps that come of them, by pressures (n, n) and by each history (n,
+    n_histories).
     """
 
     stiffness: Any

@@ -1,0 +1,142 @@
+"""Run under mpiexec: solve models by one process's own solvers and by all processes, and print how far they differ.
+
+mpiexec -n N python tests/mpi/agree.py CASE,CASE,... [OPTION OF PETSC ...]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent)]
+
+from abut.parallel.team import Team, lead  # noqa: E402
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+Cells = tuple[tuple[int, ...], tuple[int, ...]]
+
+
+def patch(lower: str, upper: str, cells: Cells = ((3, 3, 3), (4, 4, 3)), **contact: Any) -> Any:
+    """Two blocks in a general position, or in the plane, under pressure."""
+    from patch import model, two_blocks
+
+    return model(two_blocks(lower, upper, cells), **contact)
+
+
+def press(n: int = 4, cell: str = "hex8", height: float = 1.0, **options: Any) -> Any:
+    """A narrow block pressed askew into a wide one in two steps, heated and heavy: contact opens and closes."""
+    import abut
+    from abut.mesh.make import box, join
+
+    mesh = join(
+        {
+            "wide": box([0, 1], [0, 1], [0, height], cells=[n + 1, n + 1, round(n * height)], cell=cell),
+            "punch": box([0.3, 1.2], [0, 1], [height, 2 * height], cells=[n, n, round(n * height)], cell=cell),
+        }
+    )
+    soft = abut.LinearElastic(1.0, 0.3, density=1e-4, expansion=1e-4)
+    return abut.Model(
+        mesh,
+        [abut.Solid("wide", soft, temperature=3.0), abut.Solid("punch", abut.LinearElastic(10.0, 0.2))],
+        supports=[
+            abut.Support("wide.bottom", x=0.0, y=0.0, z=0.0),
+            abut.Support("punch.top", x=0.0, y=0.0, z=lambda x: -0.02 + 0.04 * (x[:, 0] - 0.3)),
+        ],
+        loads=[abut.Gravity((0.0, 0.0, -9.81), on="wide"), abut.Temperature("wide", lambda x: 2.0 * x[:, 0])],
+        contacts=[abut.Contact("wide.top", "punch.bottom", **options)],
+        solve=abut.SolveOptions(steps=2),
+    )
+
+
+def rigid() -> Any:
+    """A rigid tool, held in part by an equation that couples it with a node of the block."""
+    import abut
+    from test_rigid import pressed
+
+    model = pressed(x=0.0, y=-0.01)
+    near = model.mesh.nodes_of("block.top")[:2]
+    couple = abut.Equation((abut.Term(int(near[0]), "y", 1.0), abut.Term(int(near[1]), "y", -1.0)))
+    return replace(model, equations=[couple])
+
+
+def example(path: str) -> Any:
+    """Of the examples."""
+    from abut.job import load_job
+
+    return load_job(EXAMPLES / path).model
+
+
+CASES: dict[str, Callable[[], Any]] = {
+    "hex8": lambda: patch("hex8", "hex8"),
+    "tet10-hex20": lambda: patch("tet10", "hex20"),
+    "wedge6-tet4": lambda: patch("wedge6", "tet4"),
+    "hex27-wedge15": lambda: patch("hex27", "wedge15", ((2, 2, 2), (3, 3, 2))),
+    "plane": lambda: patch("quad8", "tri6", ((4, 3), (5, 4))),
+    "tied": lambda: patch("hex8", "tet4", kind="tied"),
+    "smooth": lambda: patch("hex8", "hex8", law="constraint-function"),
+    "node-to-segment": lambda: patch("hex8", "hex8", method="node-to-segment"),
+    "one-cell": lambda: patch("hex8", "hex8", ((1, 1, 1), (6, 6, 6))),
+    "two-cells": lambda: patch("hex8", "hex8", ((1, 1, 1), (1, 1, 1))),
+    "press": press,
+    "press-tet10": lambda: press(3, "tet10"),
+    "tower": lambda: press(3, height=4.0),
+    "larger": lambda: press(11),
+    "rigid": rigid,
+    "hertz-line": lambda: example("hertz-line/quad8.toml"),
+    "hertz-sphere": lambda: example("hertz-sphere/job.toml"),
+    "pin-lug": lambda: example("pin-lug/job.toml"),
+}
+
+
+def compare(name: str, team: Team) -> dict[str, Any]:
+    """Largest differences of displacement, pressure, stress and reactions, each over the largest value."""
+    import numpy as np
+
+    import abut
+
+    model = CASES[name]()
+    one = abut.solve(replace(model, solve=replace(model.solve, linear="direct")))
+    many = abut.solve(replace(model, solve=replace(model.solve, linear="petsc")), team=team)
+
+    def far(a: Any, b: Any) -> float:
+        return float(np.nanmax(np.abs(np.asarray(a) - b)) / np.nanmax(np.abs(a)))
+
+    worst: dict[str, float] = {"displacement": 0.0, "pressure": 0.0, "stress": 0.0, "reaction": 0.0}
+    for p, q in zip(one.steps, many.steps, strict=True):
+        on = list(p.reactions)
+        pairs = {
+            "displacement": (p.displacement, q.displacement),
+            "stress": (p.stress, q.stress),
+            "reaction": ([p.reactions[s] for s in on], [q.reactions[s] for s in on]),
+        }
+        for what, (a, b) in pairs.items():
+            worst[what] = max(worst[what], far(a, b))
+        for c, d in zip(p.contacts, q.contacts, strict=True):
+            worst["pressure"] = max(worst["pressure"], far(c.pressure, d.pressure))
+    owner = team.store["owner"]
+    sides = [[np.bincount(owner[s.cells], minlength=team.size).tolist() for s in (c.contactor, c.target)]
+             for c in many.contacts]  # fmt: skip
+    return {
+        "case": name,
+        **worst,
+        "converged": many.converged,
+        "solver": many.solver,
+        "note": many.notes[-1],
+        "cells": np.bincount(owner, minlength=team.size).tolist(),
+        "facets": sides,
+    }
+
+
+def run(team: Team) -> int:
+    """Print a line of JSON for each case."""
+    for name in sys.argv[1].split(","):
+        print(json.dumps(compare(name, team)), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(lead(run, sys.argv[2:]))

@@ -1,0 +1,90 @@
+"""What many processes find is what one does: the same model by the serial direct solver and by PETSc, tests/mpi/agree.py."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+PROGRAM = str(Path(__file__).with_name("agree.py"))
+# Equilibrium of iterations is met to 1e-11 of the forces; pressures follow from it with the condition of the interface,
+# some tens to hundreds. Factorisations are met to rounding.
+AGREE = 1e-8
+PATCHES = ["hex8", "tet10-hex20", "wedge6-tet4", "hex27-wedge15", "plane", "tied", "smooth", "node-to-segment"]
+
+
+def compared(mpirun: Run, n: int, cases: list[str], *options: str, timeout: float = 200.0) -> dict[str, dict[str, Any]]:
+    """The differences of some cases, which are checked."""
+    result = mpirun(n, ",".join(cases), *options, program=(PROGRAM,), timeout=timeout)
+    assert result.returncode == 0, result.stderr
+    found = {row["case"]: row for row in map(json.loads, result.stdout.splitlines())}
+    assert list(found) == cases
+    for row in found.values():
+        assert row["converged"]
+        assert max(row[what] for what in ("displacement", "pressure", "stress", "reaction")) < AGREE, row
+        assert len(row["cells"]) == n
+    return found
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_patch_tests_and_laws(mpirun: Run, n: int) -> None:
+    """Every cell type, law and method, on supports in a general position, by factorisation."""
+    for row in compared(mpirun, n, PATCHES).values():
+        assert "direct" in row["solver"]
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_multigrid(mpirun: Run, n: int) -> None:
+    """The same by iterations, with bodies that contact alone holds in one direction."""
+    for row in compared(mpirun, n, ["hex8", "tet10-hex20", "tied", "press", "larger"], "-pc_type", "gamg").values():
+        assert "gamg" in row["solver"]
+
+
+def test_other_solvers(mpirun: Run) -> None:
+    """hypre in place of GAMG, MINRES in place of FGMRES, by PETSc's options."""
+    cases = ["hex8", "press"]
+    assert all("hypre" in row["solver"] for row in compared(mpirun, 2, cases, "-pc_type", "hypre").values())
+    other = compared(mpirun, 2, cases, "-ksp_type", "minres")
+    flexible = compared(mpirun, 2, cases, "-pc_type", "gamg")
+    assert all(other[case]["note"] != flexible[case]["note"] for case in cases)  # not the same count of iterations
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_steps_loads_and_constraints(mpirun: Run, n: int) -> None:
+    """Two steps with weight and heat where contact opens; a rigid tool and an equation, which couple points of several
+    parts."""
+    compared(mpirun, n, ["press", "press-tet10", "rigid"])
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_parts_of_every_kind(mpirun: Run, n: int) -> None:
+    """Contact across processes, a process without facets of the contact, more processes than cells of a body, and than
+    cells."""
+    found = compared(mpirun, n, ["press", "tower", "one-cell", "two-cells"])
+    ((contactor, target),) = found["press"]["facets"]
+    assert sum(c + t > 0 for c, t in zip(contactor, target)) > 1
+    if n == 3:  # contact is in the middle of the tower: the parts at its ends have none
+        ((contactor, target),) = found["tower"]["facets"]
+        assert min(c + t for c, t in zip(contactor, target)) == 0
+    ((contactor, _),) = found["one-cell"]["facets"]
+    assert sum(contactor) == 1
+    assert min(found["two-cells"]["cells"]) == (0 if n == 3 else 1)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_examples(mpirun: Run, n: int) -> None:
+    """Hertz's line by the constraint function; the pin in its lug by multigrid, 39 569 unknowns."""
+    found = compared(mpirun, n, ["hertz-line", "pin-lug"], timeout=400.0)
+    assert "gamg" in found["pin-lug"]["solver"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("n", [2, 3])
+def test_hertz_sphere(mpirun: Run, n: int) -> None:
+    """47 051 unknowns with the constraint function, which takes a factorisation for every iteration."""
+    compared(mpirun, n, ["hertz-sphere"], timeout=900.0)
