@@ -27,7 +27,7 @@ from patch import model, two_blocks
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
-    *("force balance", "moment balance", "penetration", "tension", "complementarity", "oscillation"),
+    *("force balance", "moment balance", "penetration", "overlap", "tension", "complementarity", "oscillation"),
     *("facet moments", "bare area", "removed multipliers", "covered twice"),
 )
 

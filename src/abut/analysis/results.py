@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
 from abut.analysis.loads import Loads
+from abut.analysis.overlap import overlap
 from abut.discretization.bodies import RigidBody
-from abut.discretization.pairs import Pair
+from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
@@ -47,6 +48,10 @@ def step_result(
     by_supports = carried.reshape(-1, dim)
     temperatures = {solid.body: time * solid.temperature for solid in model.solids}
     materials = {solid.body: solid.material for solid in model.solids}
+    overlaps = []
+    for pair in system.pairs:
+        constant, varying = offsets(model, pair.contact)
+        overlaps.append(overlap(pair, nodal, constant + float(varying @ stage.weights)))
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
         if own.any():
@@ -74,13 +79,14 @@ def step_result(
         },
         load=loaded.resultant @ stage.weights,
         contacts=tuple(
-            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference)
-            for pair, pressure, gap, active, reference in zip(
+            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference, depth)
+            for pair, pressure, gap, active, reference, depth in zip(
                 system.pairs,
                 pressures,
                 system.split(system.gap(unknowns, stage.weights)),
                 system.split(unknowns.active),
                 _largest_pressures(len(system.pairs), before),
+                overlaps,
             )
         ),
         axisymmetric=model.mesh.axisymmetric,
@@ -109,6 +115,7 @@ def _contact(
     active: NDArray[np.bool_],
     residual: float,
     reference: float,
+    overlap: float,
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -142,7 +149,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, normal),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap),
     )
 
 

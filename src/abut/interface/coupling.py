@@ -45,6 +45,22 @@ class IntegrationPoints:
 
 
 @dataclass(frozen=True)
+class Sights:
+    """Corners and middles of all segments, and what the contactor sees from there (n of them).
+
+    facet, target_facet: (n,) of contactor and target; gap: (n,) geometric gap, length; normal: (n, dim) unit, from target to
+    contactor; own, other: (n, 9) shape functions of the contactor's and the target's facet, zero where padded.
+    """
+
+    facet: NDArray[np.int32]
+    target_facet: NDArray[np.int32]
+    gap: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    own: NDArray[np.float64]
+    other: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Coupling:
     """The integrated interface of one contact pair.
 
@@ -56,7 +72,7 @@ class Coupling:
     contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
     gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
     covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
-    points: the integration points where they were asked for.
+    points, sights: where they were asked for.
     Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the whole turn), ``gap`` times
     a length.
     """
@@ -71,6 +87,7 @@ class Coupling:
     covered: NDArray[np.float64]
     segments: NDArray[np.int32]
     points: IntegrationPoints | None = None
+    sights: Sights | None = None
 
 
 def default_reach(contactor: Surface, target: Surface) -> float:
@@ -97,6 +114,7 @@ def couple(
     reach: float | None = None,
     componentwise: bool = False,
     keep_points: bool = False,
+    sights: bool = False,
     adjust: float = 0.0,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
@@ -106,7 +124,8 @@ def couple(
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
-    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points.
+    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points; sights: keep corners
+            and middles of the segments, which takes a tenth of the time.
     adjust: gaps and overlaps up to this size count as zero, length.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
@@ -126,7 +145,7 @@ def couple(
     raw = couple_surfaces(
         contactor.points, contactor.kinds, contactor.nodes, normals,
         target.points, target.kinds, target.nodes, tables, order_c, order_t, split_c, split_t,
-        degree, not componentwise, keep_points, contactor.axisymmetric,
+        degree, not componentwise, keep_points, sights, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
         no_gap(contactor, target, adjust),
     )  # fmt: skip
@@ -144,6 +163,7 @@ def couple(
         covered=raw["covered"],
         segments=raw["segments"],
         points=_points(raw, contactor, target) if keep_points else None,
+        sights=_sights(raw) if sights else None,
     )
 
 
@@ -209,6 +229,11 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
     return IntegrationPoints(
         facet, target_facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator
     )
+
+
+def _sights(raw: dict[str, NDArray[Any]]) -> Sights:
+    names = ("contactor_facet", "target_facet", "gap", "normal", "contactor", "target")
+    return Sights(*(raw[f"sight_{name}"] for name in names))
 
 
 def surface_degree(surface: Surface) -> int:
