@@ -75,7 +75,7 @@ def test_a_sound_run_passes(name: str) -> None:
 
 
 def test_ties_are_checked_for_their_integration_only() -> None:
-    assert tuple(checks(abut.solve(pressed(4, 3, kind="tied")))) == ("model balance", "force balance", *CONTACT[6:])
+    assert tuple(checks(abut.solve(pressed(4, 3, kind="tied")))) == ("model balance", "force balance", *CONTACT[7:])
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 
 import abut
 from abut.analysis.overlap import overlap
+from abut.analysis.remedies import remedies
 from abut.discretization.pairs import pair
 from abut.discretization.supports import supports
 from abut.io.results import summary
@@ -122,7 +123,10 @@ def test_linear_pressure_on_coarse_quadratic_facets_is_found_out() -> None:
     assert approach(false) > 10.0 * fine
     assert [c.name for c in false.certificate if not c.passed] == ["overlap"]
     assert check(false).value > 10.0
-    assert not summary(false)["certificate"]["passed"]
+    written = summary(false)
+    assert not written["certificate"]["passed"]
+    assert written["remedies"][0].startswith("contact 'punch.bottom-plate.top': pressure = \"auto\"")
+    assert summary(sound)["remedies"] == []
 
 
 def test_the_verdict_does_not_depend_on_load_or_units() -> None:
@@ -163,6 +167,8 @@ def test_contact_narrower_than_a_facet() -> None:
     assert check(sound).passed
     assert false.contacts[0].max_pressure < 0.2 * fine
     assert not check(false).passed
+    assert "swap the sides" in remedies(false)[0].action
+    assert "refine" in remedies(false)[1].action
 
 
 def test_penetration_without_any_pressure_fails() -> None:
