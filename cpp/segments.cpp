@@ -228,11 +228,12 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
   if (!look(middle) || std::abs(gap) > reach || target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1] >= 0)
     return;
   if (sums.wants_sights()) {
+    const double start = eta[0]; // the integration begins at the same place with sights and without
     see();
     for (const double xi : {begin, end})
       if (look(xi))
         see();
-    look(middle);
+    eta[0] = start;
   }
   for (int q = 0; q < rule.n; ++q) {
     const double xi = begin + rule.t[q] * (end - begin);
@@ -309,10 +310,11 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
       if (gap != HUGE_VAL)
         sums.see(nc, nt, gap, normal);
     };
+    const double start[4] = {xi[0], xi[1], eta[0], eta[1]}; // integrals are the same with sights and without
     see(middle);
     for (int i = 0; i < polygon.size; ++i)
       see(corner[i]);
-    look(middle);
+    std::copy(start, start + 2, xi), std::copy(start + 2, start + 4, eta);
   }
   integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
     if (weight == 0)

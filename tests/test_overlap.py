@@ -1,4 +1,4 @@
-"""The certificate's overlap: the deepest point-wise penetration, exact for known motions, and the verdict on false results."""
+"""The certificate's overlap: the deepest penetration at a point, exact for known motions; false results are found out."""
 
 from __future__ import annotations
 

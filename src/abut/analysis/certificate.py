@@ -53,7 +53,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
         pressed_in = max(pair.compliance * largest / np.pi, FLAT)
         add("overlap", overlap / pressed_in, OVERLAP,
-            "largest penetration at a point, over the depth that the largest pressure presses in from facet to facet")  # fmt: skip
+            "largest penetration at a point, over what the largest pressure presses in between nodes")  # fmt: skip
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")

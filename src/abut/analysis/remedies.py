@@ -106,13 +106,13 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         if contact.pressure not in ("auto", highest):
             yield Remedy(
                 f'{where}pressure = "auto"',
-                f"{highest} has functions on less than the facets around a node, so that contact in one row of facets counts",
+                f"{highest} has functions that stand on fewer facets, so that contact on one row of facets counts",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
         if coarse > 1.0 / FINER:
             yield Remedy(
                 f'{where}swap the sides (contactor = "{contact.target}", target = "{contact.contactor}")',
-                f"the contactor's facets are {coarse:.2g} times the target's in size, and gaps are closed in the mean over them",
+                f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
             )
         yield Remedy(
             f"{where}refine both surfaces where they touch",

@@ -124,8 +124,8 @@ def couple(
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
     reach:  largest distance between the surfaces, length; see ``default_reach``.
-    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points; sights: keep corners
-            and middles of the segments, which takes a tenth of the time.
+    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
+            sights: keep corners and middles of the segments, which takes a tenth of the time.
     adjust: gaps and overlaps up to this size count as zero, length.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
