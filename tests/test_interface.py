@@ -152,7 +152,7 @@ def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
     least, all within the target's plane a gap of 0.1 away."""
     contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane)
     target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane)
-    target = replace(target, points=target.points + [0.0, 0.0, 0.1])
+    target = replace(target, points=target.points + np.array([0.0, 0.0, 0.1]))
     plain, seen = (couple(contactor, target, 1, sights=sights) for sights in (False, True))
     assert plain.sights is None
     assert (plain.operator != seen.operator).nnz == 0

@@ -102,11 +102,10 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
             continue
         where = f"contact '{contact.name}': "
         result = results[contact.name]
-        highest = f"P{surface_degree(result.contactor)}"
-        if contact.pressure not in ("auto", highest):
+        if contact.pressure == "P1" and surface_degree(result.contactor) == 2:
             yield Remedy(
                 f'{where}pressure = "auto"',
-                f"{highest} has functions that stand on fewer facets, so that contact on one row of facets counts",
+                "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
         if coarse > 1.0 / FINER:
@@ -116,8 +115,8 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
             )
         yield Remedy(
             f"{where}refine both surfaces where they touch",
-            "contact is narrower than two facets, or a chord of one curved surface cuts into the other: in the mean over facets "
-            "that stay open elsewhere the bodies come too close",
+            "contact is narrower than two facets, or chords of curved surfaces cut into each other; facets that stay open may "
+            "also be left out of the contactor",
         )
         if contact.law == LAWS[0] and contact.method == METHODS[0]:
             yield Remedy(
