@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from abut.discretization.pairs import pair
 from abut.discretization.supports import supports
 from abut.io.results import summary
 from abut.mesh.make import box, half_disc, join, rectangle
+from abut.report import write_report
 from abut.state import Check
 
 SIZE = 1.0 / 3.0  # of the contactor's facets in `stacked`
@@ -113,7 +115,7 @@ def approach(solution: abut.Solution) -> float:
     return -float(solution.displacement[solution.model.mesh.nodes_of("punch.top"), 1].mean())
 
 
-def test_linear_pressure_on_coarse_quadratic_facets_is_found_out() -> None:
+def test_linear_pressure_on_coarse_quadratic_facets_is_found_out(tmp_path: Path) -> None:
     """Every function of P1 also stands on a row that stays open: the mean gap is closed when the middle row has sunk in by
     ten times what the punch really yields, and all other checks pass. P2 has functions on the middle row alone."""
     fine = approach(abut.solve(strip(24)))
@@ -127,6 +129,9 @@ def test_linear_pressure_on_coarse_quadratic_facets_is_found_out() -> None:
     assert not written["certificate"]["passed"]
     assert written["remedies"][0].startswith("contact 'punch.bottom-plate.top': pressure = \"auto\"")
     assert summary(sound)["remedies"] == []
+    for solution, said in ((false, True), (sound, False)):
+        text = write_report(solution, tmp_path / "report.html").read_text(encoding="utf-8")
+        assert ("<h2>Surfaces overlap</h2>" in text) is said
 
 
 def test_the_verdict_does_not_depend_on_load_or_units() -> None:

@@ -115,8 +115,8 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
             )
         yield Remedy(
             f"{where}refine both surfaces where they touch",
-            "contact is narrower than two facets, or chords of curved surfaces cut into each other; facets that stay open may "
-            "also be left out of the contactor",
+            "contact is narrower than two facets, or chords of curved surfaces cut into each other; facets that stay open "
+            "may also be left out of the contactor",
         )
         if contact.law == LAWS[0] and contact.method == METHODS[0]:
             yield Remedy(
