@@ -36,7 +36,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                bool axisymmetric, double reach, double rounding) {
+                                bool sights, bool axisymmetric, double reach, double rounding) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   const SurfaceView target = view(points_t, kinds_t, nodes_t);
   contactor.normals = normals.data();
@@ -46,7 +46,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
-               {degree, vectorial, keep_points, axisymmetric, reach, rounding});
+               {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -72,6 +72,16 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
     out["point_contactor_facet"] = to_numpy(std::move(c.lists.points.contactor_facet));
     out["point_target_facet"] = to_numpy(std::move(c.lists.points.target_facet));
   }
+  if (sights) {
+    Sights &s = c.lists.sights;
+    const std::size_t n = s.gap.size();
+    out["sight_gap"] = to_numpy(std::move(s.gap));
+    out["sight_normal"] = to_numpy(std::move(s.normal), {n, dim});
+    out["sight_contactor"] = to_numpy(std::move(s.contactor), {n, 9});
+    out["sight_target"] = to_numpy(std::move(s.target), {n, 9});
+    out["sight_contactor_facet"] = to_numpy(std::move(s.contactor_facet));
+    out["sight_target_facet"] = to_numpy(std::move(s.target_facet));
+  }
   return out;
 }
 
@@ -85,7 +95,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"),
+        nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"),
         "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
 }
 

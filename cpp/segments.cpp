@@ -95,6 +95,17 @@ public:
     emit(lists_.target, other_, nodes, target_nodes_);
   }
   void count_segment() { ++out_.segments[f_]; }
+  bool wants_sights() const { return options_.sights; }
+  void see(const double *nc, const double *nt, double gap, const double *normal) {
+    Sights &s = lists_.sights;
+    s.gap.push_back(std::abs(gap) < options_.rounding ? 0 : gap);
+    s.normal.insert(s.normal.end(), normal, normal + dim_);
+    for (int k = 0; k < MAX_FACET_NODES; ++k) {
+      s.contactor.push_back(k < nodes_ ? nc[k] : 0);
+      s.target.push_back(k < target_nodes_ ? nt[k] : 0);
+    }
+    s.contactor_facet.push_back(std::int32_t(f_)), s.target_facet.push_back(std::int32_t(t_));
+  }
   void end(const std::int32_t *nodes) {
     if (out_.segments[f_] > 0)
       emit(lists_.contactor, own_, nodes, nodes_);
@@ -150,6 +161,11 @@ void append(IntegrationPoints &to, IntegrationPoints &from) {
   append(to.pressure, from.pressure), append(to.contactor, from.contactor), append(to.target, from.target);
   append(to.contactor_facet, from.contactor_facet), append(to.target_facet, from.target_facet);
 }
+void append(Sights &to, Sights &from) {
+  append(to.gap, from.gap), append(to.normal, from.normal);
+  append(to.contactor, from.contactor), append(to.target, from.target);
+  append(to.contactor_facet, from.contactor_facet), append(to.target_facet, from.target_facet);
+}
 
 // ---- 2D ------------------------------------------------------------------------------------------------------------
 
@@ -191,25 +207,38 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
   if (end - begin < 1e-14)
     return;
   bool counted = false;
-  double eta[2] = {0, 0};
-  for (int q = -1; q < rule.n; ++q) {
-    const double xi = q < 0 ? 0.5 * (begin + end) : begin + rule.t[q] * (end - begin);
-    double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3]; // the point seen from x: theory (S2)
+  double eta[2] = {0, 0}, x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], gap = 0;
+  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+  auto look = [&](double xi) { // the point seen from x: theory (S2)
     c.at(&xi, x, tangent, n);
     const double along[2] = {-n[1], n[0]};
     if (!project(t, x, along, along, eta))
-      return;
+      return false;
     t.at(eta, y, target_tangent);
-    const double gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
-    if (q < 0) {
-      // The middle decides whether the two face each other within reach.
-      const double outward = target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1];
-      if (outward >= 0 || std::abs(gap) > reach)
-        return;
-      continue;
-    }
-    double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+    gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
     c.values(&xi, nc, d), t.values(eta, nt, d);
+    return true;
+  };
+  auto see = [&] {
+    const double normal[2] = {-n[0], -n[1]};
+    sums.see(nc, nt, gap, normal);
+  };
+  // The middle decides whether the two face each other within reach.
+  const double middle = 0.5 * (begin + end);
+  if (!look(middle) || std::abs(gap) > reach || target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1] >= 0)
+    return;
+  if (sums.wants_sights()) {
+    const double start = eta[0]; // the integration begins at the same place with sights and without
+    see();
+    for (const double xi : {begin, end})
+      if (look(xi))
+        see();
+    eta[0] = start;
+  }
+  for (int q = 0; q < rule.n; ++q) {
+    const double xi = begin + rule.t[q] * (end - begin);
+    if (!look(xi))
+      return;
     double length = std::sqrt(dot(tangent[0], tangent[0], 2));
     if (axisymmetric)
       length *= 2 * std::numbers::pi * x[0];
@@ -275,6 +304,18 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
   if (dot(facing, n, 3) >= 0)
     return;
   sums.count_segment();
+  if (sums.wants_sights()) {
+    auto see = [&](Point2 p) {
+      const double gap = look(p), normal[3] = {-n[0], -n[1], -n[2]};
+      if (gap != HUGE_VAL)
+        sums.see(nc, nt, gap, normal);
+    };
+    const double start[4] = {xi[0], xi[1], eta[0], eta[1]}; // integrals are the same with sights and without
+    see(middle);
+    for (int i = 0; i < polygon.size; ++i)
+      see(corner[i]);
+    std::copy(start, start + 2, xi), std::copy(start + 2, start + 4, eta);
+  }
   integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
     if (weight == 0)
       return;
@@ -382,7 +423,7 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
   });
   for (Lists &part : lists) {
     append(out.lists.contactor, part.contactor), append(out.lists.target, part.target);
-    append(out.lists.points, part.points);
+    append(out.lists.points, part.points), append(out.lists.sights, part.sights);
   }
   return out;
 }

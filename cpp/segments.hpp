@@ -38,6 +38,7 @@ struct Options {
   int degree;        // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
   bool vectorial;    // couple along the normal (dim values an entry) or componentwise (1 value an entry)
   bool keep_points;  // also return every integration point
+  bool sights;       // also return where each segment's corners and middle see the target
   bool axisymmetric; // coordinates are (r, z): integrals run round the axis
   double reach;      // largest distance between the surfaces, either sign
   double rounding;   // gaps below this are rounding errors of the coordinates: none
@@ -54,9 +55,16 @@ struct IntegrationPoints {
   std::vector<std::int32_t> contactor_facet, target_facet;
 };
 
+// Points of the contactor and what they see: gap, normal from target to contactor, shape functions of both sides.
+struct Sights {
+  std::vector<double> gap, normal, contactor, target; // n, n dim, 9 n, 9 n
+  std::vector<std::int32_t> contactor_facet, target_facet;
+};
+
 struct Lists {
   Entries contactor, target;
   IntegrationPoints points;
+  Sights sights;
 };
 
 struct Coupling {

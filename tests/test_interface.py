@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -143,3 +144,22 @@ def test_shape_functions(cell) -> None:
 def test_quadratic_pressure_needs_quadratic_facets() -> None:
     with pytest.raises(InputError, match="needs quadratic facets"):
         resolve("P2", grid("quad4", (1, 1)))
+
+
+@pytest.mark.parametrize(("kc", "kt"), [("tri3", "quad4"), ("quad8", "tri6"), ("quad9", "quad8")])
+def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
+    """Looking at corners first leaves every integral the same bit by bit; each segment has its middle and three corners at
+    least, all within the target's plane a gap of 0.1 away."""
+    contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane)
+    target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane)
+    target = replace(target, points=target.points + np.array([0.0, 0.0, 0.1]))
+    plain, seen = (couple(contactor, target, 1, sights=sights) for sights in (False, True))
+    assert plain.sights is None
+    assert (plain.operator != seen.operator).nnz == 0
+    np.testing.assert_array_equal(plain.gap, seen.gap)
+    at = seen.sights
+    assert at is not None
+    assert len(at.gap) >= 4 * seen.segments.sum()
+    assert at.gap == pytest.approx(0.1, rel=1e-12)
+    assert at.own.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
+    assert at.other.sum(axis=1) == pytest.approx(1.0, rel=1e-12)

@@ -16,6 +16,8 @@ from abut.state import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent
 PENETRATION = 1e-2  # over the facet size; the constraint function lets pressure points give way by about p h / (30 E)
+OVERLAP = 1.0  # over theory (L10); docs/verification/README.md has what was seen
+FLAT = 1e-9  # of the facet size: overlaps below are none, however small the pressure
 TENSION = 0.05  # over the largest pressure
 COMPLEMENTARITY = 1e-6
 OSCILLATION = 0.06
@@ -29,13 +31,13 @@ CLOSED = 1e-3  # pressure over the largest from which on a node counts as in con
 
 
 def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
-                residual: float, reference: float = 0.0) -> tuple[Check, ...]:  # fmt: skip
+                residual: float, reference: float = 0.0, overlap: float = 0.0) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
     nodal: (n_facets, 9) pressure at the facets' nodes; penetration: largest, a length;
     residual: of the contact law, relative to the largest pressure; reference: largest
-    pressure of the steps before.
+    pressure of the steps before; overlap: largest at a point, over the facet size.
     """
     name = pair.contact.name
     largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), NOTHING * reference, 1e-300)
@@ -49,6 +51,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     if not pair.tied:
         add("moment balance", moment, BALANCE, "the same of moments, over force times extent")
         add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
+        pressed_in = max(pair.compliance * largest / np.pi, FLAT)
+        add("overlap", overlap / pressed_in, OVERLAP,
+            "largest penetration at a point, over what the largest pressure presses in between nodes")  # fmt: skip
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")

@@ -1,4 +1,4 @@
-"""Where a step did not converge, and what is most likely to help there."""
+"""What is most likely to help where a step did not converge, or where surfaces overlap."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.interface.coupling import surface_degree
 from abut.interface.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact
@@ -63,9 +64,10 @@ def unsettled(step: Step) -> list[Place]:
 
 
 def remedies(solution: Solution) -> tuple[Remedy, ...]:
-    """Three remedies for a run that did not converge, the most likely first; none for one that did."""
+    """Three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces that
+    overlap; else none."""
     if solution.converged:
-        return ()
+        return tuple(_by_overlap(solution))[:COUNT]
     every = [*_by_residual(solution), *_by_contact(solution), *_by_course(solution), *_always(solution)]
     first = {remedy.action: remedy for remedy in reversed(every)}
     return tuple(first[action] for action in dict.fromkeys(remedy.action for remedy in every))[:COUNT]
@@ -89,6 +91,38 @@ def _by_residual(solution: Solution) -> Iterator[Remedy]:
         "add supports that hold every body by themselves",
         "what contact alone holds is lost while the contact changes",
     )
+
+
+def _by_overlap(solution: Solution) -> Iterator[Remedy]:
+    """Contact narrower than the pressure functions it is averaged over: theory (L10)."""
+    failed = {check.contact for check in solution.certificate if check.name == "overlap" and not check.passed}
+    results = {c.name: c for c in solution.contacts}
+    for contact in solution.model.contacts:
+        if contact.name not in failed:
+            continue
+        where = f"contact '{contact.name}': "
+        result = results[contact.name]
+        if contact.pressure == "P1" and surface_degree(result.contactor) == 2:
+            yield Remedy(
+                f'{where}pressure = "auto"',
+                "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
+            )
+        coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
+        if coarse > 1.0 / FINER:
+            yield Remedy(
+                f'{where}swap the sides (contactor = "{contact.target}", target = "{contact.contactor}")',
+                f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
+            )
+        yield Remedy(
+            f"{where}refine both surfaces where they touch",
+            "contact is narrower than two facets, or chords of curved surfaces cut into each other; facets that stay open "
+            "may also be left out of the contactor",
+        )
+        if contact.law == LAWS[0] and contact.method == METHODS[0]:
+            yield Remedy(
+                f'{where}law = "constraint-function"',
+                "it looks at points and errs the other way (too stiff): the truth lies between",
+            )
 
 
 def _by_contact(solution: Solution) -> Iterator[Remedy]:

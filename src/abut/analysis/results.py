@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
 from abut.analysis.loads import Loads
+from abut.analysis.overlap import overlap
 from abut.analysis.volume import Volume
 from abut.discretization.bodies import RigidBody
-from abut.discretization.pairs import Pair
+from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import carry_to_target, facet_node_values
@@ -44,6 +45,10 @@ def step_result(
     nodal = displacement.reshape(-1, dim)
     carried = reaction if held.links is None else reaction - held.links.forces(reaction)
     by_supports = carried.reshape(-1, dim)
+    overlaps = []
+    for pair in system.pairs:
+        constant, varying = offsets(model, pair.contact)
+        overlaps.append(overlap(pair, nodal, constant + float(varying @ stage.weights)))
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
         if own.any():
@@ -63,13 +68,14 @@ def step_result(
         },
         load=loaded.resultant @ stage.weights,
         contacts=tuple(
-            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference)
-            for pair, pressure, gap, active, reference in zip(
+            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference, depth)
+            for pair, pressure, gap, active, reference, depth in zip(
                 system.pairs,
                 pressures,
                 system.split(system.gap(unknowns, stage.weights)),
                 system.split(unknowns.active),
                 _largest_pressures(len(system.pairs), before),
+                overlaps,
             )
         ),
         axisymmetric=model.mesh.axisymmetric,
@@ -98,6 +104,7 @@ def _contact(
     active: NDArray[np.bool_],
     residual: float,
     reference: float,
+    overlap: float,
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -131,7 +138,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, normal),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap),
     )
 
 

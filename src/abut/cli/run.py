@@ -213,6 +213,8 @@ def _failure(solution: Solution, directory: Path) -> str:
 
 
 def _print_result(solution: Solution, directory: Path) -> None:
+    from abut.analysis.remedies import remedies
+
     for contact in solution.contacts:
         force = ", ".join(f"{value:.6g}" for value in contact.force)
         print(
@@ -223,6 +225,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
+    for remedy in remedies(solution):
+        print(f"  try {remedy}")
     print(
         f"{sum(solution.timings.values()):.1f} s; results in {directory}: open report.html in a browser, *.pvd in ParaView"
     )

@@ -130,7 +130,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         space = reduce(space, coupling, moved)
         rows = (space.transfer.T @ coupling.operator).tocsr()
         free = (rows @ held.free).tocsr()
-    constant, varying = _offsets(model, contact)
+    constant, varying = offsets(model, contact)
     return Pair(
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
@@ -148,6 +148,8 @@ def _couple(
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
+        cut = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
+        coupling = replace(coupling, sights=cut.sights)
     else:
         name, degree = resolve(contact.pressure, contactor)
         tied = contact.kind == "tied"
@@ -159,6 +161,7 @@ def _couple(
             points=contact.integration.points,
             componentwise=tied,
             keep_points=contact.law == "constraint-function" and not tied,
+            sights=not tied,
             reach=reach,
             adjust=contact.adjust,
         )
@@ -171,7 +174,7 @@ def _couple(
     return coupling, space
 
 
-def _offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
+def offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
     """The offset that is there from the start, and that of each history (n_histories,)."""
     varying = np.zeros(len(model.histories))
     if contact.amplitude is None:

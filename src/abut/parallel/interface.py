@@ -10,8 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.interface.coupling import Coupling, added, default_reach, no_gap
+from abut.interface.coupling import Coupling, default_reach, no_gap
 from abut.interface.coupling import couple as couple_here
+from abut.interface.parts import added
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
 

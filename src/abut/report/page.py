@@ -173,6 +173,8 @@ def _trouble(solution: Solution) -> str:
             f"<section><h2>Not converged</h2><p>Where:</p>{_list(where)}<p>What to try, the most likely first:</p>"
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
         )
+    elif advice := remedies(solution):
+        text += f"<section><h2>Surfaces overlap</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
     if solution.ignored:
         text += f"<section><h2>Left out of the deck, as asked</h2>{_list(solution.ignored)}</section>"
     return text
