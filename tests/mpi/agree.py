@@ -117,6 +117,8 @@ def compare(name: str, team: Team) -> dict[str, Any]:
             worst[what] = max(worst[what], far(a, b))
         for c, d in zip(p.contacts, q.contacts, strict=True):
             worst["pressure"] = max(worst["pressure"], far(c.pressure, d.pressure))
+            assert [check.passed for check in c.checks] == [check.passed for check in d.checks]
+            assert (c.segments, c.active) == (d.segments, d.active)
     owner = team.store["owner"]
     sides = [[np.bincount(owner[s.cells], minlength=team.size).tolist() for s in (c.contactor, c.target)]
              for c in many.contacts]  # fmt: skip
