@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut._core import shape_functions
+from abut._core import shape_functions, smallest_determinants
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.facets import bodies_at, facet_keys, number_keys
-from abut.mesh.integrals import determinants
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 
@@ -118,20 +117,15 @@ def _check_cells(mesh: Mesh) -> None:
             continue
         xi, _ = stiffness_rule(block.kind)
         _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
-        x = mesh.points[block.nodes]
-        size = np.ptp(x, axis=1).max(axis=1)[:, None, None]
-        # Cells of size one: the test has no unit and cannot overflow.
-        x = (x - x[:, :1]) / np.where(size > 0.0, size, 1.0)
-        smallest = np.full(len(x), np.inf)
-        for own in derivatives:  # a point at a time keeps memory low
-            with np.errstate(all="ignore"):  # absurd coordinates give no number, which fails below
-                smallest = np.minimum(smallest, determinants(x.transpose(0, 2, 1) @ own))
+        nodes = np.ascontiguousarray(block.nodes, dtype=np.int32)
+        # Absurd coordinates give no number, which fails below.
+        smallest = smallest_determinants(np.ascontiguousarray(mesh.points), nodes, derivatives)
         bad = np.flatnonzero(~(smallest > DEGENERATE))
         if len(bad):
             inverted = bool((smallest[bad] < -DEGENERATE).all())
             cure = (
                 "their nodes run the wrong way round: reverse them"
-                if inverted and len(bad) == len(x)
+                if inverted and len(bad) == len(nodes)
                 else "improve the mesh there (finer, or straight-sided near curved boundaries)"
             )
             raise InputError(

@@ -1,0 +1,57 @@
+// Coordinates of a cell, and gradients of its shape functions at a point of the reference cell.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace abut {
+
+// Rows own[0] .. own[n - 1] of values (any, width) one after the other.
+inline void gather(const double *values, const std::int32_t *own, std::size_t n, std::size_t width, double *to) {
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t a = 0; a < width; ++a)
+      to[i * width + a] = values[std::size_t(own[i]) * width + a];
+}
+
+template <int dim> struct Jacobian {
+  double cofactor[dim][dim], det; // cofactor / det is the inverse: reference coordinates by position
+};
+
+// Of a cell with nodes at x (n, dim), from the reference derivatives d (n, dim) of its shape functions.
+template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const double *d) {
+  double j[dim][dim] = {{0}};
+  for (std::size_t i = 0; i < n; ++i)
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        j[a][b] += x[i * dim + a] * d[i * dim + b];
+  if constexpr (dim == 2)
+    return {{{j[1][1], -j[0][1]}, {-j[1][0], j[0][0]}}, j[0][0] * j[1][1] - j[0][1] * j[1][0]};
+  else {
+    Jacobian<dim> result;
+    auto &c = result.cofactor;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+        c[b][a] = j[a1][b1] * j[a2][b2] - j[a1][b2] * j[a2][b1];
+      }
+    result.det = j[0][0] * c[0][0] + j[0][1] * c[1][0] + j[0][2] * c[2][0];
+    return result;
+  }
+}
+
+// Gradients (n, dim) of the shape functions; returns the determinant.
+template <int dim> double gradients(const double *x, std::size_t n, const double *d, double *gradient) {
+  Jacobian<dim> j = jacobian<dim>(x, n, d);
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      j.cofactor[a][b] /= j.det;
+  for (std::size_t i = 0; i < n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      double sum = 0;
+      for (int b = 0; b < dim; ++b)
+        sum += d[i * dim + b] * j.cofactor[b][a];
+      gradient[i * dim + a] = sum;
+    }
+  return j.det;
+}
+
+} // namespace abut
