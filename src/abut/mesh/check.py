@@ -75,14 +75,14 @@ def _check_surfaces(mesh: Mesh) -> None:
         exists = (cells >= 0) & (cells < mesh.n_cells)
         if not exists.all() or ((local < 0) | (local >= facets[cells])).any():
             raise InputError(f"mesh: surface '{name}' has facets of cells that do not exist; write the mesh again")
-        _, where, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
+        _, where, count = np.unique(_code(rows), return_index=True, return_counts=True)
         if (count > 1).any():
             raise InputError(
                 f"mesh: surface '{name}' lists facets of cells {_some(cells[where[count > 1]])} twice; list each once"
             )
     if not mesh.surfaces:
         return
-    every = np.unique(np.concatenate(list(mesh.surfaces.values())), axis=0)
+    every = np.concatenate(list(mesh.surfaces.values()))
     keys, owners = facet_keys(mesh, mesh.facets(every).node_ids)
     (facet,) = number_keys(keys)
     shared = np.bincount(facet)[facet] > 1

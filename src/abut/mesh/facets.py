@@ -2,11 +2,35 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
 from abut.mesh.mesh import Mesh
+
+
+def row_codes(rows: NDArray[Any]) -> NDArray[np.int64]:
+    """A number for each row (n, k) of whole numbers >= -1: equal where the rows are, and in the rows' order. To sort and
+    compare these is several times faster than the rows."""
+    values = rows.astype(np.int64) + 1
+    base = int(values.max(initial=0)) + 1
+    code, size = np.zeros(len(values), np.int64), 1
+    for column in values.T:
+        if size * base > np.iinfo(np.int64).max:
+            code = np.unique(code, return_inverse=True)[1]
+            size = int(code.max(initial=0)) + 1
+        code, size = code * base + column, size * base
+    return code
+
+
+def single(codes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Which numbers (n,) no other one equals, in their order."""
+    order = np.argsort(codes)
+    new = np.ones(len(order) + 1, dtype=bool)
+    new[1:-1] = np.diff(codes[order]) != 0
+    return order[new[:-1] & new[1:]]
 
 
 def corner_keys(corners: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -35,8 +59,8 @@ def facet_keys(mesh: Mesh, among: NDArray[np.int64]) -> tuple[NDArray[np.int64],
 
 def number_keys(*keys: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     """Each array of keys as numbers, equal where the keys are equal."""
-    _, inverse = np.unique(np.concatenate(keys), axis=0, return_inverse=True)
-    return np.split(inverse.ravel(), np.cumsum([len(k) for k in keys])[:-1])
+    _, inverse = np.unique(row_codes(np.concatenate(keys)), return_inverse=True)
+    return np.split(inverse, np.cumsum([len(k) for k in keys])[:-1])
 
 
 def bodies_at(mesh: Mesh, cells: NDArray[np.int64]) -> list[str]:

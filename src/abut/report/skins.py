@@ -12,6 +12,7 @@ from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, CellType
 from abut.errors import InputError
 from abut.interface.geometry import area_vectors, nodal_normals
+from abut.mesh.facets import row_codes, single
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
@@ -110,11 +111,7 @@ def _outside(mesh: Mesh, body: str) -> NDArray[np.int64]:
             corners = np.sort(nodes[:, own[: CELLS[facet].corners]], axis=1)
             keys.append(corners[:, :3] if corners.shape[1] == 3 else corners[:, 1:])  # three of four tell which
             rows.append(np.stack([cells, np.full(len(cells), local)], axis=1))
-    key = np.concatenate(keys)
-    order = np.lexsort(key.T)
-    same = (np.diff(key[order], axis=0) == 0).all(axis=1)
-    twice = np.concatenate([[False], same]) | np.concatenate([same, [False]])
-    return np.concatenate(rows).astype(np.int64)[order[~twice]]
+    return np.concatenate(rows).astype(np.int64)[single(row_codes(np.concatenate(keys)))]
 
 
 def _edges(mesh: Mesh, faces: list[tuple[str, NDArray[np.int64]]]) -> tuple[NDArray[np.int64], int]:
@@ -130,9 +127,10 @@ def _edges(mesh: Mesh, faces: list[tuple[str, NDArray[np.int64]]]) -> tuple[NDAr
             middles.append(nodes[:, cell.corners + i] if cell.degree == 2 else np.full(len(nodes), -1))
             normals.append(normal)
     pair, middle, side = np.concatenate(ends), np.concatenate(middles), np.concatenate(normals)
-    order = np.lexsort(pair.T)
+    code = row_codes(pair)
+    order = np.argsort(code, kind="stable")
     pair, middle, side = pair[order], middle[order], side[order]
-    first = np.concatenate([[True], (np.diff(pair, axis=0) != 0).any(axis=1)])[: len(pair)]
+    first = np.concatenate([[True], np.diff(code[order]) != 0])[: len(pair)]
     count = np.diff(np.append(np.flatnonzero(first), len(pair)))
     at = np.flatnonzero(first)
     smooth = count == 2
