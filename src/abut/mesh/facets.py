@@ -49,11 +49,12 @@ def facet_keys(mesh: Mesh, among: NDArray[np.int64]) -> tuple[NDArray[np.int64],
     wanted[among] = True
     keys, rows = [np.empty((0, 4), np.int64)], [np.empty((0, 2), np.int64)]
     for block, first in zip(mesh.blocks, mesh.starts):
+        near = np.flatnonzero(wanted[block.nodes].any(axis=1))
         for local, (kind, nodes) in enumerate(CELLS[block.kind].facets):
-            corners = block.nodes[:, nodes[: CELLS[kind].corners]].astype(np.int64)
+            corners = block.nodes[near][:, nodes[: CELLS[kind].corners]].astype(np.int64)
             hit = np.flatnonzero(wanted[corners].all(axis=1))
             keys.append(corner_keys(corners[hit]))
-            rows.append(np.stack([first + hit, np.full(len(hit), local)], axis=1))
+            rows.append(np.stack([first + near[hit], np.full(len(hit), local)], axis=1))
     return np.concatenate(keys), np.concatenate(rows).astype(np.int64)
 
 
