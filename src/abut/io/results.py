@@ -184,7 +184,7 @@ def _log(solution: Solution) -> str:
 
 
 def _write_grid(path: Path, grid: Grid) -> None:
-    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
+    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
 
 
 def _write_collection(folder: Path, stem: str, solution: Solution) -> None:
