@@ -50,6 +50,7 @@ public:
   T &operator[](std::size_t i) { return memory.get()[i]; }
   T *data() { return memory.get(); }
   std::size_t size() const { return count; }
+  void shorten(std::size_t n) { count = std::min(count, n); } // what is beyond and was never written to costs nothing
   T *release() { return memory.release(); }
 
 private:

@@ -26,7 +26,7 @@ struct Stresses {
 template <int dim, bool axisymmetric>
 static void add_stress(const Stresses &in, double *total, double *count, std::int32_t first, std::int32_t last) {
   const std::size_t n = in.n;
-  double x[MAX_NODES * dim], u[MAX_NODES * dim], change[MAX_NODES], gradient[MAX_NODES * dim];
+  double x[MAX_NODES * dim], u[MAX_NODES * dim], change[MAX_NODES];
   std::vector<double> stress(in.rule * 6), thermal(in.rule), volume(in.rule);
   for (std::size_t c = 0; c < in.cells; ++c) {
     const std::int32_t *own = in.nodes + c * n;
@@ -38,12 +38,14 @@ static void add_stress(const Stresses &in, double *total, double *count, std::in
     const double *constants = in.constants + 6 * c, lambda = constants[0], mu = constants[1];
     for (std::size_t q = 0; q < in.rule; ++q) {
       const double *shape = in.shapes + q * n;
-      double det = gradients<dim>(x, n, in.derivatives + q * n * dim, gradient);
-      double slope[3][3] = {{0}}, warm = constants[4], r = 0, outward = 0;
+      const auto j = jacobian<dim>(x, n, in.derivatives + q * n * dim);
+      double along[dim][dim], slope[3][3] = {{0}}, det = j.det, warm = constants[4], r = 0, outward = 0;
+      reference_slope<dim>(u, n, in.derivatives + q * n * dim, along);
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          for (int k = 0; k < dim; ++k)
+            slope[a][b] += along[a][k] * j.cofactor[k][b] / j.det;
       for (std::size_t i = 0; i < n; ++i) {
-        for (int a = 0; a < dim; ++a)
-          for (int b = 0; b < dim; ++b)
-            slope[a][b] += u[i * dim + a] * gradient[i * dim + b];
         warm += shape[i] * change[i];
         if constexpr (axisymmetric)
           r += shape[i] * x[i * dim], outward += shape[i] * u[i * dim];

@@ -1,4 +1,4 @@
-// Coordinates of a cell, and gradients of its shape functions at a point of the reference cell.
+// Nodal values of a cell, and their slopes at a point of the reference cell.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,17 +12,28 @@ inline void gather(const double *values, const std::int32_t *own, std::size_t n,
       to[i * width + a] = values[std::size_t(own[i]) * width + a];
 }
 
+// slope[a][b]: change of component a of nodal values (n, dim) along reference coordinate b, from the reference
+// derivatives d (n, dim) of the shape functions.
+template <int dim>
+void reference_slope(const double *values, std::size_t n, const double *d, double (&slope)[dim][dim]) {
+  double sum[dim][dim] = {{0}};
+  for (std::size_t i = 0; i < n; ++i)
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        sum[a][b] += values[i * dim + a] * d[i * dim + b];
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      slope[a][b] = sum[a][b];
+}
+
 template <int dim> struct Jacobian {
   double cofactor[dim][dim], det; // cofactor / det is the inverse: reference coordinates by position
 };
 
-// Of a cell with nodes at x (n, dim), from the reference derivatives d (n, dim) of its shape functions.
+// Of a cell with nodes at x (n, dim).
 template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const double *d) {
-  double j[dim][dim] = {{0}};
-  for (std::size_t i = 0; i < n; ++i)
-    for (int a = 0; a < dim; ++a)
-      for (int b = 0; b < dim; ++b)
-        j[a][b] += x[i * dim + a] * d[i * dim + b];
+  double j[dim][dim];
+  reference_slope<dim>(x, n, d, j);
   if constexpr (dim == 2)
     return {{{j[1][1], -j[0][1]}, {-j[1][0], j[0][0]}}, j[0][0] * j[1][1] - j[0][1] * j[1][0]};
   else {
