@@ -69,6 +69,7 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(Buffer<T> &&buffer) {
 }
 
 void bind_cells(nb::module_ &m);
+void bind_facets(nb::module_ &m);
 void bind_solids(nb::module_ &m);
 void bind_stress(nb::module_ &m);
 void bind_interface(nb::module_ &m);

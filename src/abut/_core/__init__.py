@@ -13,6 +13,7 @@ from abut._core._core import (
     plan_facets,
     principal_submatrix,
     shape_functions,
+    single_rows,
     smallest_determinants,
 )
 
@@ -27,5 +28,6 @@ __all__ = [
     "plan_facets",
     "principal_submatrix",
     "shape_functions",
+    "single_rows",
     "smallest_determinants",
 ]

@@ -12,7 +12,8 @@ from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, CellType
 from abut.errors import InputError
 from abut.interface.geometry import area_vectors, nodal_normals
-from abut.mesh.facets import row_codes, single
+from abut.mesh.exterior import outside_of_body
+from abut.mesh.facets import row_codes
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
@@ -86,7 +87,7 @@ def skin(mesh: Mesh, body: str, without: NDArray[np.int64]) -> Skin:
     if mesh.dim == 2:
         faces = [(kind, nodes.astype(np.int64)) for kind, nodes, _ in mesh.cells_of(body)]
     else:
-        rows = _outside(mesh, body)
+        rows = outside_of_body(mesh, body)
         width = 1 + max(int(rows[:, 1].max(initial=0)), int(without[:, 1].max(initial=0)) if len(without) else 0)
         kept = ~np.isin(rows @ [width, 1], without @ [width, 1]) if len(without) else np.ones(len(rows), dtype=bool)
         surface = mesh.facets(rows[kept])
@@ -101,17 +102,6 @@ def skin(mesh: Mesh, body: str, without: NDArray[np.int64]) -> Skin:
     seen[every] = seen[edges] = True
     number = np.cumsum(seen) - 1
     return Skin(np.flatnonzero(seen), number[every], number[edges], features)
-
-
-def _outside(mesh: Mesh, body: str) -> NDArray[np.int64]:
-    """Rows (cell, local facet) of the facets that only one cell of the body has."""
-    keys, rows = [], []
-    for kind, nodes, cells in mesh.cells_of(body):
-        for local, (facet, own) in enumerate(CELLS[kind].facets):
-            corners = np.sort(nodes[:, own[: CELLS[facet].corners]], axis=1)
-            keys.append(corners[:, :3] if corners.shape[1] == 3 else corners[:, 1:])  # three of four tell which
-            rows.append(np.stack([cells, np.full(len(cells), local)], axis=1))
-    return np.concatenate(rows).astype(np.int64)[single(row_codes(np.concatenate(keys)))]
 
 
 def _edges(mesh: Mesh, faces: list[tuple[str, NDArray[np.int64]]]) -> tuple[NDArray[np.int64], int]:
