@@ -39,12 +39,14 @@ static void add_stress(const Stresses &in, double *total, double *count, std::in
     for (std::size_t q = 0; q < in.rule; ++q) {
       const double *shape = in.shapes + q * n;
       const auto j = jacobian<dim>(x, n, in.derivatives + q * n * dim);
-      double along[dim][dim], slope[3][3] = {{0}}, det = j.det, warm = constants[4], r = 0, outward = 0;
+      double inverse[dim][dim], along[dim][dim], slope[3][3] = {{0}}, det = j.det, warm = constants[4], r = 0,
+                                                 outward = 0;
+      j.invert(inverse);
       reference_slope<dim>(u, n, in.derivatives + q * n * dim, along);
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           for (int k = 0; k < dim; ++k)
-            slope[a][b] += along[a][k] * j.cofactor[k][b] / j.det;
+            slope[a][b] += along[a][k] * inverse[k][b];
       for (std::size_t i = 0; i < n; ++i) {
         warm += shape[i] * change[i];
         if constexpr (axisymmetric)

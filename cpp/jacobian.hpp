@@ -27,7 +27,14 @@ void reference_slope(const double *values, std::size_t n, const double *d, doubl
 }
 
 template <int dim> struct Jacobian {
-  double cofactor[dim][dim], det; // cofactor / det is the inverse: reference coordinates by position
+  double cofactor[dim][dim], det;
+
+  // Change of reference coordinate a along position b.
+  void invert(double (&inverse)[dim][dim]) const {
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        inverse[a][b] = cofactor[a][b] / det;
+  }
 };
 
 // Of a cell with nodes at x (n, dim).
@@ -51,15 +58,14 @@ template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const 
 
 // Gradients (n, dim) of the shape functions; returns the determinant.
 template <int dim> double gradients(const double *x, std::size_t n, const double *d, double *gradient) {
-  Jacobian<dim> j = jacobian<dim>(x, n, d);
-  for (int a = 0; a < dim; ++a)
-    for (int b = 0; b < dim; ++b)
-      j.cofactor[a][b] /= j.det;
+  const Jacobian<dim> j = jacobian<dim>(x, n, d);
+  double inverse[dim][dim];
+  j.invert(inverse);
   for (std::size_t i = 0; i < n; ++i)
     for (int a = 0; a < dim; ++a) {
       double sum = 0;
       for (int b = 0; b < dim; ++b)
-        sum += d[i * dim + b] * j.cofactor[b][a];
+        sum += d[i * dim + b] * inverse[b][a];
       gradient[i * dim + a] = sum;
     }
   return j.det;
