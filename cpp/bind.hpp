@@ -50,6 +50,7 @@ public:
   T &operator[](std::size_t i) { return memory.get()[i]; }
   T *data() { return memory.get(); }
   std::size_t size() const { return count; }
+  void shorten(std::size_t n) { count = std::min(count, n); } // what is beyond and was never written to costs nothing
   T *release() { return memory.release(); }
 
 private:
@@ -68,7 +69,9 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(Buffer<T> &&buffer) {
 }
 
 void bind_cells(nb::module_ &m);
+void bind_facets(nb::module_ &m);
 void bind_solids(nb::module_ &m);
+void bind_stress(nb::module_ &m);
 void bind_interface(nb::module_ &m);
 void bind_sparse(nb::module_ &m);
 } // namespace abut

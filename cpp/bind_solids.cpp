@@ -1,13 +1,11 @@
 // Element kernels: sparsity pattern of the stiffness, and isotropic stiffness matrices scattered straight into it.
 #include "bind.hpp"
+#include "jacobian.hpp"
 #include "parallel.hpp"
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace abut {
-
-constexpr std::size_t FEW_CELLS = 5000; // not worth a thread
 
 // Node adjacency through cells, rows sorted: cell c has the nodes nodes[start[c] .. start[c+1]].
 static nb::tuple node_pattern(std::int64_t n_points, Vector<std::int64_t> start, Vector<std::int32_t> nodes) {
@@ -67,7 +65,7 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
                           const double *shapes, const double *derivatives, const double *weights, std::size_t rule,
                           const double *lame, const std::int64_t *indptr, const std::int32_t *indices, double *values,
                           bool mean_dilatation, std::int32_t first, std::int32_t last) {
-  std::vector<double> gradient(n * dim), hoop(n), block(n * n * dim * dim), dilatation(n * dim);
+  std::vector<double> x(n * dim), gradient(n * dim), hoop(n), block(n * n * dim * dim), dilatation(n * dim);
   for (std::size_t c = 0; c < cells; ++c) {
     const std::int32_t *own = nodes + c * n;
     if (std::none_of(own, own + n, [&](std::int32_t i) { return i >= first && i < last; }))
@@ -75,46 +73,20 @@ static void add_stiffness(const double *points, const std::int32_t *nodes, std::
     const double mu = lame[2 * c + 1], bulk = lame[2 * c] + 2 * mu / 3; // bulk modulus
     const double lambda = mean_dilatation ? -2 * mu / 3 : lame[2 * c];  // what is left at the points is deviatoric
     double volume = 0;
+    gather(points, own, n, dim, x.data());
     std::fill(block.begin(), block.end(), 0.0);
     std::fill(dilatation.begin(), dilatation.end(), 0.0);
     for (std::size_t q = 0; q < rule; ++q) {
       const double *d = derivatives + q * n * dim;
-      double j[dim][dim] = {{0}}, inverse[dim][dim], det;
-      for (std::size_t i = 0; i < n; ++i)
-        for (int a = 0; a < dim; ++a)
-          for (int b = 0; b < dim; ++b)
-            j[a][b] += points[std::size_t(own[i]) * dim + a] * d[i * dim + b];
-      if constexpr (dim == 2) {
-        det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        inverse[0][0] = j[1][1] / det, inverse[0][1] = -j[0][1] / det;
-        inverse[1][0] = -j[1][0] / det, inverse[1][1] = j[0][0] / det;
-      } else {
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) {
-            const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-            inverse[b][a] = j[a1][b1] * j[a2][b2] - j[a1][b2] * j[a2][b1];
-          }
-        det = j[0][0] * inverse[0][0] + j[0][1] * inverse[1][0] + j[0][2] * inverse[2][0];
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b)
-            inverse[a][b] /= det;
-      }
-      double w = det * weights[q];
+      double w = gradients<dim>(x.data(), n, d, gradient.data()) * weights[q];
       if constexpr (axisymmetric) {
         double r = 0;
         for (std::size_t i = 0; i < n; ++i)
-          r += shapes[q * n + i] * points[std::size_t(own[i]) * dim];
+          r += shapes[q * n + i] * x[i * dim];
         for (std::size_t i = 0; i < n; ++i)
           hoop[i] = shapes[q * n + i] / r;
         w *= 2 * std::numbers::pi * r;
       }
-      for (std::size_t i = 0; i < n; ++i)
-        for (int a = 0; a < dim; ++a) {
-          double sum = 0;
-          for (int b = 0; b < dim; ++b)
-            sum += d[i * dim + b] * inverse[b][a];
-          gradient[i * dim + a] = sum;
-        }
       if (mean_dilatation) {
         volume += w;
         for (std::size_t i = 0; i < n; ++i) {

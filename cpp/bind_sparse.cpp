@@ -74,34 +74,33 @@ static nb::ndarray<nb::numpy, T> block_product(Vector<std::int32_t> indptr, Vect
   return to_numpy(std::move(y));
 }
 
-// The rows and columns i of a CSR matrix with place[i] >= 0, which ascend, as a matrix of their own.
+// The rows and columns i of a CSR matrix with place[i] >= 0, which ascend from 0 to size - 1, as a matrix of their own.
 static nb::tuple principal_submatrix(Vector<std::int32_t> indptr, Vector<std::int32_t> indices, Vector<double> data,
                                      Vector<std::int32_t> place, std::int64_t size) {
   const std::size_t rows = indptr.shape(0) - 1;
   if (place.shape(0) != rows || indices.shape(0) != data.shape(0))
     throw nb::value_error("matrix and places disagree");
-  std::vector<std::int32_t> start(size + 1, 0);
+  std::size_t most = 0;
   for (std::size_t i = 0; i < rows; ++i)
-    if (place(i) >= 0) {
-      std::int32_t count = 0;
-      for (std::int32_t k = indptr(i); k < indptr(i + 1); ++k)
-        count += place(indices(k)) >= 0;
-      start[place(i) + 1] = count;
-    }
-  for (std::int64_t i = 0; i < size; ++i)
-    start[i + 1] += start[i];
-  Buffer<std::int32_t> columns(start[size]);
-  Buffer<double> values(start[size]);
+    most += place(i) >= 0 ? indptr(i + 1) - indptr(i) : 0;
+  std::vector<std::int32_t> start(size + 1, 0);
+  Buffer<std::int32_t> columns(most);
+  Buffer<double> values(most);
   {
     nb::gil_scoped_release release;
     std::size_t to = 0;
     for (std::size_t i = 0; i < rows; ++i)
-      if (place(i) >= 0)
-        for (std::int32_t k = indptr(i); k < indptr(i + 1); ++k)
-          if (place(indices(k)) >= 0) {
-            columns[to] = place(indices(k));
-            values[to++] = data(k);
-          }
+      if (place(i) >= 0) {
+        for (std::int32_t k = indptr(i); k < indptr(i + 1); ++k) {
+          const std::int32_t column = place(indices(k));
+          columns[to] = column;
+          values[to] = data(k);
+          to += column >= 0;
+        }
+        start[place(i) + 1] = std::int32_t(to);
+      }
+    columns.shorten(to);
+    values.shorten(to);
   }
   return nb::make_tuple(to_numpy(std::move(start)), to_numpy(std::move(columns)), to_numpy(std::move(values)));
 }

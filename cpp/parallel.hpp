@@ -8,6 +8,8 @@
 
 namespace abut {
 
+constexpr std::size_t FEW_CELLS = 5000; // not worth a thread
+
 // OMP_NUM_THREADS, which also limits the linear algebra libraries, or else one thread a core.
 inline std::size_t thread_count() {
   if (const char *wanted = std::getenv("OMP_NUM_THREADS"))

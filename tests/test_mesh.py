@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from abut._core import single_rows
 from abut.errors import InputError
 from abut.io.vtu import write_vtu
 from abut.mesh.check import check_mesh
+from abut.mesh.facets import row_codes
 from abut.mesh.make import box, cylinder, disc, half_disc, join, rectangle, sphere_octant
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.solids.elements import body_load
@@ -193,3 +195,18 @@ def test_fine_zone() -> None:
     assert x[-1] == 5.0
     assert np.diff(x).min() == pytest.approx(0.5)
     assert volume(mesh) == pytest.approx(50.0)
+
+
+def test_facets_of_one_cell_only_and_numbers_for_rows() -> None:
+    draw = np.random.default_rng(6)
+    rows = draw.integers(0, 9, (400, 4)).astype(np.int32)
+    rows[::2, 3] = -1
+    _, first, count = np.unique(np.sort(rows, axis=1), axis=0, return_index=True, return_counts=True)
+    assert np.array_equal(single_rows(rows, 9), np.sort(first[count == 1]))
+    with pytest.raises(IndexError, match="does not exist"):
+        single_rows(rows, 8)
+    for largest in (9, 2**40):  # powers of the second do not fit a number any more
+        many = draw.integers(-1, 5, (400, 5)) * (largest // 9)
+        _, want = np.unique(many := np.maximum(many, -1), axis=0, return_inverse=True)
+        _, got = np.unique(row_codes(many), return_inverse=True)
+        assert np.array_equal(got, want.ravel())

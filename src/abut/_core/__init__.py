@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abut._core._core import (
+    add_stresses,
     assemble_stiffness,
     block_pattern,
     block_product,
@@ -12,9 +13,12 @@ from abut._core._core import (
     plan_facets,
     principal_submatrix,
     shape_functions,
+    single_rows,
+    smallest_determinants,
 )
 
 __all__ = [
+    "add_stresses",
     "assemble_stiffness",
     "block_pattern",
     "block_product",
@@ -24,4 +28,6 @@ __all__ = [
     "plan_facets",
     "principal_submatrix",
     "shape_functions",
+    "single_rows",
+    "smallest_determinants",
 ]

@@ -46,6 +46,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     def add(what: str, value: float, limit: float, meaning: str) -> None:
         checks.append(Check(name, what, float(value), limit, meaning))
 
+    areas = full_moments(pair.contactor, 0)[:, 0]
+    share = pair.coupling.covered / areas
     force, moment = balance(pair, values)
     add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
     if not pair.tied:
@@ -57,10 +59,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
-        add("oscillation", _oscillation(pair, nodal, largest), OSCILLATION,
+        add("oscillation", _oscillation(pair, nodal, largest, share), OSCILLATION,
             "alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
-    areas = full_moments(pair.contactor, 0)[:, 0]
-    share = pair.coupling.covered / areas
     if pair.contact.method == "segment-to-segment":
         add("facet moments", _moment_error(pair, areas, share, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
@@ -108,17 +108,18 @@ def _moment_error(
     return float(miss[whole].max())
 
 
-def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float) -> float:
+def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float, share: NDArray[np.float64]) -> float:
     """Root mean square of that part of p - (mean of its neighbours) that changes sign from neighbour to neighbour, over
     the largest pressure. Neighbours are nodes along facet edges, for P0 facets; only those with nothing but closed
-    neighbours count, since the pressure has a kink at the edge of contact. Of other discontinuous spaces: of the jumps."""
+    neighbours count, since the pressure has a kink at the edge of contact. Of other discontinuous spaces: of the jumps.
+    share: of each facet that is covered."""
     continuous = bool((pair.space.node >= 0).all())
     if not continuous and pair.coupling.degree:
         return _jumps(pair, nodal, CLOSED * largest) / largest
     graph, value = _node_graph(pair, nodal) if continuous else _facet_graph(pair, nodal)
     closed = value > CLOSED * largest
     if continuous:
-        closed &= ~_near_corners(pair, graph)
+        closed &= ~_near_corners(pair, graph, share)
     degree = np.asarray(graph.sum(axis=1)).ravel()
     inside = closed & (graph @ (value > CLOSED * largest).astype(float) == degree) & (degree > 1)
     ripple = np.where(inside, value - graph @ value / np.maximum(degree, 1.0), 0.0)
@@ -130,10 +131,9 @@ def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float) -> floa
     return float(np.sqrt(np.maximum(-product, 0.0).mean())) / largest
 
 
-def _near_corners(pair: Pair, graph: Any) -> NDArray[np.bool_]:
+def _near_corners(pair: Pair, graph: Any, share: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Points within a facet of the contactor's rim, or of facets that are only partly covered: the pressure of a body with
     corners is singular there, and no mesh shows that without a swing."""
-    share = pair.coupling.covered / full_moments(pair.contactor, 0)[:, 0]
     near = _rim(pair)
     partly = pair.contactor.nodes[np.abs(share - 1.0) > WHOLE]
     near[partly[partly >= 0]] = True

@@ -77,7 +77,7 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
 
 def resistance_of_supports(rigid: RigidModes, held: Supports) -> NDArray[np.float64]:
     """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
-    taken = rigid.modes - held.free @ held.coordinates(rigid.modes)
+    taken = held.taken(rigid.modes)
     return np.asarray(taken.T @ taken / max(1.0, float(held.free.shape[0] - held.free.shape[1])))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,18 @@ class Supports:
         if self.orthonormal or not moved.size:
             return np.asarray(moved)
         return np.asarray(spla.splu((self.free.T @ self.free).tocsc()).solve(moved))
+
+    def taken(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What is left of displacements of all points (dim n_points, k) that no free ones can follow, where that may not be
+        zero: most points move freely, and nothing need be computed for them."""
+        alone = np.bincount(self.free.indices, minlength=self.free.shape[1]) == 1
+        followed = np.zeros(self.free.shape[0], dtype=bool)
+        single = np.flatnonzero(np.diff(self.free.indptr) == 1)
+        followed[single] = alone[self.free.indices[self.free.indptr[single]]]
+        rows = np.flatnonzero(~followed)
+        free, own = self.free[rows], vectors[rows]
+        near = replace(self, free=free[:, np.unique(free.indices)])
+        return np.asarray(own - near.free @ near.coordinates(own))
 
     def reduce(self, matrix: Any) -> Any:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""

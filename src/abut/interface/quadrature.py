@@ -7,6 +7,7 @@ theory (Q3).
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
     return t, np.linalg.solve(powers, 1.0 / (order + 1)), t, np.linalg.solve(powers, 1.0 / (order + 2))
 
 
+@functools.cache  # asked for with every pair, and slow to find
 def rule_tables(rule: str) -> NDArray[np.float64]:
     """Tables (4, count, width) of t, w_t, r, w_r on [0, 1] for 1..count points; ``rule`` is "gauss" or "newton-cotes".
 
@@ -39,4 +41,5 @@ def rule_tables(rule: str) -> NDArray[np.float64]:
     tables = np.zeros((4, count, count))
     for n in range(1, count + 1):
         tables[:, n - 1, :n] = make(n)
+    tables.setflags(write=False)
     return tables

@@ -42,7 +42,8 @@ def carry_to_target(
     """
     width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
     entries = pairs.tocoo()
-    seen = np.unique(np.stack([entries.row // 9, entries.col // max(width, 1)], axis=1), axis=0)
+    facet_and_point = np.unique(entries.row // 9 * np.int64(len(target.points)) + entries.col // width)
+    seen = np.stack(np.divmod(facet_and_point, len(target.points)), axis=1)
     best = np.full(len(target.points), np.inf)
     pressure = np.zeros(len(target.points))
     table = values.reshape(-1, 9)

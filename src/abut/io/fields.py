@@ -17,7 +17,7 @@ WriteFields = Callable[[Path, Model, Step], None]  # writes the fields of a step
 def write_fields(folder: Path, model: Model, step: Step) -> None:
     """The fields of a step as one VTU file. Raises InputError where the file cannot be written."""
     grid = field_grid(model.mesh, step.displacement, step.stress)
-    write_vtu(folder / whole_name(step.number), grid.points, grid.blocks, grid.point_data, grid.cell_data)
+    write_vtu(folder / whole_name(step.number), grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     (folder / list_name(step.number)).unlink(missing_ok=True)  # of an earlier run on several processes
     remove_pieces(folder, step.number)
 

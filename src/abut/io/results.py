@@ -52,7 +52,7 @@ def write_steps(folder: Path, solution: Solution, steps: Sequence[Step], fields:
         for contact in step.contacts:
             grid = contact_grid(step, contact)
             path = folder / _contact_file(contact.name, step)
-            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
+            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
 
 
 def write_index(folder: Path, solution: Solution) -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut._core import shape_functions
+from abut._core import shape_functions, smallest_determinants
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.mesh.facets import bodies_at, facet_keys, number_keys
-from abut.mesh.integrals import determinants
+from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 
@@ -76,14 +75,14 @@ def _check_surfaces(mesh: Mesh) -> None:
         exists = (cells >= 0) & (cells < mesh.n_cells)
         if not exists.all() or ((local < 0) | (local >= facets[cells])).any():
             raise InputError(f"mesh: surface '{name}' has facets of cells that do not exist; write the mesh again")
-        _, where, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
+        _, where, count = np.unique(_code(rows), return_index=True, return_counts=True)
         if (count > 1).any():
             raise InputError(
                 f"mesh: surface '{name}' lists facets of cells {_some(cells[where[count > 1]])} twice; list each once"
             )
     if not mesh.surfaces:
         return
-    every = np.unique(np.concatenate(list(mesh.surfaces.values())), axis=0)
+    every = np.concatenate(list(mesh.surfaces.values()))
     keys, owners = facet_keys(mesh, mesh.facets(every).node_ids)
     (facet,) = number_keys(keys)
     shared = np.bincount(facet)[facet] > 1
@@ -118,20 +117,15 @@ def _check_cells(mesh: Mesh) -> None:
             continue
         xi, _ = stiffness_rule(block.kind)
         _, derivatives = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
-        x = mesh.points[block.nodes]
-        size = np.ptp(x, axis=1).max(axis=1)[:, None, None]
-        # Cells of size one: the test has no unit and cannot overflow.
-        x = (x - x[:, :1]) / np.where(size > 0.0, size, 1.0)
-        smallest = np.full(len(x), np.inf)
-        for own in derivatives:  # a point at a time keeps memory low
-            with np.errstate(all="ignore"):  # absurd coordinates give no number, which fails below
-                smallest = np.minimum(smallest, determinants(x.transpose(0, 2, 1) @ own))
+        nodes = np.ascontiguousarray(block.nodes, dtype=np.int32)
+        # Absurd coordinates give no number, which fails below.
+        smallest = smallest_determinants(np.ascontiguousarray(mesh.points), nodes, derivatives)
         bad = np.flatnonzero(~(smallest > DEGENERATE))
         if len(bad):
             inverted = bool((smallest[bad] < -DEGENERATE).all())
             cure = (
                 "their nodes run the wrong way round: reverse them"
-                if inverted and len(bad) == len(x)
+                if inverted and len(bad) == len(nodes)
                 else "improve the mesh there (finer, or straight-sided near curved boundaries)"
             )
             raise InputError(
@@ -142,14 +136,18 @@ def _check_cells(mesh: Mesh) -> None:
 
 def _check_doubles(mesh: Mesh) -> None:
     starts = mesh.starts
+    # Cells with the same points have the same sum of their marks: only those few, if any, need their points sorted.
+    mark = np.random.default_rng(0).integers(np.iinfo(np.int64).max, size=len(mesh.points))
     for kind in sorted({block.kind for block in mesh.blocks}):  # a cell read in two groups stands in two blocks
         own = [(b.nodes, f + np.arange(len(b.nodes))) for b, f in zip(mesh.blocks, starts) if b.kind == kind]
         nodes, cells = (np.concatenate(part) for part in zip(*own))
-        _, where, inverse, count = np.unique(
-            np.sort(nodes, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
-        )
+        suspect = np.ones(len(cells), dtype=bool)
+        suspect[single(mark[nodes].sum(axis=1))] = False
+        nodes, cells = nodes[suspect], cells[suspect]
+        code = row_codes(np.sort(nodes, axis=1))
+        _, where, inverse, count = np.unique(code, return_index=True, return_inverse=True, return_counts=True)
         if (count > 1).any():
-            copies = cells[count[inverse.ravel()] > 1]
+            copies = cells[count[inverse] > 1]
             raise InputError(
                 f"mesh: cells {_some(cells[where[count > 1]])} of {_names(bodies_at(mesh, copies))} stand in the mesh "
                 "twice; put each cell in one body only"

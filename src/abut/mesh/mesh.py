@@ -105,7 +105,9 @@ class Mesh:
         if name in self.node_sets:
             return self.node_sets[name]
         if name in self.bodies:
-            parts = [nodes.ravel() for _, nodes, _ in self.cells_of(name)]
-            return np.unique(np.concatenate(parts or [np.empty(0, np.int32)])).astype(np.int64)
+            used = np.zeros(len(self.points), dtype=bool)
+            for _, nodes, _ in self.cells_of(name):
+                used[nodes] = True
+            return np.flatnonzero(used)
         known = [*self.surfaces, *self.node_sets, *self.bodies]
         raise InputError(f"no surface, node set or body named {name!r} in the mesh{nearest(name, known)}")

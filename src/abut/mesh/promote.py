@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.mesh.facets import row_codes
 
 EDGES: dict[str, tuple[tuple[int, int], ...]] = {
     "tri": ((0, 1), (1, 2), (2, 0)),
@@ -25,8 +26,8 @@ def _shared_middles(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Numbers (cells, groups) and positions of new nodes in the middle of groups (cells, groups, k) of corners."""
     flat = np.sort(groups.reshape(-1, groups.shape[-1]), axis=1)
-    unique, inverse = np.unique(flat, axis=0, return_inverse=True)
-    return first + inverse.reshape(groups.shape[:2]), points[unique].mean(axis=1)
+    _, one, inverse = np.unique(row_codes(flat), return_index=True, return_inverse=True)
+    return first + inverse.reshape(groups.shape[:2]), points[flat[one]].mean(axis=1)
 
 
 def promote(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -13,8 +14,11 @@ from abut.cells import CELLS
 Rule = tuple[NDArray[np.float64], NDArray[np.float64]]  # points (q, dim), weights (q,)
 
 
+@functools.cache  # asked for again and again, and slow to find
 def _line(n: int) -> Rule:
     x, w = np.polynomial.legendre.leggauss(n)
+    for values in (x, w):
+        values.setflags(write=False)
     return x[:, None], w
 
 

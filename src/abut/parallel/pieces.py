@@ -63,7 +63,7 @@ def write_piece(
         return None
     grid = field_grid(mesh, displacement, stress)
     try:
-        write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data)
+        write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     except InputError as error:
         return error
     return arrays(grid)

@@ -12,6 +12,8 @@ from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, CellType
 from abut.errors import InputError
 from abut.interface.geometry import area_vectors, nodal_normals
+from abut.mesh.exterior import outside_of_body
+from abut.mesh.facets import row_codes
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
@@ -85,7 +87,7 @@ def skin(mesh: Mesh, body: str, without: NDArray[np.int64]) -> Skin:
     if mesh.dim == 2:
         faces = [(kind, nodes.astype(np.int64)) for kind, nodes, _ in mesh.cells_of(body)]
     else:
-        rows = _outside(mesh, body)
+        rows = outside_of_body(mesh, body)
         width = 1 + max(int(rows[:, 1].max(initial=0)), int(without[:, 1].max(initial=0)) if len(without) else 0)
         kept = ~np.isin(rows @ [width, 1], without @ [width, 1]) if len(without) else np.ones(len(rows), dtype=bool)
         surface = mesh.facets(rows[kept])
@@ -102,21 +104,6 @@ def skin(mesh: Mesh, body: str, without: NDArray[np.int64]) -> Skin:
     return Skin(np.flatnonzero(seen), number[every], number[edges], features)
 
 
-def _outside(mesh: Mesh, body: str) -> NDArray[np.int64]:
-    """Rows (cell, local facet) of the facets that only one cell of the body has."""
-    keys, rows = [], []
-    for kind, nodes, cells in mesh.cells_of(body):
-        for local, (facet, own) in enumerate(CELLS[kind].facets):
-            corners = np.sort(nodes[:, own[: CELLS[facet].corners]], axis=1)
-            keys.append(corners[:, :3] if corners.shape[1] == 3 else corners[:, 1:])  # three of four tell which
-            rows.append(np.stack([cells, np.full(len(cells), local)], axis=1))
-    key = np.concatenate(keys)
-    order = np.lexsort(key.T)
-    same = (np.diff(key[order], axis=0) == 0).all(axis=1)
-    twice = np.concatenate([[False], same]) | np.concatenate([same, [False]])
-    return np.concatenate(rows).astype(np.int64)[order[~twice]]
-
-
 def _edges(mesh: Mesh, faces: list[tuple[str, NDArray[np.int64]]]) -> tuple[NDArray[np.int64], int]:
     """Lines along the faces' edges, each once, those on borders and creases first, and how many these are."""
     ends, middles, normals = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)], [np.empty((0, 3))]
@@ -130,9 +117,10 @@ def _edges(mesh: Mesh, faces: list[tuple[str, NDArray[np.int64]]]) -> tuple[NDAr
             middles.append(nodes[:, cell.corners + i] if cell.degree == 2 else np.full(len(nodes), -1))
             normals.append(normal)
     pair, middle, side = np.concatenate(ends), np.concatenate(middles), np.concatenate(normals)
-    order = np.lexsort(pair.T)
+    code = row_codes(pair)
+    order = np.argsort(code, kind="stable")
     pair, middle, side = pair[order], middle[order], side[order]
-    first = np.concatenate([[True], (np.diff(pair, axis=0) != 0).any(axis=1)])[: len(pair)]
+    first = np.concatenate([[True], np.diff(code[order]) != 0])[: len(pair)]
     count = np.diff(np.append(np.flatnonzero(first), len(pair)))
     at = np.flatnonzero(first)
     smooth = count == 2

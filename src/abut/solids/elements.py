@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut._core import assemble_stiffness, block_pattern, node_pattern, shape_functions
+from abut._core import add_stresses, assemble_stiffness, block_pattern, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.fields import Field, evaluate
 from abut.mesh.integrals import body_chunks, gradients, group_chunks, groups
@@ -131,12 +131,7 @@ def body_load(
     return load.ravel()
 
 
-def nodal_stress(*args, **kw):
-    total, count = stress_sums(*args, **kw)
-    return total / np.maximum(count, 1.0)[:, None]
-
-
-def stress_sums(
+def nodal_stress(
     mesh: Mesh,
     materials: Mapping[str, LinearElastic],
     temperatures: Mapping[str, float],
@@ -149,8 +144,24 @@ def stress_sums(
     to each cell's nodes and averaged over the cells of a point (bodies that share nodes share the average).
     Axisymmetric: xx radial, yy axial, zz hoop. ``temperatures`` of bodies and ``nodal`` ones as in ``thermal_load``.
     Integration "b-bar": with the mean dilatation of (E3)."""
-    dim = mesh.points.shape[1]
+    total, count = stress_sums(mesh, materials, temperatures, displacement, plane, nodal, integration)
+    return total / np.maximum(count, 1.0)[:, None]
+
+
+def stress_sums(
+    mesh: Mesh,
+    materials: Mapping[str, LinearElastic],
+    temperatures: Mapping[str, float],
+    displacement: NDArray[np.float64],
+    plane: str | None = None,
+    nodal: NDArray[np.float64] | None = None,
+    integration: Mapping[str, str] = FULL,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What ``nodal_stress`` averages: the sum of the cells' stresses at the points (n_points, 6), and of how many cells that
+    deform (n_points,). Sums of parts of a mesh add up."""
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
+    points, moved = np.ascontiguousarray(mesh.points), np.ascontiguousarray(displacement)
+    heat = np.zeros(len(points)) if nodal is None else np.ascontiguousarray(nodal)
     constants = _by_cell(
         mesh,
         {
@@ -158,34 +169,14 @@ def stress_sums(
             for body, m in materials.items()
         },
     )
-    nodal = np.zeros(len(mesh.points)) if nodal is None else nodal
-    for kind, nodes, cells, rule in group_chunks(mesh, integration):
+    for kind, nodes, cells, rule in groups(mesh, integration):
         xi, weights = stress_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
-        slopes, det = gradients(mesh.points, nodes, derivatives)
-        slope = np.matmul(displacement[nodes].transpose(0, 2, 1)[:, None], slopes)
-        strain = np.zeros((*slope.shape[:2], 3, 3))
-        strain[..., :dim, :dim] = 0.5 * (slope + np.swapaxes(slope, 2, 3))
-        lambda_, mu, poisson, expansion, uniform, deforms = (v[:, None] for v in constants[cells].T)
-        thermal = expansion * (uniform + nodal[nodes] @ shapes.T)
-        if plane == "axisymmetric":
-            radius = mesh.points[nodes][..., 0] @ shapes.T
-            det = det * radius
-            strain[..., 2, 2] = displacement[nodes][..., 0] @ shapes.T / radius
-        if plane == "stress":
-            inplane = strain[..., 0, 0] + strain[..., 1, 1] - 2.0 * thermal
-            strain[..., 2, 2] = thermal - poisson / (1.0 - poisson) * inplane
-        if rule == "b-bar":  # the points are those of the stiffness
-            dilatation = np.trace(strain, axis1=2, axis2=3)
-            mean = (dilatation * det * weights).sum(axis=1) / (det * weights).sum(axis=1)
-            strain = strain + ((mean[:, None] - dilatation) / 3.0)[..., None, None] * np.eye(3)
-        strain = strain - thermal[..., None, None] * np.eye(3)
-        trace = np.trace(strain, axis1=2, axis2=3)
-        stress = 2.0 * mu[..., None, None] * strain + (lambda_ * trace)[..., None, None] * np.eye(3)
-        voigt = stress[..., [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
-        at_nodes = np.einsum("nq,cqs->cns", _to_nodes(kind, xi), voigt)
-        np.add.at(total, nodes, at_nodes)
-        np.add.at(count, nodes, deforms)
+        add_stresses(
+            points, moved, heat, np.ascontiguousarray(nodes, dtype=np.int32), np.ascontiguousarray(constants[cells]),
+            shapes, derivatives, weights, _to_nodes(kind, xi), plane == "axisymmetric", plane == "stress",
+            rule == "b-bar", total, count,
+        )  # fmt: skip
     return total, count
 
 
@@ -194,7 +185,7 @@ def _to_nodes(kind: str, xi: NDArray[np.float64]) -> NDArray[np.float64]:
     where = reference_nodes(kind)
     terms = np.concatenate([np.ones((len(xi), 1)), xi], axis=1) if len(xi) > 2 else np.ones((len(xi), 1))
     at = np.concatenate([np.ones((len(where), 1)), where], axis=1)[:, : terms.shape[1]]
-    return np.asarray(at @ np.linalg.pinv(terms))
+    return np.ascontiguousarray(at @ np.linalg.pinv(terms))
 
 
 def reference_nodes(kind: str) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ from abut.solvers.newton import (
     Unknowns,
     active_laws,
     advance,
+    internal_force,
     largest_force,
     largest_pressure,
     next_active,
@@ -130,4 +131,9 @@ def _closure(system: System, state: Unknowns, stage: Stage) -> float:
 def following(system: System, stage: Stage, outcome: Outcome, weights: NDArray[np.float64]) -> Stage:
     """The stage after one that ended with ``outcome``."""
     state = outcome.unknowns
-    return Stage(stage.number + 1, weights, largest_force(system, state, stage), largest_pressure(state, stage))
+    return Stage(
+        stage.number + 1,
+        weights,
+        largest_force(system, internal_force(system, state), stage),
+        largest_pressure(state, stage),
+    )

@@ -163,14 +163,21 @@ def advance(
     accuracy: float = 0.0,
 ) -> Unknowns:
     """One Newton step on equilibrium and laws."""
-    residual = equilibrium(system, state, weights)
+    residual = equilibrium(system, state, weights, internal_force(system, state))
     du, dp = system.step(system.rows(laws), residual, state.pressure, accuracy)
     return replace(state, displacement=state.displacement + du, pressure=state.pressure + dp)
 
 
-def equilibrium(system: System, state: Unknowns, weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """K u - B^T p - f, theory (F6)."""
-    residual = system.stiffness @ state.displacement - system.load @ weights
+def internal_force(system: System, state: Unknowns) -> NDArray[np.float64]:
+    """K u: what stresses do to the free displacements; the longest product of all."""
+    return np.asarray(system.stiffness @ state.displacement)
+
+
+def equilibrium(
+    system: System, state: Unknowns, weights: NDArray[np.float64], internal: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """K u - B^T p - f, theory (F6), from K u (``internal``)."""
+    residual = internal - system.load @ weights
     if len(state.pressure):
         residual = residual - system.operator.T @ state.pressure
     return np.asarray(residual)
@@ -207,6 +214,8 @@ def report(
     seconds: float,
 ) -> Iteration:
     """The row of the table for a state."""
+    internal = internal_force(system, state)
+    residual = equilibrium(system, state, stage.weights, internal)
     gap = system.split(system.gap(state, stage.weights))
     depth = [
         float((-g / (weight(pair) * pair.size)).max(initial=0.0)) for pair, g in zip(system.pairs, gap) if not pair.tied
@@ -216,18 +225,16 @@ def report(
         iteration=count,
         active=int(state.active.sum()),
         changed=changed,
-        residual=float(
-            np.abs(equilibrium(system, state, stage.weights)).max(initial=0.0) / largest_force(system, state, stage)
-        ),
+        residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, internal, stage)),
         contact_residual=_relative(violation, largest_pressure(state, stage)),
         penetration=max(depth, default=0.0),
         seconds=seconds,
     )
 
 
-def largest_force(system: System, state: Unknowns, stage: Stage) -> float:
-    """Largest nodal force of stresses and loads, now or in a step before."""
-    internal, load = system.stiffness @ state.displacement, system.load @ stage.weights
+def largest_force(system: System, internal: NDArray[np.float64], stage: Stage) -> float:
+    """Largest nodal force of stresses (``internal``) and loads, now or in a step before."""
+    load = system.load @ stage.weights
     return max(np.abs(internal).max(initial=0.0), np.abs(load).max(initial=0.0), stage.force, 1e-300)
 
 

@@ -74,9 +74,11 @@ def grid(lines: Sequence[NDArray[np.float64]], cell: str, move: Move | None = No
 
 
 def _facets_on(cells: NDArray[np.int64], linear: str, flag: NDArray[np.bool_]) -> NDArray[np.int64]:
+    on = flag[cells]
+    near = np.flatnonzero(on.any(axis=1))
     rows = []
     for number, (_, nodes) in enumerate(CELLS[linear].facets):
-        hit = np.flatnonzero(flag[cells[:, nodes]].all(axis=1))
+        hit = near[on[near][:, nodes].all(axis=1)]
         rows.append(np.stack([hit, np.full(len(hit), number)], axis=1))
     return np.concatenate(rows).astype(np.int64)
 
