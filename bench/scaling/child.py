@@ -13,10 +13,12 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "contact"))
 
 import cases
+import numpy as np
 
 from abut.analysis import solve
 from abut.io.fields import write_fields
@@ -32,8 +34,35 @@ def peak(_: Store) -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
 
+class Timed(Team):
+    """A team that adds up the seconds in which all processes work, and the bytes that come back to process 0."""
+
+    seconds = 0.0
+    sent = 0
+
+    def each(self, function: Any, *shared: Any, own: Any = None) -> list[Any]:
+        start = time.perf_counter()
+        result = super().each(function, *shared, own=own)
+        self.seconds += time.perf_counter() - start
+        self.sent += size((shared, (own or [()])[1:], result[1:]))
+        return result
+
+
+def size(item: Any) -> int:
+    """Bytes of the arrays in something that travels."""
+    if isinstance(item, np.ndarray):
+        return item.nbytes
+    if isinstance(item, dict):
+        return size(list(item.values()))
+    if isinstance(item, (list, tuple)):
+        return sum(map(size, item))
+    return size(vars(item)) if hasattr(item, "__dict__") and not callable(item) else 0
+
+
 def measure(team: Team | None) -> int:
     """Solve, write, and print what it took."""
+    if team is not None:
+        team = Timed(team.comm)
     model = cases.with_options(cases.model(CASE, int(DOFS)), linear="amg" if team is None else "petsc", tied=False)
     start = time.perf_counter()
     solution = solve(model, team=team)
@@ -50,6 +79,8 @@ def measure(team: Team | None) -> int:
         "newton": len(solution.steps[0].iterations),
         "linear": int(next((note for note in solution.notes if "linear iterations" in note), "0").split()[0]),
         "multipliers": contact.multipliers,
+        "together": 0.0 if team is None else team.seconds,
+        "sent_mb": 0.0 if team is None else team.sent / 1e6,
         "force": abs(float(contact.force[2])),
         "peak_mb": [peak({})] if team is None else team.each(peak),
     }

@@ -21,7 +21,10 @@ from report import markdown, plain, put_into
 
 CHILD = Path(__file__).with_name("child.py")
 STAGES = ("partition", "assembly", "interface", "set-up", "solve", "results", "writing")
-HEAD = ["case", "dofs", "processes", "s", "/ one", *STAGES, "Newton", "linear", "MB a process", "/ serial"]
+HEAD = [
+    "case", "dofs", "processes", "s", "/ one", *STAGES, "process 0 alone", "Newton", "linear", "sent MB", "MB a process",
+    "/ serial",
+]  # fmt: skip
 Row = dict[str, Any]
 
 
@@ -56,8 +59,10 @@ def cells(row: Row, rows: list[Row]) -> list[str]:
         f"{row['seconds']:.2f}",
         f"{row['seconds'] / one['seconds']:.2f}" if one else "",
         *(f"{row['stages'].get(stage, 0.0):.2f}" for stage in STAGES),
+        f"{row['seconds'] - row['together']:.2f}" if row["processes"] else "",
         str(row["newton"]),
         str(row["linear"]),
+        f"{row['sent_mb']:.0f}" if row["processes"] else "",
         ", ".join(f"{mb:.0f}" for mb in row["peak_mb"]),
         f"{max(row['peak_mb']) / serial['peak_mb'][0]:.2f}" if serial else "",
     ]

@@ -18,7 +18,9 @@ Vector = NDArray[np.float64]
 STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alone
 RESTART, MOST = 100, 300
 REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
-MULTIGRID = {"pc_type": "gamg", "mg_levels_pc_type": "jacobi", "mg_coarse_sub_pc_type": "svd"}
+MULTIGRID = {
+    "pc_type": "gamg", "mg_levels_ksp_max_it": "3", "mg_levels_pc_type": "jacobi", "mg_coarse_sub_pc_type": "svd",
+}  # fmt: skip
 NOTHING = (
     1e-9  # singular value of the coarsest matrix over the stiffness' diagonal: a motion that contact alone resists
 )
