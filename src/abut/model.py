@@ -191,6 +191,11 @@ class Model:
         self._check_equations()
 
     @property
+    def materials(self) -> dict[str, LinearElastic]:
+        """Material of each solid body."""
+        return {solid.body: solid.material for solid in self.solids}
+
+    @property
     def integration(self) -> dict[str, str]:
         """Integration of each body."""
         return {solid.body: solid.integration for solid in self.solids}
@@ -205,6 +210,10 @@ class Model:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
         return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
+
+    def temperatures(self, time: float) -> dict[str, float]:
+        """Change of temperature of each solid body as a whole, which follows the ramp (degrees)."""
+        return {solid.body: time * solid.temperature for solid in self.solids}
 
     def _check_plane(self) -> None:
         if self.dim == 2:

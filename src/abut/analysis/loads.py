@@ -60,11 +60,10 @@ def nodal_temperature(model: Model) -> NDArray[np.float64]:
 
 def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.float64]:
     """Nodal forces of thermal strains, (dim n_points, n_histories); whole solids are heated along the ramp."""
-    materials = {solid.body: solid.material for solid in model.solids}
-    uniform = [{solid.body: solid.temperature for solid in model.solids}, *({} for _ in model.histories[1:])]
+    uniform = [model.temperatures(1.0), *({} for _ in model.histories[1:])]
     return np.column_stack(
         [
-            thermal_load(model.mesh, materials, bodies, model.plane, nodal, model.integration)
+            thermal_load(model.mesh, model.materials, bodies, model.plane, nodal, model.integration)
             for bodies, nodal in zip(uniform, temperature.T)
         ]
     )

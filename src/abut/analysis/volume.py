@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -15,7 +14,6 @@ from abut.interface.coupling import Coupling, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.solids.elements import nodal_stress, stiffness
-from abut.solids.materials import LinearElastic
 from abut.solvers.active_set import System
 from abut.solvers.linear import Prepared, choose, prepare
 
@@ -79,7 +77,7 @@ class Whole:
         """As in ``Volume``."""
         m = self.model
         return nodal_stress(
-            m.mesh, materials(m), temperatures(m, time), displacement, m.plane, temperature, m.integration
+            m.mesh, m.materials, m.temperatures(time), displacement, m.plane, temperature, m.integration
         )
 
     def choose(self, system: System, held: Supports) -> str:
@@ -95,14 +93,4 @@ class Whole:
 
 def whole(model: Model) -> Whole:
     """Assemble a model in this process."""
-    return Whole(model, stiffness(model.mesh, materials(model), model.plane, model.integration))
-
-
-def materials(model: Model) -> Mapping[str, LinearElastic]:
-    """By body."""
-    return {solid.body: solid.material for solid in model.solids}
-
-
-def temperatures(model: Model, time: float) -> Mapping[str, float]:
-    """Change of temperature of each whole body."""
-    return {solid.body: time * solid.temperature for solid in model.solids}
+    return Whole(model, stiffness(model.mesh, model.materials, model.plane, model.integration))

@@ -25,19 +25,22 @@ NOTHING = (
     1e-9  # singular value of the coarsest matrix over the stiffness' diagonal: a motion that contact alone resists
 )
 FACTORS = ("cholesky", "lu")
+OUT_OF_MEMORY = (-8, -9, -11, -13, -14, -15, -17, -20)  # what MUMPS calls so in INFOG(1)
 PACKAGES = ("mumps", "superlu_dist")
 
 
 @dataclass(frozen=True)
 class Answer:
     """Of a linear solution, on each process: its share of the displacements, all pressures on process 0; iterations;
-    error: residual over the right-hand side; reason: PETSc's word for how it ended, below zero where it failed."""
+    error: residual over the right-hand side; reason: PETSc's word for how it ended, below zero where it failed;
+    memory: whether a factorisation ran out of it."""
 
     displacement: Vector
     pressure: Vector
     iterations: int
     error: float
     reason: int
+    memory: bool
 
 
 @dataclass(frozen=True)
@@ -185,10 +188,18 @@ def _solve(solver: Any, operator: Any, share: Vector, conditions: Conditions | N
     values = np.array(x.array_r)
     error = miss.norm() / size if size > 0.0 else 0.0
     answer = Answer(
-        values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason()
-    )
+        values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason(),
+        _ran_out(solver.getPC()),
+    )  # fmt: skip
     solver.destroy()  # now, not when Python finds the time: it holds many vectors, or factors
     return answer
+
+
+def _ran_out(preconditioner: Any) -> bool:
+    """Whether a factorisation by MUMPS ran out of memory."""
+    if preconditioner.getType() not in FACTORS or preconditioner.getFactorSolverType() != "mumps":
+        return False
+    return preconditioner.getFactorMatrix().getMumpsInfog(1) in OUT_OF_MEMORY
 
 
 def _unless_given(prefix: str, options: Mapping[str, str]) -> None:

@@ -92,6 +92,11 @@ class Direct:
         shares = self.matrix.layout.shares(rhs)
         own = [(share, None if rank else conditions) for rank, (share,) in enumerate(shares)]
         answers = self.matrix.team.each(factorise, n, symmetric, own=own)
+        if answers[0].memory:
+            raise InputError(
+                "not enough memory for PETSc's direct solver; take more processes or machines, or a coarser mesh, or, in "
+                '3D, law "complementarity" and no equations, which multigrid can solve'
+            )
         if not answers[0].error < SINGULAR:
             raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
         return displacement(answers, self.matrix.layout), answers[0].pressure

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.volume import materials, temperatures
 from abut.discretization.supports import Supports
 from abut.interface.coupling import Coupling
 from abut.mesh.surface import Surface
@@ -47,7 +46,7 @@ class Spread:
     def assembled(self) -> Spread:
         """Have every process assemble its part."""
         m = self.model
-        own = [(part.Part(piece.mesh, materials(m), m.plane, m.integration),) for piece in self.pieces]
+        own = [(part.Part(piece.mesh, m.materials, m.plane, m.integration),) for piece in self.pieces]
         self.team.each(part.assemble, own=own)
         return self
 
@@ -56,7 +55,7 @@ class Spread:
         return couple(self.team, self.owner[contactor.cells], contactor, target, degree, **options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``Volume``."""
+        """As in ``abut.analysis.volume.Volume``."""
         dim = self.model.dim
         nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
         own = [
@@ -87,7 +86,7 @@ class Spread:
         """As in ``Volume``."""
         own = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
         total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
-        sums = self.team.each(part.stresses, temperatures(self.model, time), own=own)
+        sums = self.team.each(part.stresses, self.model.temperatures(time), own=own)
         for piece, (stress, cells) in zip(self.pieces, sums):
             total[piece.points] += stress
             count[piece.points] += cells
