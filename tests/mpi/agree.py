@@ -63,6 +63,14 @@ def rigid() -> Any:
     return replace(model, equations=[couple])
 
 
+def ball() -> Any:
+    """A quarter of a ball on a quarter of a block, cells graded toward the contact: as in the benchmarks of time."""
+    sys.path.insert(0, str(EXAMPLES.parent / "bench" / "contact"))
+    import cases
+
+    return cases.model("hertz-hex8", 20_000)
+
+
 def example(path: str) -> Any:
     """Of the examples."""
     from abut.job import load_job
@@ -87,7 +95,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "larger": lambda: press(11),
     "rigid": rigid,
     "hertz-line": lambda: example("hertz-line/quad8.toml"),
-    "hertz-sphere": lambda: example("hertz-sphere/job.toml"),
+    "ball": ball,
     "pin-lug": lambda: example("pin-lug/job.toml"),
 }
 

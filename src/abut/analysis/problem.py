@@ -53,6 +53,8 @@ def problem(
     held, loaded = supports(model), loads(model)
     clock.mark("set-up")
     volume = _volume(model, observe, note, clock, team)
+    load = held.free.T @ (loaded.forces - volume.internal(held.prescribed))  # theory (F9)
+    reduced = volume.reduce(held)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     every = pairs(model, held, volume.couple)
@@ -60,7 +62,6 @@ def problem(
     clock.mark("interface")
     observe(Phase("looking for motions that nothing holds"))
     held_by = holding(model.mesh, held, every)
-    reduced = volume.reduce(held)
     idle = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
     for text in idle.notes:
         note(text)
@@ -70,7 +71,7 @@ def problem(
     _check_finite(reduced.diagonal(), loaded.forces)
     system = System(
         stiffness=reduced,
-        load=held.free.T @ (loaded.forces - volume.internal(held.prescribed)),  # theory (F9)
+        load=load,
         pairs=every,
         operator=operator,
         complete=held_by.complete,
@@ -95,7 +96,6 @@ def _volume(model: Model, observe: Observer, note: Callable[[str], None], clock:
         clock.mark("partition")
         observe(Phase("assembling the stiffness"))
         result = parts.assembled()
-    clock.mark("assembly")
     return result
 
 

@@ -13,7 +13,6 @@ from abut._core import padded_blocks
 from abut.discretization.supports import Supports
 from abut.parallel.partition import Layout
 from abut.parallel.team import Store, Team
-from abut.solvers.blocks import store_diagonal
 
 
 @dataclass(frozen=True)
@@ -53,6 +52,8 @@ def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np
     comm, ints = PETSc.COMM_WORLD, PETSc.IntType
     first, last, n = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1], starts[-1]))
     rows = _own_rows(store, slot, free, block, starts // block, comm.tompi4py()).tocsr()
+    if block == 1:
+        rows = _with_diagonal(rows, first)
     shape = ((last - first, n), (last - first, n))
     csr = rows.indptr.astype(ints, copy=False), rows.indices.astype(ints, copy=False), rows.data
     matrix = PETSc.Mat().createAIJ(shape, csr=csr, comm=comm)
@@ -72,7 +73,7 @@ def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> t
     blocks = (slot // block)[new]
     place = block * (np.cumsum(new) - 1) + slot % block
     if block == 1 or not len(slot):
-        return blocks, store_diagonal(reduced).tobsr((block, block))
+        return blocks, reduced.tobsr((block, block))
     indptr, indices, values = padded_blocks(
         reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32, copy=False), reduced.data,
         place.astype(np.int32), block, len(blocks), 1.0,
@@ -88,35 +89,38 @@ def _own_rows(
 
     starts: first block of each process."""
     blocks, matrix = _blocks(store.pop("stiffness"), slot, free, block)
-    rank, size = comm.rank, matrix.blocksize[0]
     owner = np.searchsorted(starts, blocks, side="right") - 1
-    shape = (size * int(starts[rank + 1] - starts[rank]), size * int(starts[-1]))
-
-    away = [_rows(matrix, blocks, owner == of) if of != rank else None for of in range(comm.size)]
-    pieces = [_rows(matrix, blocks, owner == rank), *(piece for piece in comm.alltoall(away) if piece is not None)]
-    del away, matrix  # each is as large as the stiffness
-    row, column = (np.concatenate([piece[k] for piece in pieces]) for k in (0, 1))
-    data = np.concatenate([piece[2] for piece in pieces])
-    del pieces
-    order = np.lexsort((column, row))
-    new = np.ones(len(order), dtype=bool)
-    new[1:] = (np.diff(row[order]) != 0) | (np.diff(column[order]) != 0)
-    summed = data[order[new]]
-    again = np.flatnonzero(~new)
-    np.add.at(summed, np.cumsum(new)[again] - 1, data[order[again]])
-    count = np.bincount(row[order[new]] - starts[rank], minlength=shape[0] // size)
-    indptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int32)
-    return sp.bsr_matrix((summed, column[order[new]].astype(np.int32), indptr), shape=shape)
+    others = [rank if rank != comm.rank and (owner == rank).any() else None for rank in range(comm.size)]
+    away = [None if rank is None else _rows_of(rank, matrix, blocks, starts) for rank in others]
+    received = [rows for rows in comm.alltoall(away) if rows is not None]
+    own = _rows_of(comm.rank, matrix, blocks, starts)
+    del away, matrix  # as large as the stiffness
+    return own + sum(received[1:], received[0]) if received else own
 
 
-def _rows(
-    matrix: Any, blocks: NDArray[np.int64], which: NDArray[np.bool_]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Row, column and values of the entries in some block rows, numbered as in the whole."""
-    rows = np.flatnonzero(which)
+def _with_diagonal(rows: Any, first: int) -> Any:
+    """Rows from ``first`` on of a matrix with all diagonal entries stored: a free rigid body has no stiffness of its own."""
+    entries, n = rows.tocoo(), np.arange(rows.shape[0])
+    row, column = np.concatenate([entries.row, n]), np.concatenate([entries.col, first + n])
+    return sp.csr_matrix((np.concatenate([entries.data, np.zeros(len(n))]), (row, column)), shape=rows.shape)
+
+
+def _rows_of(process: int, matrix: Any, blocks: NDArray[np.int64], starts: NDArray[np.int64]) -> Any:
+    """Those of a part's rows that belong to a process, at their places among all of its rows, BSR."""
+    first, last = starts[process : process + 2]
+    rows = np.flatnonzero((blocks >= first) & (blocks < last))  # in its order too: both go by the points
     count = np.diff(matrix.indptr)[rows]
     entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
-    return np.repeat(blocks[rows], count), blocks[matrix.indices[entries]], matrix.data[entries]
+    indptr = np.zeros(last - first + 1, dtype=np.int32)
+    indptr[blocks[rows] - first + 1] = count
+    columns = blocks[matrix.indices[entries]].astype(np.int32)
+    size = matrix.blocksize[0]
+    result = sp.bsr_matrix(
+        (matrix.data[entries], columns, np.cumsum(indptr, dtype=np.int32)),
+        shape=(size * (last - first), size * starts[-1]),
+    )
+    result.sort_indices()
+    return result
 
 
 def _local(matrix: Any) -> NDArray[np.float64]:

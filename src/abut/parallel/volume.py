@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.discretization.supports import Supports
+from abut.errors import InputError
 from abut.interface.coupling import Coupling
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -96,6 +97,11 @@ class Spread:
         """As in ``Volume``; PETSc options come first."""
         if wants_factors():
             return "direct"
+        if wants_iterations() and held.coupled:
+            raise InputError(
+                "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
+                "which multigrid cannot: leave -ksp_type and -pc_type out"
+            )
         linear = "amg" if wants_iterations() else "auto"
         return chosen(linear, len(system.load), system.pairs, self.model.mesh, held.coupled, LARGE)
 
