@@ -95,7 +95,7 @@ def test_layout_has_a_place_for_each(coupled: bool) -> None:
     """Places are different, each with the process of its point; points stay together, filled up."""
     mesh = glued()
     owner = np.random.default_rng(2).integers(0, 3, mesh.n_cells)
-    points = point_owners(pieces(mesh, owner, 4), len(mesh.points))
+    points = point_owners(mesh, owner)
     kept = np.random.default_rng(3).random(mesh.points.size) < 0.7
     free = sp.identity(mesh.points.size, format="csr")[:, kept]
     places = layout(free, points, 3, 4, coupled)

@@ -52,6 +52,19 @@ def press(n: int = 4, cell: str = "hex8", height: float = 1.0, **options: Any) -
     )
 
 
+def alone() -> Any:
+    """A block under its own weight, without any contact."""
+    import abut
+    from abut.mesh.make import box
+
+    return abut.Model(
+        box(cells=[6, 5, 4], cell="hex8"),
+        [abut.Solid("body", abut.LinearElastic(1.0, 0.3, density=1.0))],
+        [abut.Support("bottom", x=0.0, y=0.0, z=0.0)],
+        [abut.Gravity((0.3, 0.0, -1.0))],
+    )
+
+
 def rigid() -> Any:
     """A rigid tool, held in part by an equation that couples it with a node of the block."""
     import abut
@@ -93,6 +106,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "press-tet10": lambda: press(3, "tet10"),
     "tower": lambda: press(3, height=4.0),
     "larger": lambda: press(11),
+    "alone": alone,
     "rigid": rigid,
     "hertz-line": lambda: example("hertz-line/quad8.toml"),
     "ball": ball,

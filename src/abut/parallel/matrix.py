@@ -45,7 +45,7 @@ def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np
     """Build and keep PETSc's matrix of the stiffness on the free displacements.
 
     starts, block: as in ``Layout``; free: (dim n_points, k) change of variables of this part's points, on those k free
-    displacements that move any of them, in the order of the points; slot: (k,) their places. Rows at the border between
+    displacements that move any of them; slot: (k,) their places, ascending. Rows at the border between
     parts get what the others have of them. The stiffness of the part goes, to make room."""
     from petsc4py import PETSc
 
@@ -108,18 +108,16 @@ def _with_diagonal(rows: Any, first: int) -> Any:
 def _rows_of(process: int, matrix: Any, blocks: NDArray[np.int64], starts: NDArray[np.int64]) -> Any:
     """Those of a part's rows that belong to a process, at their places among all of its rows, BSR."""
     first, last = starts[process : process + 2]
-    rows = np.flatnonzero((blocks >= first) & (blocks < last))  # in its order too: both go by the points
-    count = np.diff(matrix.indptr)[rows]
-    entries = np.repeat(matrix.indptr[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+    begin, end = np.searchsorted(blocks, (first, last))  # what ascends in a part ascends in the whole
+    entries = slice(matrix.indptr[begin], matrix.indptr[end])
     indptr = np.zeros(last - first + 1, dtype=np.int32)
-    indptr[blocks[rows] - first + 1] = count
-    columns = blocks[matrix.indices[entries]].astype(np.int32)
+    indptr[blocks[begin:end] - first + 1] = np.diff(matrix.indptr[begin : end + 1])
     size = matrix.blocksize[0]
     result = sp.bsr_matrix(
-        (matrix.data[entries], columns, np.cumsum(indptr, dtype=np.int32)),
+        (matrix.data[entries], blocks[matrix.indices[entries]].astype(np.int32), np.cumsum(indptr, dtype=np.int32)),
         shape=(size * (last - first), size * starts[-1]),
     )
-    result.sort_indices()
+    result.has_canonical_format = True
     return result
 
 

@@ -21,7 +21,8 @@ PARTITIONERS = ("ptscotch", "parmetis")
 
 @dataclass(frozen=True)
 class Piece:
-    """What one process has of a mesh: its cells over the points they use; points, cells: their numbers in the whole."""
+    """What one process has of a mesh: its cells over the points they use; points, cells: their numbers in the whole. Points
+    go by their processes, as displacements do in ``Layout``: what ascends in a piece ascends in the whole."""
 
     mesh: Mesh
     points: NDArray[np.int64]
@@ -96,9 +97,19 @@ def _partition(store: Store, n: int, indptr: NDArray[np.int32], indices: NDArray
     return np.array(result.getIndices(), dtype=np.int32)
 
 
-def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int) -> list[Piece]:
-    """The mesh of each process. Names of bodies stay even where a piece has none of their cells; surfaces and node sets
-    are left out."""
+def point_owners(mesh: Mesh, owner: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The process of each point, the first that has a cell there: (n_points,)."""
+    result = np.full(len(mesh.points), owner.max(initial=0))
+    for block, first in zip(mesh.blocks, mesh.starts.tolist()):
+        own = owner[first : first + len(block.nodes)]
+        for node in block.nodes.T:
+            np.minimum.at(result, node, own)
+    return result
+
+
+def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int, points: NDArray[np.int64] | None = None) -> list[Piece]:
+    """The mesh of each process; ``points``: the process of each point, by which the points of a piece are sorted, then by
+    number. Names of bodies stay even where a piece has none of their cells; surfaces and node sets are left out."""
     result = []
     place = np.zeros(len(mesh.points), dtype=np.int32)
     number = np.zeros(mesh.n_cells, dtype=np.int64)
@@ -109,25 +120,22 @@ def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int) -> list[Piece]:
             (block.kind, block.nodes[cells[(cells >= first) & (cells < first + len(block.nodes))] - first])
             for block, first in zip(mesh.blocks, mesh.starts.tolist())
         ]
-        points = np.unique(np.concatenate([nodes.ravel() for _, nodes in own])).astype(np.int64)
-        place[points] = np.arange(len(points))
+        used = np.zeros(len(mesh.points), dtype=bool)
+        for _, nodes in own:
+            used[nodes] = True
+        kept = np.flatnonzero(used)
+        if points is not None:
+            kept = kept[np.argsort(points[kept], kind="stable")]
+        place[kept] = np.arange(len(kept))
         piece = replace(
             mesh,
-            points=mesh.points[points],
+            points=mesh.points[kept],
             blocks=tuple(CellBlock(kind, place[nodes]) for kind, nodes in own),
             bodies={name: number[held[owner[held] == rank]] for name, held in mesh.bodies.items()},
             surfaces={},
             node_sets={},
         )
-        result.append(Piece(piece, points, cells))
-    return result
-
-
-def point_owners(pieces: Sequence[Piece], n_points: int) -> NDArray[np.int64]:
-    """The process of each point, one that has a cell there: (n_points,)."""
-    result = np.zeros(n_points, dtype=np.int64)
-    for rank, piece in reversed(list(enumerate(pieces))):
-        result[piece.points] = rank
+        result.append(Piece(piece, kept, cells))
     return result
 
 

@@ -31,11 +31,13 @@ LARGE = {
 
 @dataclass(frozen=True)
 class Spread:
-    """As ``abut.analysis.volume.Volume``, by a team. owner: (n_cells,) process of each cell; pieces: by process."""
+    """As ``abut.analysis.volume.Volume``, by a team. owner: (n_cells,) process of each cell, points: (n_points,) of each
+    point; pieces: by process."""
 
     model: Model
     team: Team
     owner: NDArray[np.int64]
+    points: NDArray[np.int64]
     pieces: Sequence[Piece]
 
     @property
@@ -70,13 +72,12 @@ class Spread:
     def reduce(self, held: Supports) -> Distributed:
         """As in ``Volume``, a matrix of PETSc's."""
         dim = self.model.dim
-        places = layout(
-            held.free, point_owners(self.pieces, len(self.model.mesh.points)), dim, self.team.size, held.coupled
-        )
+        places = layout(held.free, self.points, dim, self.team.size, held.coupled)
         own = []
         for piece in self.pieces:
             rows = held.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
             used = np.flatnonzero(np.diff(rows.indptr))
+            used = used[np.argsort(places.slot[used])]
             own.append((places.slot[used], rows[:, used].tocsr()))
         self.team.each(reduce, places.starts, places.block, own=own)
         return Distributed(self.team, places)
@@ -118,6 +119,7 @@ class Spread:
 def deal_out(model: Model, team: Team) -> Spread:
     """Divide the cells of a model among the processes of a team."""
     owner = owners(model.mesh, team)
-    dealt = pieces(model.mesh, owner, team.size)
+    points = point_owners(model.mesh, owner)
+    dealt = pieces(model.mesh, owner, team.size, points)
     team.store["owner"], team.store["pieces"] = owner, dealt
-    return Spread(model, team, owner, dealt)
+    return Spread(model, team, owner, points, dealt)
