@@ -77,38 +77,75 @@ def test_restart_on_another_number_of_processes(mpirun: Run, tmp_path: Path) -> 
     np.testing.assert_allclose(forces[1], forces[0], rtol=1e-7, atol=1e-7 * np.abs(forces[0]).max())
 
 
-@pytest.mark.skipif(os.name != "posix", reason="needs signals")
-def test_stopping_process_0_stops_all_in_order(tmp_path: Path) -> None:
-    """SIGTERM to the process that leads: the steps done are whole, and a serial run goes on from them."""
-    path = job(tmp_path, steps=60)
+def started(path: Path, results: Path) -> subprocess.Popen[str]:
+    """A job of two processes, which say who they are, after its second step."""
     command = ["mpiexec", "-n", "2", sys.executable, "-c", TELL, "run", str(path)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
-    results = tmp_path / "results"
     end = time.monotonic() + 60.0
     while not (results / "fields_0002.pvtu").exists():
         assert time.monotonic() < end
         assert process.poll() is None
         time.sleep(0.02)
-    os.kill(int((tmp_path / "leader").read_text()), signal.SIGTERM)
-    out, _ = process.communicate(timeout=60.0)
-    assert process.returncode == 143, out
+    return process
+
+
+def running(number: int) -> bool:
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def is_whole(results: Path) -> int:
+    """Every file of the steps done is there and can be read, nothing else is; the number of the steps."""
     summary = json.loads((results / "summary.json").read_text())
     assert summary["status"] == "incomplete"
     done = len(summary["steps"])
-    assert f"steps 1 to {done} are in" in out
     assert listed(results) == [f"fields_{i:04d}.pvtu" for i in range(1, done + 1)]
     for name in listed(results):
         assert read(results / name).GetNumberOfCells() > 0
+    return done
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_stopping_process_0_stops_all_in_order(tmp_path: Path) -> None:
+    """SIGTERM to the process that leads: the steps done are whole, and a serial run goes on from them."""
+    path, results = job(tmp_path, steps=60), tmp_path / "results"
+    process = started(path, results)
+    os.kill(int((tmp_path / "process0").read_text()), signal.SIGTERM)
+    out, _ = process.communicate(timeout=60.0)
+    assert process.returncode == 143, out
+    assert f"steps 1 to {is_whole(results)} are in" in out
     assert not [p.name for p in results.iterdir() if p.name.startswith(".")]
     job(tmp_path, steps=STEPS)
     assert main(["run", "--quiet", "--restart", str(path)]) == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+@pytest.mark.parametrize("victim", [0, 1])
+def test_a_killed_process_ends_the_job(victim: int, tmp_path: Path) -> None:
+    """SIGKILL to one of them, as when memory runs out: the others end too; the steps done are whole, and a run goes on from
+    them."""
+    path, results = job(tmp_path, steps=60), tmp_path / "results"
+    process = started(path, results)
+    os.kill(int((tmp_path / f"process{victim}").read_text()), signal.SIGKILL)
+    out, _ = process.communicate(timeout=60.0)
+    assert process.returncode not in (None, 0), out
+    end = time.monotonic() + 30.0
+    while running(int((tmp_path / f"process{1 - victim}").read_text())):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    is_whole(results)
+    job(tmp_path, steps=STEPS)
+    assert main(["run", "--quiet", "--restart", str(path)]) == 0
+    assert not [p.name for p in results.iterdir() if p.name.startswith(".")]
 
 
 TELL = """
 import os, pathlib, sys
 from abut.cli import main
 from abut.parallel.launch import rank
-if rank() == 0:
-    pathlib.Path(sys.argv[2]).with_name("leader").write_text(str(os.getpid()))
+pathlib.Path(sys.argv[2]).with_name(f"process{rank()}").write_text(str(os.getpid()))
 sys.exit(main(sys.argv[1:]))
 """
