@@ -17,9 +17,9 @@ from abut.parallel.team import Team
 from abut.solvers.active_set import Rows, System
 from abut.solvers.blocks import saddle
 from abut.solvers.direct import SINGULAR
-from abut.solvers.iterative import Count, NotConverged
+from abut.solvers.iterative import Count, NotConverged, compliance, pressure_scale
 from abut.solvers.linear import Prepared
-from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
+from abut.solvers.schur import Interface, interfaces, predictor, schur_inverse
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -40,15 +40,14 @@ class Iterative:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        s, known = self.scale, rows.decoupled
-        fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
-        operator = self.operator[~known]
-        inverse = schur_inverse(self.parts, ~known)
+        s, fixed, active = self.scale, rows.fixed, ~rows.decoupled
+        operator = self.operator[active]
+        inverse = schur_inverse(self.parts, active)
         layout = self.matrix.layout
-        small = self._resistance(operator, inverse)
+        small = compliance(operator @ self.motions, inverse) if self.motions.shape[1] else np.zeros((0, 0))
         lower = spread(-s * operator, layout)
         conditions = Conditions(
-            lower, lower, None, -s * rows.residual[~known], lambda gap: inverse(gap / s) / s if len(gap) else gap
+            lower, lower, None, -s * rows.residual[active], lambda gap: inverse(gap / s) / s if len(gap) else gap
         )
         shares = layout.shares(np.column_stack([-residual + self.operator.T @ fixed, self.motions]))
         answers = self.matrix.team.each(
@@ -59,15 +58,8 @@ class Iterative:
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
-        fixed[~known] = s * answers[0].pressure
+        fixed[active] = s * answers[0].pressure
         return solution, fixed
-
-    def _resistance(self, operator: Any, inverse: Apply) -> Vector:
-        """Inverse of what contact does against rigid motions that supports leave free, which multigrid misses."""
-        if not self.motions.shape[1]:
-            return np.zeros((0, 0))
-        moved = operator @ self.motions
-        return np.asarray(np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T])))
 
 
 @dataclass(frozen=True)
@@ -113,8 +105,7 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
         )
     layout, team = matrix.layout, matrix.team
     kind = team.each(multigrid, own=layout.shares(np.linalg.qr(motions)[0]))[0]
-    largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
-    scale = float(np.median(matrix.diagonal()) / np.median(largest)) if len(largest) else 1.0
+    scale = pressure_scale(system)
     count, parts = Count(), interfaces(system.pairs)
     solver = Iterative(matrix, system.operator, parts, loose, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ loose))

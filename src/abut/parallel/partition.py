@@ -12,8 +12,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.mesh.exterior import facets_of, numbered
+from abut.mesh.facets import row_codes
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.parallel.team import Store, Team
+from abut.solvers.multigrid import slots
 
 FEW = 10  # cells a process below which they are dealt out in their order: a partitioner would leave processes empty
 PARTITIONERS = ("ptscotch", "parmetis")
@@ -68,10 +70,9 @@ def owners(mesh: Mesh, team: Team) -> NDArray[np.int64]:
 def cell_graph(mesh: Mesh) -> Any:
     """Cells that share a facet, (n_cells, n_cells) CSR."""
     corners, row = facets_of(numbered(mesh))
-    keys = np.sort(corners.astype(np.int64), axis=1)
-    code = (keys[:, 0::2] << 32) + keys[:, 1::2] + 1  # four numbers in two: faster to sort, still exact
-    order = np.lexsort(code.T)
-    same = np.flatnonzero((code[order[1:]] == code[order[:-1]]).all(axis=1))
+    code = row_codes(np.sort(corners, axis=1))
+    order = np.argsort(code)
+    same = np.flatnonzero(np.diff(code[order]) == 0)
     one, other = row[order[same], 0], row[order[same + 1], 0]
     graph = sp.csr_matrix((np.ones(len(one), dtype=np.int8), (one, other)), shape=(mesh.n_cells,) * 2)
     return (graph + graph.T).tocsr()
@@ -145,16 +146,11 @@ def layout(free: Any, owner: NDArray[np.int64], dim: int, size: int, coupled: bo
     columns = free.tocsc()
     columns.sort_indices()
     point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
-    if coupled:
-        order = np.argsort(owner[point], kind="stable")
-        slot = np.empty(len(point), dtype=np.int64)
-        slot[order] = np.arange(len(point))
-        count = np.bincount(owner[point], minlength=size)
-        return Layout(slot, np.concatenate([[0], np.cumsum(count)]).astype(np.int64), 1)
-    used, number, degrees = np.unique(point, return_inverse=True, return_counts=True)
-    local = np.empty(len(point), dtype=np.int64)
-    local[np.argsort(point, kind="stable")] = np.arange(len(point)) - np.repeat(np.cumsum(degrees) - degrees, degrees)
-    place = np.empty(len(used), dtype=np.int64)
-    place[np.argsort(owner[used], kind="stable")] = np.arange(len(used))
-    count = np.bincount(owner[used], minlength=size)
-    return Layout(dim * place[number] + local, dim * np.concatenate([[0], np.cumsum(count)]).astype(np.int64), dim)
+    block = 1 if coupled else dim
+    slot, places = (np.arange(len(point)), len(point)) if coupled else slots(free, dim)
+    process = np.empty(places // block, dtype=np.int64)
+    process[slot // block] = owner[point]
+    place = np.empty_like(process)
+    place[np.argsort(process, kind="stable")] = np.arange(len(process))
+    starts = block * np.concatenate([[0], np.cumsum(np.bincount(process, minlength=size))]).astype(np.int64)
+    return Layout(block * place[slot // block] + slot % block, starts, block)

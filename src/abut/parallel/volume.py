@@ -20,6 +20,7 @@ from abut.parallel.linear import prepare_direct, prepare_iterative, wants_factor
 from abut.parallel.matrix import Distributed, reduce
 from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
 from abut.parallel.team import Team
+from abut.solids.elements import averaged
 from abut.solvers.active_set import System
 from abut.solvers.linear import Prepared, chosen
 
@@ -92,7 +93,7 @@ class Spread:
         for piece, (stress, cells) in zip(self.pieces, sums):
             total[piece.points] += stress
             count[piece.points] += cells
-        return np.asarray(total / np.maximum(count, 1.0)[:, None])
+        return averaged(total, count)
 
     def choose(self, system: System, held: Supports) -> str:
         """As in ``Volume``; PETSc options come first."""

@@ -145,7 +145,12 @@ def nodal_stress(
     Axisymmetric: xx radial, yy axial, zz hoop. ``temperatures`` of bodies and ``nodal`` ones as in ``thermal_load``.
     Integration "b-bar": with the mean dilatation of (E3)."""
     total, count = stress_sums(mesh, materials, temperatures, displacement, plane, nodal, integration)
-    return total / np.maximum(count, 1.0)[:, None]
+    return averaged(total, count)
+
+
+def averaged(total: NDArray[np.float64], count: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sums of stresses (n_points, 6) over how many cells each holds (n_points,); zero where there are none."""
+    return np.asarray(total / np.maximum(count, 1.0)[:, None])
 
 
 def stress_sums(

@@ -38,8 +38,7 @@ def saddle(unit: float, operator: Any, rows: Rows, residual: NDArray[np.float64]
     """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked; residual:
     K u - B^T p - f."""
     s = unit / _row_max(operator)
-    known = rows.decoupled
-    fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
+    known, fixed = rows.decoupled, rows.fixed
     rhs_u = -residual + operator.T @ fixed
     ones = sp.diags(np.where(known, -unit, 0.0))
     free = sp.diags((~known).astype(float))

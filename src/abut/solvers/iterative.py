@@ -48,9 +48,7 @@ class Iterative:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        known = rows.decoupled
-        fixed = np.where(known, -rows.residual / np.where(known, rows.by_pressure.diagonal(), 1.0), 0.0)
-        active = ~known
+        fixed, active = rows.fixed, ~rows.decoupled
         operator = self.operator[active]
         n, s = len(residual), self.scale
         inverse = schur_inverse(self.parts, active)
@@ -78,9 +76,20 @@ class Iterative:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         if not self.motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        moved = operator @ self.motions
-        small = np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T]))
+        small = compliance(operator @ self.motions, inverse)
         return lambda r: np.asarray(self.motions @ (small @ (self.motions.T @ r)))
+
+
+def compliance(moved: NDArray[np.float64], inverse: Apply) -> NDArray[np.float64]:
+    """How far rigid motions yield (m, m) that only contact resists. moved: (n, m) weighted gaps by unit motions; inverse: of
+    the pressures' preconditioner."""
+    return np.asarray(np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T])))
+
+
+def pressure_scale(system: System) -> float:
+    """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
+    largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
+    return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
 
 
 def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) -> tuple[System, Count]:
@@ -93,8 +102,7 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) 
             f"solve.linear: \"amg\" does not know the constraint function of contact '{smooth[0]}'; choose law = "
             '"complementarity", or linear = "direct"'
         )
-    largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
-    scale = float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
+    scale = pressure_scale(system)
     count, parts = Count(), interfaces(system.pairs)
     solver = Iterative(system.operator, hierarchy, parts, motions, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ motions))

@@ -42,7 +42,7 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int)
         raise InputError(
             'solve.linear: "amg" needs PyAMG, which is not installed: pip install pyamg; or choose "direct"'
         ) from None
-    slot, size = _slots(free, dim)
+    slot, size = slots(free, dim)
     scale = float(np.median(stiffness.diagonal()))
     fine = level_matrix = _padded(stiffness, slot, size, dim, scale)
     near_null = np.zeros((size, motions.shape[1]))
@@ -84,7 +84,7 @@ def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale:
     return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
 
-def _slots(free: Any, dim: int) -> tuple[NDArray[np.int64], int]:
+def slots(free: Any, dim: int) -> tuple[NDArray[np.int64], int]:
     """Where each free displacement goes among ``dim`` places a point, in ascending order, points without any left out; and
     how many places."""
     columns = free.tocsc()

@@ -41,6 +41,12 @@ class Rows:
     decoupled: NDArray[np.bool_]
     symmetric: bool
 
+    @property
+    def fixed(self) -> NDArray[np.float64]:
+        """Change of the pressures that decoupled rows give at once; zero for all others."""
+        own = np.where(self.decoupled, self.by_pressure.diagonal(), 1.0)
+        return np.where(self.decoupled, -self.residual / own, 0.0)
+
 
 @dataclass(frozen=True)
 class Stage:
