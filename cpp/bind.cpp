@@ -9,4 +9,5 @@ NB_MODULE(_core, m) {
   abut::bind_stress(m);
   abut::bind_interface(m);
   abut::bind_sparse(m);
+  abut::bind_strength(m);
 }

@@ -74,4 +74,5 @@ void bind_solids(nb::module_ &m);
 void bind_stress(nb::module_ &m);
 void bind_interface(nb::module_ &m);
 void bind_sparse(nb::module_ &m);
+void bind_strength(nb::module_ &m);
 } // namespace abut

@@ -89,7 +89,7 @@ def hierarchy() -> tuple[list, Levels]:
     for _ in range(2):
         graph = sp.csr_matrix((np.ones(len(matrices[-1].indices)), matrices[-1].indices, matrices[-1].indptr))
         tentative, near_null = fit_candidates(standard_aggregation(graph)[0], near_null)
-        levels.append(level(matrices[-1], tentative))
+        levels.append(level(matrices[-1], matrices[-1], tentative))
         matrices.append(coarse_matrix(matrices[-1], levels[-1]))
     return matrices, Levels(levels, inverse(matrices[-1]))
 

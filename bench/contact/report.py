@@ -1,11 +1,11 @@
-"""From records of runs to a table, fitted exponents, a page's table and a plot. A record is a dictionary as in Row."""
+"""From records of runs to tables, fitted exponents and pages. A record is a dictionary as in Row."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TypedDict
 
 DIFFERENT = 0.01  # relative difference of the contact force to abut's that is called a different answer
 BEGIN, END = "<!-- begin table -->", "<!-- end table -->"
@@ -14,6 +14,7 @@ HEAD = (
     "dofs",
     "cores",
     "code",
+    "runs",
     "time s",
     "peak MB",
     "iterations",
@@ -52,6 +53,12 @@ def cores(number: int) -> str:
 def spaced(number: int) -> str:
     """A whole number with spaces between thousands."""
     return f"{number:,}".replace(",", " ")
+
+
+def ordered(rows: Iterable[Row], cases: Sequence[str], codes: Sequence[str]) -> list[Row]:
+    """The last row of every case, size, number of cores and code, in that order."""
+    last = {(cases.index(r["case"]), r["dofs"], r["cores"], codes.index(r["code"])): r for r in rows}
+    return [last[key] for key in sorted(last)]
 
 
 def _partner(rows: Iterable[Row], row: Row, code: str) -> Row | None:
@@ -95,6 +102,7 @@ def cells(rows: Sequence[Row], row: Row) -> list[str]:
         spaced(row["dofs"]),
         str(row["cores"]),
         row["code"],
+        show(row.get("runs") if sound else None, "d"),
         show(row.get("seconds") if sound else None, ".3g"),
         show(row.get("peak_mb"), ".0f"),
         show(row.get("iterations"), "d"),
@@ -162,19 +170,52 @@ def table(rows: Sequence[Row]) -> list[list[str]]:
     return [list(HEAD), *(cells(rows, row) for row in rows)]
 
 
+def overview(rows: Sequence[Row]) -> list[list[str]]:
+    """A line for a mesh and number of cores: abut's contact in seconds and MB, and the times of the others over it."""
+    others = [code for code in dict.fromkeys(row["code"] for row in rows) if code != "abut"]
+    lines = [["case", "dofs", "cores", "abut s", "MB", *others]]
+    for own in rows:
+        if own["code"] == "abut" and own["status"] == "ok":
+            times = [_times(rows, own, code) for code in others]
+            lines.append([*cells(rows, own)[:3], f"{own['seconds']:.3g}", f"{own['peak_mb']:.0f}", *times])
+    return lines
+
+
+def _times(rows: Iterable[Row], own: Row, code: str) -> str:
+    """The time of another code over abut's on the same mesh; at least so much where it ran out of time."""
+    for row in rows:
+        if row["code"] == code and all(row[key] == own[key] for key in ("case", "dofs", "cores")):
+            if row["status"].startswith("time limit"):
+                return f"> {row['wall'] / own['seconds']:.0f}"
+            if row["status"] == "ok":
+                off = difference([own], row)
+                return f"{row['seconds'] / own['seconds']:.2f}" + "*" * (off is not None and abs(off) >= DIFFERENT)
+            return "memory" if row["status"].startswith("memory limit") else "-"
+    return ""
+
+
 def page(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
-    """What stands between the markers of the docs page: machine, versions, table, exponents."""
+    """What stands between the markers of the docs page: machine, versions, overview, exponents."""
     known = ", ".join(f"{name} {version}" for name, version in versions.items())
     return "\n\n".join(
         [
             f"{machine}. {known}.",
-            markdown(table(rows)),
+            "abut's contact, and how many times as long the others take (-: failed or not run; \\*: another answer):",
+            markdown(overview(rows)),
             "Exponents of time against dofs:",
             markdown(exponent_table(rows)),
-            "Seconds of abut's contact runs by stage:",
-            markdown(stage_table(rows)),
         ]
     )
+
+
+def all_runs(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
+    """The page with a table of its own for every case, and the stages of abut's runs."""
+    known = ", ".join(f"{name} {version}" for name, version in versions.items())
+    parts = ["# Every run", f"{machine}. {known}. What is measured says [time and memory](performance.md)."]
+    head, *lines = table(rows)
+    for case in dict.fromkeys(row["case"] for row in rows):
+        parts += [f"## {case}", markdown([head[1:], *(line[1:] for line in lines if line[0] == case)])]
+    return "\n\n".join([*parts, "## Seconds of abut's contact runs by stage", markdown(stage_table(rows))]) + "\n"
 
 
 def put_into(file: Path, text: str) -> None:
@@ -184,38 +225,3 @@ def put_into(file: Path, text: str) -> None:
     if not begin or not end:
         raise ValueError(f"{file}: no {BEGIN} and {END}")
     file.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}", encoding="utf-8")
-
-
-def plot(rows: Sequence[Row], file: Path) -> bool:
-    """Time against dofs, a panel for each case, solid on the fewest cores; False where matplotlib is missing."""
-    try:
-        import matplotlib
-
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-    except ImportError:
-        return False
-    cases, codes = (list(dict.fromkeys(row[key] for row in rows)) for key in ("case", "code"))
-    every = sorted({row["cores"] for row in rows})
-    figure, panels = pyplot.subplots(
-        1, len(cases), figsize=(5 * len(cases), 4), sharey=True, squeeze=False, layout="constrained"
-    )
-    for panel, case in zip(panels[0], cases):
-        for i, code in enumerate(codes):
-            for n in every:
-                own: list[Any] = [r for r in rows if (r["case"], r["code"], r["cores"]) == (case, code, n)]
-                own = [r for r in own if r["status"] == "ok"]
-                if own:
-                    style = "-" if n == every[0] else "--"
-                    label = f"{code}, {cores(n)}"
-                    x, y = [r["dofs"] for r in own], [r["seconds"] for r in own]
-                    panel.loglog(x, y, f"o{style}", color=f"C{i}", markersize=3, label=label)
-        panel.set(title=case, xlabel="dofs")
-        panel.grid(True, which="both", alpha=0.3)
-    panels[0][0].set_ylabel("seconds")
-    lines = {label: line for panel in panels[0] for line, label in zip(*panel.get_legend_handles_labels())}
-    if lines:
-        figure.legend(lines.values(), lines.keys(), fontsize=7, loc="outside right upper")
-    figure.savefig(file, dpi=120)
-    pyplot.close(figure)
-    return True

@@ -1,12 +1,13 @@
 """Contact in abut, in abut with the bodies tied (the linear problem on the same mesh), in CalculiX and in Kratos; and PyAMG
 by hand on the stiffness alone.
 
-python bench/contact/run.py [--cases flat-hex8,tilted-hex8] [--dofs 10000,50000,150000] [--cores 1,2] [--repeat 3]
-    [--codes abut,abut-tied,pyamg,calculix-mortar,calculix-penalty,kratos] [--linear auto] [--limit 60]
+python bench/contact/run.py [--cases flat-hex8,tilted-hex8] [--dofs 10000,50000] [--cores 1,2] [--repeat 3]
+    [--codes abut,abut-tied,pyamg,calculix-mortar,calculix-penalty,kratos] [--linear auto] [--limit 120]
 
-Cases are {flat,tilted,hertz}-{hex8,hex20,tet10}. Every run is a new process with limits of time and memory; a code that
-is missing, fails or runs out of either is named in the table. Results go to results-bench: results.json, table.md and,
-with matplotlib, times.png. docs/performance.md says what is measured.
+Cases are {flat,tilted,hertz}-{hex8,hex20,tet10}; all of them, of 10 000 to 1 000 000 dofs, take two to three hours.
+Every run is a new process with limits of time and memory; a code that is missing, fails or runs out of either is named in
+the table. Results go to results-bench: results.json, table.md, runs.md and, with matplotlib, times.png. docs/performance.md
+says what is measured.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import argparse
 import json
 import os
 import platform
-import re
 import shutil
 import statistics
 import sys
@@ -24,14 +24,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import plot
 import process
 import report
 from codes import CODES, Code, code
 from report import Row
 
-CASE = re.compile(r"(flat|tilted|hertz)-(hex8|hex20|tet10)")
+GEOMETRIES, CELLS = ("flat", "tilted", "hertz"), ("hex8", "hex20", "tet10")
+NAMES = [f"{geometry}-{cell}" for geometry in GEOMETRIES for cell in CELLS]
 MARGIN = 1.5  # times differ between runs on a busy machine: a run is left out only if it would be this much too long
-ENOUGH = 15.0  # seconds spent on one code and mesh after which no run is repeated
+ENOUGH = 30.0  # seconds spent on one code and mesh after which no run is repeated
+LARGEST = 500_000  # dofs from where on other codes are not run
 SMALLER = " already at a smaller size"
 NUMBERS = ("seconds", "wall", "cpu", "peak_mb")
 
@@ -51,6 +54,8 @@ class Bench:
         rows = []
         every = process.available_cores()
         for own in self.codes:
+            if own.prepare is not None and wanted > LARGEST:
+                continue
             place = folder / own.name
             place.mkdir()
             trouble, size = "" if own.version else "not installed", {}
@@ -136,14 +141,14 @@ def arguments() -> argparse.Namespace:
         return sorted(int(float(word.replace("_", ""))) for word in text.split(","))
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=names, default=["flat-hex8", "tilted-hex8"])
-    parser.add_argument("--dofs", type=numbers, default=[10_000, 50_000, 150_000])
+    parser.add_argument("--cases", type=names, default=NAMES)
+    parser.add_argument("--dofs", type=numbers, default=[10_000, 50_000, 150_000, 400_000, 1_000_000])
     count = len(process.available_cores())
     parser.add_argument("--cores", type=numbers, default=[n for n in (1, 2) if n <= count])
     parser.add_argument("--codes", type=names, default=list(CODES))
     parser.add_argument("--repeat", type=int, default=3, help=f"median of so many; fewer from {ENOUGH:.0f} s on")
     parser.add_argument("--linear", default="auto", help="abut's linear solver")
-    parser.add_argument("--limit", type=float, default=60.0, help="seconds for one run")
+    parser.add_argument("--limit", type=float, default=120.0, help="seconds for one run")
     share = 0.8 * process.memory_of_machine() / 1e9
     parser.add_argument("--memory", type=float, default=share, help="GB for one run (80 %% of the machine's)")
     parser.add_argument("--ccx", default=os.environ.get("CCX", "ccx"), help="CalculiX (or variable CCX)")
@@ -154,12 +159,14 @@ def arguments() -> argparse.Namespace:
     )
     parser.add_argument("--output", type=Path, default=Path("results-bench"))
     parser.add_argument("--add", action="store_true", help="keep what earlier calls measured into the same output")
-    parser.add_argument("--page", type=Path, help="page to put the table into, between its markers")
+    parser.add_argument(
+        "--page", type=Path, help="page for the overview, between its markers; PAGE-runs.md beside it gets every run"
+    )
     result = parser.parse_args()
     unknown = sorted(set(result.codes) - set(CODES))
     if unknown:
         parser.error(f"no code {unknown[0]!r}; use {', '.join(CODES)}")
-    wrong = [case for case in result.cases if not CASE.fullmatch(case)]
+    wrong = [case for case in result.cases if case not in NAMES]
     if wrong:
         parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,hertz}}-{{hex8,hex20,tet10}}")
     if result.cores[-1] > count:
@@ -187,21 +194,25 @@ def main() -> None:
             print(f"{case}, {wanted} dofs", file=sys.stderr, flush=True)
             with tempfile.TemporaryDirectory() as folder:
                 bench.rows += bench.measure(case, wanted, cores, Path(folder))
+            bench.rows = report.ordered(bench.rows, NAMES, list(CODES))
             record = {"machine": place, "versions": versions, "rows": bench.rows}
             (options.output / "results.json").write_text(json.dumps(record, indent=1), encoding="utf-8")
     text = report.page(bench.rows, place, versions)
     (options.output / "table.md").write_text(text + "\n", encoding="utf-8")
+    every_run = report.all_runs(bench.rows, place, versions)
+    (options.output / "runs.md").write_text(every_run, encoding="utf-8")
     print(report.plain(report.table(bench.rows)))
     print("\nexponents of time against dofs\n" + report.plain(report.exponent_table(bench.rows)))
     print("\nseconds of abut's contact runs by stage\n" + report.plain(report.stage_table(bench.rows)))
     picture = options.output / "times.png"
-    plotted = report.plot(bench.rows, picture)
+    plotted = plot.plot(bench.rows, picture)
     print(f"\nwritten to {options.output}" + ("" if plotted else "; no plot, matplotlib is not installed"))
     if options.page is not None:
         if plotted:
             shutil.copy(picture, options.page.parent / "pictures" / "times.png")
             text += "\n\n![Time against dofs](pictures/times.png)"
         report.put_into(options.page, text)
+        options.page.with_name(f"{options.page.stem}-runs.md").write_text(every_run, encoding="utf-8")
 
 
 if __name__ == "__main__":

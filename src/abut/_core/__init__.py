@@ -15,6 +15,7 @@ from abut._core._core import (
     shape_functions,
     single_rows,
     smallest_determinants,
+    strong_part,
 )
 
 __all__ = [
@@ -30,4 +31,5 @@ __all__ = [
     "shape_functions",
     "single_rows",
     "smallest_determinants",
+    "strong_part",
 ]

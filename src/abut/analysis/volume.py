@@ -88,7 +88,7 @@ class Whole:
         self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
     ) -> Prepared:
         """As in ``Volume``."""
-        return prepare(kind, system, held.free, motions, loose, self.model.dim)
+        return prepare(kind, system, held.free, motions, loose, self.model.mesh.points)
 
 
 def whole(model: Model) -> Whole:

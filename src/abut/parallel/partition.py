@@ -147,8 +147,8 @@ def layout(free: Any, owner: NDArray[np.int64], dim: int, size: int, coupled: bo
     columns.sort_indices()
     point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
     block = 1 if coupled else dim
-    slot, places = (np.arange(len(point)), len(point)) if coupled else slots(free, dim)
-    process = np.empty(places // block, dtype=np.int64)
+    slot, blocks = (np.arange(len(point)), point) if coupled else slots(free, dim)
+    process = np.empty(len(blocks), dtype=np.int64)
     process[slot // block] = owner[point]
     place = np.empty_like(process)
     place[np.argsort(process, kind="stable")] = np.arange(len(process))

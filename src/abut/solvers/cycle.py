@@ -17,6 +17,7 @@ from abut._core import block_product
 
 SMOOTHED = (0.05, 1.1)  # share of the spectrum's end that smoothing damps; its upper end is an estimate from below
 JACOBI = 4 / 3  # over the largest eigenvalue: damping of the smoothed aggregates (Vanek, Mandel and Brezina 1996)
+LUMPED = 0.1  # share of its diagonal that the strong part must keep to be divided by
 SINGULAR = 1e-10  # eigenvalue of the coarsest matrix over its largest that counts as zero
 PROBES = 10  # Lanczos steps for that estimate
 
@@ -64,21 +65,29 @@ class Levels:
         return np.asarray(first + correction + last)
 
 
-def level(matrix: Any, tentative: Any) -> Level:
-    """A level from its matrix and the interpolation of aggregates (both BSR), smoothed by one step of Jacobi's iteration."""
+def level(matrix: Any, strong: Any, tentative: Any) -> Level:
+    """A level from its matrix and the interpolation of aggregates (both BSR), smoothed by one step of Jacobi's iteration
+    with the ``strong`` part of the matrix."""
     blocks, diagonal = _blocks(matrix), matrix.diagonal()
     small = np.finfo(np.float32).eps * diagonal.max()  # coarse functions that small aggregates cannot carry are zero
-    inverse_diagonal = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small)
+    inverse_diagonal = _inverted(diagonal, small)
     single = inverse_diagonal.astype(np.float32)
-    largest = _largest(blocks, single)
-    image = (matrix @ tentative).tobsr(tentative.blocksize)
+    largest = damping = _largest(blocks, single)
+    if strong is not matrix:
+        lumped = strong.diagonal()
+        inverse_diagonal = _inverted(np.where(lumped > LUMPED * diagonal, lumped, diagonal), small)
+        damping = _largest(_blocks(strong), inverse_diagonal.astype(np.float32))
+    image = (strong @ tentative).tobsr(tentative.blocksize)
     rows = np.repeat(np.arange(len(image.indptr) - 1), np.diff(image.indptr))
-    image.data *= JACOBI / largest * inverse_diagonal.reshape(-1, image.blocksize[0], 1)[rows]
+    image.data *= JACOBI / damping * inverse_diagonal.reshape(-1, image.blocksize[0], 1)[rows]
     smooth = (tentative - image).tobsr(tentative.blocksize)
-    degree = math.ceil(
-        math.sqrt(largest)
-    )  # flat and stretched cells widen the spectrum, which takes longer polynomials
+    degree = math.ceil(math.sqrt(largest))  # flat and stretched cells widen the spectrum: longer polynomials
     return Level(blocks, single, largest, smooth, _blocks(smooth), _blocks(smooth.T.tobsr()), degree)
+
+
+def _inverted(diagonal: NDArray[np.float64], small: float) -> NDArray[np.float64]:
+    """One over it, zero where it is small."""
+    return np.asarray(np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small))
 
 
 def coarse_matrix(matrix: Any, own: Level) -> Any:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut._core import block_product, padded_blocks
 from abut.errors import InputError
 from abut.solvers.cycle import Level, Levels, coarse_matrix, inverse, level
+from abut.solvers.strength import means, near
 
 COARSEST = 100  # aggregates whose equations are solved directly
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -28,13 +29,13 @@ class Hierarchy:
     summary: str
 
 
-def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int) -> Hierarchy:
+def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], points: NDArray[np.float64]) -> Hierarchy:
     """Multigrid for ``stiffness`` on the free displacements.
 
     free: (dim n_points, n_free) change of variables, every column at one point; motions: (dim n_points, m) rigid motions,
-    each body's own. Points with fewer than ``dim`` free directions are filled up with trivial rows, so that the matrix
-    has whole blocks, one a point: cheaper products and aggregates of whole points. Raises InputError where PyAMG is not
-    installed.
+    each body's own; points: (n_points, dim). Points with fewer than ``dim`` free directions are filled up with trivial
+    rows, so that the matrix has whole blocks, one a point: cheaper products and aggregates of whole points. Raises
+    InputError where PyAMG is not installed.
     """
     try:
         from pyamg.aggregation import fit_candidates, standard_aggregation
@@ -42,21 +43,26 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], dim: int)
         raise InputError(
             'solve.linear: "amg" needs PyAMG, which is not installed: pip install pyamg; or choose "direct"'
         ) from None
-    slot, size = slots(free, dim)
+    dim = points.shape[1]
+    slot, point = slots(free, dim)
+    size, centres = dim * len(point), points[point]
     scale = float(np.median(stiffness.diagonal()))
     fine = level_matrix = _padded(stiffness, slot, size, dim, scale)
     near_null = np.zeros((size, motions.shape[1]))
     near_null[slot] = free.T @ motions
     levels: list[Level] = []
-    entries = fine.nnz
+    entries, stretched = fine.nnz, True
     while level_matrix.shape[0] // level_matrix.blocksize[0] > COARSEST:
-        strong = np.ones(len(level_matrix.indices), dtype=np.int8)  # every neighbour counts
-        graph = sp.csr_matrix((strong, level_matrix.indices, level_matrix.indptr))
+        strong = near(level_matrix, centres) if stretched else level_matrix
+        stretched = strong is not level_matrix
+        ones = np.ones(len(strong.indices), dtype=np.int8)
+        graph = sp.csr_matrix((ones, strong.indices, strong.indptr))
         aggregates, _ = standard_aggregation(graph)
         if aggregates.shape[1] in (0, graph.shape[0]):
             break
         tentative, near_null = fit_candidates(aggregates, near_null)
-        levels.append(level(level_matrix, tentative))
+        centres = means(aggregates, centres)
+        levels.append(level(level_matrix, strong, tentative))
         level_matrix = coarse_matrix(level_matrix, levels[-1])
         entries += level_matrix.nnz
     ours = Levels(levels, inverse(level_matrix))
@@ -84,11 +90,11 @@ def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale:
     return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
 
-def slots(free: Any, dim: int) -> tuple[NDArray[np.int64], int]:
+def slots(free: Any, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Where each free displacement goes among ``dim`` places a point, in ascending order, points without any left out; and
-    how many places."""
+    those points."""
     columns = free.tocsc()
     point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
-    _, number, count = np.unique(point, return_inverse=True, return_counts=True)
+    points, number, count = np.unique(point, return_inverse=True, return_counts=True)
     local = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
-    return dim * number + local, dim * len(count)
+    return dim * number + local, points
