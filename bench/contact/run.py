@@ -188,7 +188,9 @@ def main() -> None:
     options.output.mkdir(parents=True, exist_ok=True)
     before = options.output / "results.json"
     if options.add and before.is_file():
-        bench.rows += json.loads(before.read_text(encoding="utf-8"))["rows"]
+        earlier = json.loads(before.read_text(encoding="utf-8"))
+        bench.rows += earlier["rows"]
+        versions = {**earlier["versions"], **versions}
     for case in options.cases:
         for wanted in options.dofs:
             print(f"{case}, {wanted} dofs", file=sys.stderr, flush=True)

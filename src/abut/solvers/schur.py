@@ -1,4 +1,4 @@
-"""What pressures do to gaps, approximately: a preconditioner for B K^-1 B^T, theory (V12).
+"""What pressures do to gaps, approximately: a preconditioner for B K^-1 B^T, theory (V13).
 
 A half space under a pressure cos(k x) yields 2 (1 - nu^2) / (E k) of it, so that the operator behaves as the inverse root of
 the surface Laplacian: S = kappa M (M^-1 (L + M / l^2))^-1/2 with kappa = 2 sum (1 - nu^2) / E over both sides and l the size

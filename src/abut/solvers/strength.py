@@ -19,7 +19,7 @@ REACH = 2.5  # times the distance of the nearest point: takes in all of a cube, 
 
 
 def near(matrix: Any, points: NDArray[np.float64]) -> Any:
-    """The matrix (BSR) without couplings to far points, theory (V13), which are added to the diagonal so that translations
+    """The matrix (BSR) without couplings to far points, theory (V12), which are added to the diagonal so that translations
     do no more work than before; the matrix itself where no point is far. points: (n_block_rows, dim)."""
     part = strong_part(
         matrix.indptr.astype(np.int32, copy=False), matrix.indices.astype(np.int32, copy=False), matrix.data,
