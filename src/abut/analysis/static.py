@@ -14,6 +14,7 @@ from abut.analysis.problem import problem
 from abut.analysis.results import step_result
 from abut.analysis.resume import begin_after, check_order, restored, saved_step
 from abut.conditions import weights
+from abut.discretization.rigid import near_null
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.solvers.active_set import Outcome, Stage, following, solve_step, start
@@ -70,7 +71,7 @@ def solve(
         size = f"{own.n_free:,}".replace(",", " ")
         observe(Phase(f"{what} {size} displacements", expected_seconds(kind, own.n_free, model.dim)))
         loose = held.coordinates(own.held_by.free)
-        result = own.volume.prepare(kind, system, held, own.held_by.rigid.together, loose)
+        result = own.volume.prepare(kind, system, held, near_null(model.mesh, own.held_by.rigid), loose)
         note(result.note)
         return result
 

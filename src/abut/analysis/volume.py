@@ -47,7 +47,7 @@ class Volume(Protocol):
     def prepare(
         self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
     ) -> Prepared:
-        """Set the linear solver up. motions: (dim n_points, m) rigid motions of the bodies; loose: (n_free, k) those that
+        """Set the linear solver up. motions: (dim n_points, m) that strain bodies least; loose: (n_free, k) those that
         supports leave free. Raises InputError where the solver is not installed or cannot serve the system."""
         ...
 

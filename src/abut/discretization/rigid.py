@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -73,6 +73,12 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
         first = per_group * g
         modes[nodes, :, first : first + per_group] = motions(x, mesh.axisymmetric)
     return RigidModes(modes.reshape(n * dim, -1), tuple(groups), per_group)
+
+
+def near_null(mesh: Mesh, rigid: RigidModes) -> NDArray[np.float64]:
+    """(dim n_points, k) motions that strain bodies least, which multigrid must not lose: the rigid ones; of rings those of
+    the plane, since shifts and turns of a section strain a ring little, but for near the axis."""
+    return (rigid_modes(replace(mesh, axisymmetric=False)) if mesh.axisymmetric else rigid).together
 
 
 def resistance_of_supports(rigid: RigidModes, held: Supports) -> NDArray[np.float64]:

@@ -72,18 +72,18 @@ def prepare(
     linear: str,
     system: System,
     free: Any,
-    rigid: NDArray[np.float64],
+    near_null: NDArray[np.float64],
     loose: NDArray[np.float64],
     points: NDArray[np.float64],
 ) -> Prepared:
     """Set a linear solver up.
 
-    linear: "direct" or "amg"; free: (dim n_points, n_free) change of variables; rigid: (dim n_points, m) rigid motions of
-    the bodies; loose: (n_free, k) those that supports leave free; points: (n_points, dim).
+    linear: "direct" or "amg"; free: (dim n_points, n_free) change of variables; near_null: (dim n_points, m) motions that
+    strain bodies least; loose: (n_free, k) those that supports leave free; points: (n_points, dim).
     Raises InputError where the solver is not installed or cannot serve the system.
     """
     if linear == "amg":
-        levels = hierarchy(system.stiffness, free, rigid, points)
+        levels = hierarchy(system.stiffness, free, near_null, points)
         iterative, count = iterate(system, levels, loose)
         return Prepared(iterative, lambda outcome, _: outcome, "multigrid (PyAMG)", levels.summary, count)
     condensed = condense(system, loose)
