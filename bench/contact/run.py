@@ -212,7 +212,7 @@ def main() -> None:
     if options.page is not None:
         if plotted:
             shutil.copy(picture, options.page.parent / "pictures" / "times.png")
-            text += "\n\n![Time against dofs](pictures/times.png)"
+            text = f"![Time against dofs](pictures/times.png)\n\n{text}"
         report.put_into(options.page, text)
         options.page.with_name(f"{options.page.stem}-runs.md").write_text(every_run, encoding="utf-8")
 
