@@ -40,6 +40,8 @@ def plot(rows: Sequence[Row], file: Path) -> bool:
                     panel.loglog(x, y, f"o{style}", color=f"C{i}", markersize=3, label=label)
         panel.set(title=case)
         panel.grid(True, which="both", alpha=0.3)
+    for panel in panels[len(cases) :]:
+        panel.axis("off")
     figure.supxlabel("dofs")
     figure.supylabel("seconds")
     lines = {label: line for panel in panels for line, label in zip(*panel.get_legend_handles_labels())}
