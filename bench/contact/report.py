@@ -194,12 +194,15 @@ def _times(rows: Iterable[Row], own: Row, code: str) -> str:
     return ""
 
 
+def _where(machine: str, versions: dict[str, str]) -> str:
+    return f"{machine}. {', '.join(f'{name} {version}' for name, version in versions.items())}."
+
+
 def page(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
     """What stands between the markers of the docs page: machine, versions, overview, exponents."""
-    known = ", ".join(f"{name} {version}" for name, version in versions.items())
     return "\n\n".join(
         [
-            f"{machine}. {known}.",
+            _where(machine, versions),
             "abut's contact, and how many times as long the others take (-: failed or not run; \\*: another answer):",
             markdown(overview(rows)),
             "Exponents of time against dofs:",
@@ -210,8 +213,7 @@ def page(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
 
 def all_runs(rows: Sequence[Row], machine: str, versions: dict[str, str]) -> str:
     """The page with a table of its own for every case, and the stages of abut's runs."""
-    known = ", ".join(f"{name} {version}" for name, version in versions.items())
-    parts = ["# Every run", f"{machine}. {known}. What is measured says [time and memory](performance.md)."]
+    parts = ["# Every run", f"{_where(machine, versions)} What is measured says [time and memory](performance.md)."]
     head, *lines = table(rows)
     for case in dict.fromkeys(row["case"] for row in rows):
         parts += [f"## {case}", markdown([head[1:], *(line[1:] for line in lines if line[0] == case)])]
