@@ -165,7 +165,8 @@ class Step:
 class Saved:
     """What it takes to go on after a converged step, and to have its results again.
 
-    displacement: (n_free,), pressure, active: (n,) the state; own_displacement, own_pressure: the same in the unknowns of
+    displacement: (n_free,), pressure, active: (n,) the state; inside: (n,) where "dual-P1" has ordinary functions;
+    own_displacement, own_pressure: the same in the unknowns of
     the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
     largest_pressure: up to here, against which rounding is judged later.
     """
@@ -178,6 +179,7 @@ class Saved:
     displacement: NDArray[np.float64]
     pressure: NDArray[np.float64]
     active: NDArray[np.bool_]
+    inside: NDArray[np.bool_]
     own_displacement: NDArray[np.float64]
     own_pressure: NDArray[np.float64]
     iterations: tuple[Iteration, ...]

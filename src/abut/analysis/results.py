@@ -16,6 +16,7 @@ from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
+from abut.interface.pressure import DUAL
 from abut.model import METHODS, Model
 from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
@@ -123,9 +124,11 @@ def _contact(
         area, depth = float(weight[active].sum()), float((-gap / weight).max(initial=0.0))
     covered = coupling.segments > 0
     raw = facet_node_values(pair.contactor, degree, normal)
-    integrated = pair.contact.method == METHODS[0]
-    at = averages(pair.contactor, coupling) if integrated else None
-    nodal = raw if at is None else at_facet_nodes(pair.contactor, at.of(normal))
+    at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
+    closed = pair.tied or (pair.space.continuous and active.all())
+    if pair.space.name == DUAL:
+        closed = False
+    nodal = raw if at is None or closed else at_facet_nodes(pair.contactor, at.of(normal))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(pair.contactor, at.share)
     supported = nodal[share >= SUPPORTED] if (share >= SUPPORTED).any() else nodal
     shown = corner_values(pair.contactor, nodal)

@@ -14,7 +14,15 @@ from abut.errors import InputError
 from abut.interface.coupling import Couple, Coupling, couple, default_reach
 from abut.interface.geometry import facet_sizes, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
-from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
+from abut.interface.pressure import (
+    DUAL_P1,
+    PressureSpace,
+    inner_facets,
+    pressure_space,
+    reduce,
+    resolve,
+    with_plain_facets,
+)
 from abut.mesh.surface import Surface
 from abut.model import LAWS, Contact, Model
 
@@ -138,6 +146,23 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
+    )  # fmt: skip
+
+
+def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
+    """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
+
+    active: (n,) bool, the multipliers in contact."""
+    inner = inner_facets(own.space, own.contactor, active) if own.space.name == DUAL_P1 else np.zeros(0, dtype=bool)
+    if not inner.any():
+        return own
+    space = with_plain_facets(own.space, own.contactor, own.coupling, inner)
+    rows = (space.transfer.T @ own.coupling.operator).tocsr()
+    constant, varying = offsets(model, own.contact)
+    return replace(
+        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(),
+        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ own.coupling.gap + constant * space.weight,
     )  # fmt: skip
 
 

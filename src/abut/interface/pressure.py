@@ -24,6 +24,7 @@ from abut.mesh.surface import Surface
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
 WEAK_DUAL = 0.2  # the same for dual functions, whose pieces on slivers swing more
+BAND = 2  # layers of closed facets with dual functions along the edge of contact
 DUAL, DUAL_P1 = "dual", "dual-P1"
 
 
@@ -62,14 +63,14 @@ def resolve(name: str, contactor: Surface, free_edge: bool = True) -> tuple[str,
     """The space's name with "auto" resolved, and the degree of its facet-wise functions.
 
     name: "auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual" or "dual-P1".
-    free_edge: whether contact may open, and its law looks at weighted gaps (complementarity). Then "auto" is "dual" on
-    linear facets and "dual-P1" on quadratic ones, docs/theory/pressure-spaces.md; else the continuous space of the
-    displacement's order, and "dual-P1", which is dual at the edge of contact only, is "P1".
+    free_edge: whether contact may open, and its law looks at weighted gaps (complementarity). Then "auto" is "dual-P1",
+    docs/theory/pressure-spaces.md; else the continuous space of the displacement's order, and "dual-P1", which is dual at
+    the edge of contact only, is "P1".
     Raises InputError for quadratic pressure on linear facets.
     """
     highest = surface_degree(contactor)
     if name == "auto":
-        name = (DUAL if highest == 1 else DUAL_P1) if free_edge else f"P{highest}"
+        name = DUAL_P1 if free_edge else f"P{highest}"
     if name == DUAL_P1 and not free_edge:
         name = "P1"
     degree = 2 if name.startswith("P2") else 1
@@ -112,11 +113,29 @@ def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) 
     return np.asarray(space.plain.T @ coupling.weight / np.maximum(full, 1e-300))
 
 
-def inner_facets(space: PressureSpace, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Facets (n_facets,) whose multipliers are all active; active: (n,) bool."""
+def inner_facets(space: PressureSpace, contactor: Surface, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets (n_facets,) far enough inside closed contact for ordinary functions, theory (P9); active: (n,) bool.
+
+    On quadratic facets those with ``BAND`` layers of closed facets between them and the next open multiplier; on linear
+    ones, whose displacements cannot follow a linear pressure anyway, all or none."""
+    if surface_degree(contactor) == 1:
+        return np.full(len(contactor), active.all())
     uses = abs(space.plain)
-    closed, opened = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (active, ~active))
-    return np.asarray(closed & ~opened)
+    closed = active
+    for _ in range(BAND):
+        closed = closed & ~_touched(uses, ~_within(uses, closed))
+    return _within(uses, closed)
+
+
+def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets that have multipliers, all of them closed."""
+    some, others = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (closed, ~closed))
+    return np.asarray(some & ~others)
+
+
+def _touched(uses: Any, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Multipliers with a part on given facets."""
+    return np.asarray(uses.T @ np.repeat(facets, 9).astype(float) > 0.0)
 
 
 def with_plain_facets(

@@ -19,7 +19,7 @@ from abut.model import Model
 from abut.state import Iteration, Saved
 
 FOLDER = "restart"
-ARRAYS = ("displacement", "pressure", "active", "own_displacement", "own_pressure")
+ARRAYS = ("displacement", "pressure", "active", "inside", "own_displacement", "own_pressure")
 NAMED = 4  # differences of a changed model that the message lists
 
 
