@@ -15,6 +15,7 @@ from abut.interface.geometry import by_kind, full_moments, function_count, node_
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
+ON_AXIS = 1e-9  # radius over the contactor's largest
 FOUND = 1e-13  # step in reference coordinates after which a foot is found
 SINGULAR = 1e-14  # of the metric's trace
 
@@ -25,13 +26,15 @@ class Averages:
 
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
     the covered part; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
-    contactor, 0 at points that are no corners of it.
+    contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose average each one shows, itself but
+    on the axis of linear cells.
     """
 
     corners: NDArray[np.int64]
     moments: NDArray[np.float64]
     weight: NDArray[np.float64]
     share: NDArray[np.float64]
+    shared: NDArray[np.int64]
 
     def loads(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """int N_i f of a field given by its coefficients (9 n_facets, ...), at the points, (n_points, ...)."""
@@ -43,9 +46,11 @@ class Averages:
 
     def of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Their averages at the points, (n_points, ...), 0 where nothing is covered."""
-        loads = self.loads(values)
-        weight = self.weight.reshape(-1, *[1] * (loads.ndim - 1))
-        return np.where(weight > 0.0, loads / np.where(weight > 0.0, weight, 1.0), 0.0)
+        loads, weight = np.zeros((len(self.weight), *values.shape[1:])), np.zeros(len(self.weight))
+        np.add.at(loads, self.shared, self.loads(values))
+        np.add.at(weight, self.shared, self.weight)
+        weight = weight.reshape(-1, *[1] * (loads.ndim - 1))
+        return np.asarray(np.where(weight > 0.0, loads / np.where(weight > 0.0, weight, 1.0), 0.0)[self.shared])
 
 
 def averages(contactor: Surface, coupling: Coupling) -> Averages:
@@ -64,7 +69,23 @@ def averages(contactor: Surface, coupling: Coupling) -> Averages:
         for values in (moments.sum(axis=2), full_moments(contactor, 1))
     )
     share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
-    return Averages(corners, moments, np.where(share > NO_SUPPORT, weight, 0.0), share)
+    return Averages(corners, moments, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor))
+
+
+def _shared(contactor: Surface) -> NDArray[np.int64]:
+    """Points on the axis of a body of revolution with linear cells show the average of their neighbour and themselves: their
+    own nodal force is wrong by the order of h / a, since no linear cell has the radial displacement c(z) r, while the
+    pressure is even in r."""
+    shared = np.arange(len(contactor.points))
+    if contactor.axisymmetric:
+        for _, facets in ((k, f) for k, f in by_kind(contactor) if CELLS[k].degree == 1):
+            first, second = contactor.nodes[facets, :2].T.astype(np.int64)
+            radius = contactor.points[:, 0]
+            touching = ON_AXIS * radius[contactor.node_ids].max()
+            for here, other in ((first, second), (second, first)):
+                axis = radius[here] <= touching
+                shared[here[axis]] = other[axis]
+    return shared
 
 
 def at_facet_nodes(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
