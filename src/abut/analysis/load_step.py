@@ -47,8 +47,8 @@ def load_step(
     spaces = [p for p in system.pairs if p.space.name == DUAL_P1]
     search = any(surface_degree(p.contactor) == 2 for p in spaces)
     earlier: tuple[Iteration, ...] = ()
-    if spaces and begin.active.all():
-        inner = with_plain(model, held, system, begin.active)
+    inner = with_plain(model, held, system, begin.active) if begin.active.all() else system
+    if inner is not system:
         renewed = solver.renew(inner)
         outcome = solve_step(renewed.system, begin, stage, 1, observe)
         if outcome.converged:

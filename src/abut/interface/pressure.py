@@ -58,6 +58,11 @@ class PressureSpace:
         """Whether coefficients belong to points, so that their ordinary functions make a continuous field."""
         return bool((self.node >= 0).all())
 
+    @property
+    def ordinary(self) -> bool:
+        """Whether no function is a dual one."""
+        return self.transfer is self.plain
+
 
 def resolve(name: str, contactor: Surface, free_edge: bool = True) -> tuple[str, int]:
     """The space's name with "auto" resolved, and the degree of its facet-wise functions.
@@ -113,18 +118,21 @@ def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) 
     return np.asarray(space.plain.T @ coupling.weight / np.maximum(full, 1e-300))
 
 
-def inner_facets(space: PressureSpace, contactor: Surface, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Facets (n_facets,) far enough inside closed contact for ordinary functions, theory (P9); active: (n,) bool.
+def inner_facets(
+    space: PressureSpace, contactor: Surface, covered: NDArray[np.bool_], active: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Facets (n_facets,) far enough inside closed contact for ordinary functions, theory (P9): with ``BAND`` layers of
+    closed facets between them and the next one that is open or not all covered. On linear facets, where that gains nothing
+    once a part is open, all or none.
 
-    On quadratic facets those with ``BAND`` layers of closed facets between them and the next open multiplier; on linear
-    ones, whose displacements cannot follow a linear pressure anyway, all or none."""
-    if surface_degree(contactor) == 1:
-        return np.full(len(contactor), active.all())
+    covered: (n_facets,) bool, facets with the target opposite all of them; active: (n,) bool."""
     uses = abs(space.plain)
-    closed = active
+    inner = _within(uses, active) & covered
+    if surface_degree(contactor) == 1:
+        return np.full(len(inner), inner.all())
     for _ in range(BAND):
-        closed = closed & ~_touched(uses, ~_within(uses, closed))
-    return _within(uses, closed)
+        inner = _within(uses, ~_touched(uses, ~inner)) & inner
+    return inner
 
 
 def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -145,7 +153,8 @@ def with_plain_facets(
     where contact is closed. Coefficients keep their meaning and weights, since int phi_k = int N_k on every facet.
 
     plain: (n_facets,) bool."""
-    return replace(space, transfer=(dual(contactor, coupling, plain) @ space.plain).tocsr())
+    transfer = space.plain if plain.all() else (dual(contactor, coupling, plain) @ space.plain).tocsr()
+    return replace(space, transfer=transfer)
 
 
 def reduce(
@@ -178,11 +187,12 @@ def reduce(
             rows.append(k)
             columns.append(position[near[np.argmax(space.weight[near])]])
     follow = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, len(kept)))
-    transfer = (space.transfer @ follow).tocsr()
+    plain = (space.plain @ follow).tocsr()
+    transfer = plain if space.ordinary else (space.transfer @ follow).tocsr()
     return replace(
         space,
         transfer=transfer,
-        plain=(space.plain @ follow).tocsr(),
+        plain=plain,
         weight=transfer.T @ coupling.weight,
         node=space.node[kept],
         removed=space.removed + n - len(kept),
