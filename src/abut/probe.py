@@ -57,7 +57,9 @@ class Probe:
         if self.of is not None:
             object.__setattr__(self, "of", _quantities(self.of, f"{where}: of"))
             if self.contact is not None and not set(self.of) & set(ON_CONTACTS):
-                raise InputError(f"{where}: contact is for pressure and gap; leave it out, or add them to of")
+                raise InputError(f"{where}: contact is for pressure and gap; leave it out, or add them to 'of'")
+        if self.on is not None and self.body is not None:
+            raise InputError(f"{where}: body is for points and lines; the nodes of '{self.on}' are read; leave it out")
 
     def _check_points(self, where: str) -> None:
         if self.points is None:

@@ -85,7 +85,7 @@ def _points(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.int64] | None]:
     """Coordinates (n, dim), distance along a line, numbers of nodes."""
     if probe.on is not None:
-        nodes = np.asarray(mesh.nodes_of(probe.on), dtype=np.int64)
+        nodes = np.unique(mesh.nodes_of(probe.on)).astype(np.int64)
         return mesh.points[nodes], None, nodes
     if probe.line is None:
         return np.array([probe.at], dtype=float), None, None
@@ -102,7 +102,7 @@ def _quantities(model: Model, probe: Probe, side: Side | None) -> tuple[str, ...
         contact = model.contacts[side.contact]
         raise InputError(
             f"probe '{probe.name}': the gap of contact '{contact.name}' is known on its contactor '{contact.contactor}', "
-            f"but the probe lies on its target '{contact.target}'; put it on the contactor, or take gap out of of"
+            f"but the probe lies on its target '{contact.target}'; put it on the contactor, or take gap out of its 'of'"
         )
     return probe.of
 
@@ -159,7 +159,7 @@ def _on_surface(
     if own.beside.all():
         raise InputError(
             f"probe '{probe.name}': no point of it lies over surface '{name}' of contact '{contact.name}'; move it, or take "
-            "pressure and gap out of of"
+            "pressure and gap out of its 'of'"
         )
     notes = []
     farthest = float(own.distance[~own.beside].max())

@@ -30,7 +30,7 @@ def choose(model: Model, probe: Probe, points: NDArray[np.float64]) -> Side | No
     nothing asked for, lies on none.
 
     Of several contacts that which the probe lies on, then one that it touches, then the model's only one; of both sides of
-    a contact the contactor, unless the probe is on the target alone. Raises InputError where more than one contact is left."""
+    a contact the contactor, unless the probe is on the target alone. Raises InputError where more than one is left."""
     where = f"probe '{probe.name}'"
     asked = probe.contact is not None or bool(set(probe.of or ()) & set(ON_CONTACTS))
     if not model.contacts or (probe.of is not None and not asked):
