@@ -20,6 +20,7 @@ CHARTS = (  # quantities of one chart: its title, its quantities
 )
 PLANE = ("stress_yz", "stress_zx")  # zero in two dimensions
 OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
+ROUNDING = 1e-9  # of a gap, over the length of the line
 PEAK = "value farthest from zero"
 
 
@@ -57,7 +58,8 @@ def charts(solution: Solution) -> list[Chart]:
     for number, (probe, last) in enumerate(zip(solution.model.probes, solution.probes)):
         own = [step.probes[number] for step in solution.steps]
         if last.distance is not None:
-            x, label, table = last.distance, "distance from the start of the line [length]", columns(last)
+            x, label = last.distance, "distance from the start of the line [length]"
+            table = {n: v for n, v in columns(last).items() if n != "gap" or len(last.values) == 1 or _opens(v, x)}
             when = " in the last step" if len(own) > 1 else ""
         elif len(own) > 1:
             x, label = np.array([step.factor for step in solution.steps]), OVER_TIME
@@ -75,6 +77,11 @@ def charts(solution: Solution) -> list[Chart]:
                 heading = f"{probe.name}: {shown} [{_unit(shown)}]{when}"
                 result.append(Chart(heading, label, x, series))
     return result
+
+
+def _opens(gap: NDArray[np.float64], distance: NDArray[np.float64]) -> bool:
+    """Whether a gap is more than rounding anywhere."""
+    return bool(np.nanmax(np.abs(gap), initial=0.0) > ROUNDING * np.ptp(distance))
 
 
 def _over_time(own: Sequence[ProbeResult]) -> dict[str, NDArray[np.float64]]:
