@@ -18,6 +18,7 @@ from abut.conditions import weights
 from abut.discretization.rigid import near_null
 from abut.errors import SingularModelError
 from abut.model import Model
+from abut.probing import find_places, read
 from abut.solvers.active_set import Outcome, Stage, System, following, start
 from abut.solvers.iterative import NotConverged
 from abut.solvers.linear import Prepared, expected_seconds
@@ -59,6 +60,9 @@ def solve(
         observe(text)
 
     clock = Clock()
+    places = find_places(model)
+    for text in (text for place in places for text in place.notes):
+        note(text)
     if team is None and model.solve.linear == "petsc":
         from abut.parallel.team import start_team
 
@@ -82,7 +86,7 @@ def solve(
         displacement = own.idle.without_motions(displacement)
         _check_size(model, displacement, note)
         step = step_result(model, own.volume, own.loaded, displacement, system, outcome, stage, time, steps, held)
-        return replace(step, spring=spring)
+        return replace(step, spring=spring, probes=tuple(read(place, step) for place in places))
 
     def so_far(complete: bool) -> Solution:
         return Solution(model, tuple(steps), own.n_free, solver.name, tuple(notes), dict(clock.timings), complete)
