@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,12 @@ from numpy.typing import NDArray
 
 from abut.discretization.supports import Supports
 from abut.errors import InputError
-from abut.interface.coupling import Couple, Coupling, couple, default_reach
+from abut.interface.clearance import of_corners, partly_adjusted
+from abut.interface.coupling import Couple, Coupling, couple, default_reach, surface_degree
 from abut.interface.geometry import facet_sizes, full_moments, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import (
+    DUAL,
     DUAL_P1,
     PressureSpace,
     inner_facets,
@@ -177,23 +180,18 @@ def _couple(
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
-        cut = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
-        coupling = replace(coupling, sights=cut.sights)
+        seen = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
+        coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
         name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
-        coupling = couple(
-            contactor,
-            target,
-            degree,
-            rule=contact.integration.rule,
-            points=contact.integration.points,
-            componentwise=tied,
-            keep_points=contact.law == "constraint-function" and not tied,
-            sights=not tied,
-            reach=reach,
-            adjust=contact.adjust,
-        )
+        of_dual = name in (DUAL, DUAL_P1)
+        cut = partial(
+            couple, contactor, target, surface_degree(contactor) if of_dual else degree, rule=contact.integration.rule, points=contact.integration.points,
+            componentwise=tied, keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
+        )  # fmt: skip
+        coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
+        coupling = of_corners(contactor, coupling) if of_dual else coupling
         space = pressure_space(name, contactor, coupling) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():
         raise InputError(

@@ -65,6 +65,11 @@ def non_negative(contactor: Surface) -> Any:
     return block_diagonal(contactor, {kind: non_negative_block(kind, c) for kind in kinds})
 
 
+def sound_facets(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Facets (n,) whose mass matrices (n, k, k) can be inverted safely: a sliver has no well-determined dual basis."""
+    return np.array([m.any() and np.linalg.cond(m) < SLIVER for m in mass], dtype=bool)
+
+
 def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Any:
     """Sparse (9 n, 9 n): nodal values of the biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl
     int N_l on each covered facet, theory (P4); slivers of facets keep the functions N_l.
@@ -77,7 +82,7 @@ def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None
         mass = coupling.mass[facets][:, :n, :n]
         weight = coupling.weight.reshape(-1, 9)[facets, :n]
         block = np.tile(np.eye(n), (len(facets), 1, 1))
-        sound = np.array([np.linalg.cond(m) < SLIVER if m.any() else False for m in mass], dtype=bool) & ~plain[facets]
+        sound = sound_facets(mass) & ~plain[facets]
         if sound.any():
             block[sound] = np.linalg.solve(mass[sound], np.eye(n) * weight[sound][:, None, :])  # column k: phi_k
         blocks[kind] = block

@@ -119,6 +119,12 @@ def pressure_kind(kind: str, degree: int) -> str:
     return kind if degree == 2 else LINEAR_FACET.get(kind, kind)
 
 
+def corner_functions(kind: str, degree: int) -> NDArray[np.float64]:
+    """The corners' functions as combinations of those of a degree, 1 or 2: their values at its nodes, (nodes, corners)."""
+    values, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(pressure_kind(kind, degree)))
+    return np.asarray(values)
+
+
 def function_count(kind: str, degree: int) -> int:
     """Number of pressure functions on a facet."""
     return 1 if degree == 0 else CELLS[pressure_kind(kind, degree)].nodes

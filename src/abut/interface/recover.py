@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
 from abut.interface.coupling import Coupling
-from abut.interface.geometry import by_kind, full_moments, function_count, node_coordinates, pressure_kind
+from abut.interface.geometry import (
+    by_kind,
+    corner_functions,
+    full_moments,
+    function_count,
+    node_coordinates,
+    pressure_kind,
+)
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
@@ -87,8 +94,7 @@ def averages(contactor: Surface, coupling: Coupling) -> Averages:
     for kind, facets in by_kind(contactor):
         n = CELLS[kind].corners
         corners[facets, :n] = contactor.nodes[facets, :n]
-        # The corners' functions are combinations of the facet's: their values at its nodes are the coefficients.
-        own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(pressure_kind(kind, coupling.degree)))
+        own = corner_functions(kind, coupling.degree)
         moments[facets[:, None], np.arange(n)] = np.einsum("ki,fkl->fil", own, coupling.mass[facets, : len(own)])
         mass[facets, :n, :n] = moments[facets, :n, : len(own)] @ own
     used = corners >= 0
