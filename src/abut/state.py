@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.conditions import drives
 from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+RESPONSE = 0.5  # nothing between 0 and 1
 REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
 
 
@@ -133,20 +135,30 @@ class Step:
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     spring: float | None = None  # largest force that holds motions without resistance; None where there are none
-    internal: float = 0.0  # largest nodal force of stresses
+    internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
+    pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
+    strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
 
     @property
     def balance_error(self) -> float:
-        """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
+        """Largest component of loads and reactions together, over the reference force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.largest_force)
+        if not (self.strained or self.load.any()):  # bodies that move without touching: rounding over rounding
+            return 0.0
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.reference_force)
 
     @property
     def regularisation(self) -> float | None:
-        """Force that holds motions without resistance over the largest force, nodal ones among them (loads may cancel)."""
-        return None if self.spring is None else self.spring / max(self.largest_force, self.internal)
+        """Force that holds motions without resistance over the reference force."""
+        return None if self.spring is None else self.spring / self.reference_force
+
+    @property
+    def reference_force(self) -> float:
+        """What rounding is judged against, theory (V14): the largest of all resultants, of the forces between surfaces by
+        area, and of the sizes of all nodal forces of stresses together; loads and pressures may cancel, these do not."""
+        return max(self.largest_force, self.pressed, self.internal)
 
     @property
     def largest_force(self) -> float:
@@ -209,14 +221,16 @@ class Solution:
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         worst: dict[tuple[str, str], Check] = {}
+        idle = _driven(self.model) and not any(step.strained for step in self.steps)
+        response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
         for step in self.steps:
             balance = Check(
-                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the largest force"
+                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the forces' size"
             )
-            model = [balance]
+            model = [balance, response]
             if step.regularisation is not None:
                 model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
-                                   "force that holds motions without resistance, over the largest force"))  # fmt: skip
+                                   "force that holds motions without resistance, over the forces' size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
                 if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
@@ -239,6 +253,13 @@ class Solution:
         import abut
 
         return abut.plot(self, what, **options)
+
+
+def _driven(model: Model) -> bool:
+    """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
+    given = (*model.supports, *model.loads, *model.equations, *model.rigid)
+    hot = any(solid.temperature for solid in model.solids)
+    return hot or any(map(drives, given)) or any(contact.offset < 0.0 for contact in model.contacts)
 
 
 Observer = Callable[[Iteration | Phase | str], None]  # gets each iteration, stages that begin, and notes as text
