@@ -39,7 +39,7 @@ __all__ = [
 ]  # fmt: skip
 
 PLANES = ("strain", "stress", "axisymmetric")
-PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual")
+PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
@@ -115,6 +115,11 @@ class Contact:
             raise InputError(
                 f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
                 "complementarity and pressure auto; leave them out, or use segment-to-segment"
+            )
+        if self.law == LAWS[1] and self.pressure.startswith("dual"):
+            raise InputError(
+                f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
+                "where dual functions are negative; leave pressure out, or the law"
             )
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")

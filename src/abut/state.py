@@ -73,7 +73,10 @@ class ContactResult:
     """One contact pair at the end of a step.
 
     force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
-    pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length.
+    pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length. The
+    pressure is the multiplier's average over each corner's function, linear between corners: theory (P10).
+    multiplier: (n_contactor_facets, 9) the multiplier itself, which may jump between facets and swing; share:
+    (n_contactor_facets, 9) covered share of each point's support. max_pressure: the largest where that is at least a half.
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
     target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
     covered_share: covered area over the contactor's area; checks: the certificate of this step.
@@ -92,6 +95,8 @@ class ContactResult:
     removed: int
     segments: int
     pressure: NDArray[np.float64]
+    multiplier: NDArray[np.float64]
+    share: NDArray[np.float64]
     gap: NDArray[np.float64]
     covered: NDArray[np.bool_]
     covered_share: float

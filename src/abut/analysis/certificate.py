@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
-from typing import Any
-
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.faceting import faceting
-from abut.cells import CELLS
+from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.discretization.pairs import Pair
-from abut.interface.geometry import by_kind, full_moments
+from abut.interface.geometry import full_moments
+from abut.interface.recover import Averages
 from abut.state import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent
@@ -23,23 +20,22 @@ FACETING = 0.2  # seen: the pressure is off by about half of that
 LESSER = 0.05  # a pair's pressure over the largest of the model from which down its overlap and facets matter less
 TENSION = 0.05  # over the largest pressure
 COMPLEMENTARITY = 1e-6
-OSCILLATION = 0.06
+OSCILLATION = 0.08
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
-WHOLE = 1e-2  # a facet covered to within this share is fully covered
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
 COVERED_TWICE = 1e-3  # share of a facet
 NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after unloading
-CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 
 
 def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
                 residual: float, reference: float = 0.0, overlap: NDArray[np.float64] | None = None,
-                beside: float = 0.0) -> tuple[Check, ...]:  # fmt: skip
+                at: Averages | None = None, beside: float = 0.0) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
-    nodal: (n_facets, 9) pressure at the facets' nodes; penetration: largest, a length;
+    nodal: (n_facets, 9) reported pressure at the facets' nodes; penetration: largest, a length;
+    at: how it was averaged, None where it was not;
     residual: of the contact law, relative to the largest pressure; reference: largest
     pressure of the steps before; overlap: (n_facets,) largest of each at a
     point, over its size; beside: largest pressure of all pairs, now and before.
@@ -68,8 +64,12 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
-        add("oscillation", _oscillation(pair, nodal, largest, share), OSCILLATION,
-            "alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
+        if at is not None:
+            reported = np.zeros(len(at.weight))
+            used = at.corners >= 0
+            reported[at.corners[used]] = nodal[used]
+            add("oscillation", oscillation(pair, at, values, reported, largest), OSCILLATION,
+                "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
     if pair.contact.method == "segment-to-segment":
         add("facet moments", _moment_error(pair, areas, share, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
@@ -117,100 +117,3 @@ def _moment_error(
     exact = full_moments(pair.contactor, pair.coupling.degree)
     miss = np.abs(pair.coupling.weight.reshape(exact.shape) - exact) / areas[:, None]
     return float(miss[whole].max())
-
-
-def _oscillation(pair: Pair, nodal: NDArray[np.float64], largest: float, share: NDArray[np.float64]) -> float:
-    """Root mean square of that part of p - (mean of its neighbours) that changes sign from neighbour to neighbour, over
-    the largest pressure. Neighbours are nodes along facet edges, for P0 facets; only those with nothing but closed
-    neighbours count, since the pressure has a kink at the edge of contact. Of other discontinuous spaces: of the jumps.
-    share: of each facet that is covered."""
-    continuous = bool((pair.space.node >= 0).all())
-    if not continuous and pair.coupling.degree:
-        return _jumps(pair, nodal, CLOSED * largest) / largest
-    graph, value = _node_graph(pair, nodal) if continuous else _facet_graph(pair, nodal)
-    closed = value > CLOSED * largest
-    if continuous:
-        closed &= ~_near_corners(pair, graph, share)
-    degree = np.asarray(graph.sum(axis=1)).ravel()
-    inside = closed & (graph @ (value > CLOSED * largest).astype(float) == degree) & (degree > 1)
-    ripple = np.where(inside, value - graph @ value / np.maximum(degree, 1.0), 0.0)
-    edges = sp.triu(graph, 1).tocoo()
-    both = inside[edges.row] & inside[edges.col]
-    if not both.any():
-        return 0.0
-    product = ripple[edges.row[both]] * ripple[edges.col[both]]
-    return float(np.sqrt(np.maximum(-product, 0.0).mean())) / largest
-
-
-def _near_corners(pair: Pair, graph: Any, share: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Points within a facet of the contactor's rim, or of facets that are only partly covered: the pressure of a body with
-    corners is singular there, and no mesh shows that without a swing."""
-    near = _rim(pair)
-    partly = pair.contactor.nodes[np.abs(share - 1.0) > WHOLE]
-    near[partly[partly >= 0]] = True
-    for _ in range(pair.coupling.degree):
-        near |= graph @ near.astype(float) > 0.0
-    return near
-
-
-def _jumps(pair: Pair, nodal: NDArray[np.float64], closed: float) -> float:
-    """Root mean square distance of facets' values at common nodes from their mean, where all of them are closed."""
-    used = pair.contactor.nodes >= 0
-    node, value = pair.contactor.nodes[used], nodal[used]
-    count = np.maximum(np.bincount(node), 1)
-    mean, open_ = np.bincount(node, value) / count, np.bincount(node, value <= closed)
-    inside = (open_ == 0)[node] & (count > 1)[node]
-    return float(np.sqrt(np.mean((value - mean[node])[inside] ** 2))) if inside.any() else 0.0
-
-
-def _rim(pair: Pair) -> NDArray[np.bool_]:
-    """Points on the rim of the contactor: ends of facet edges (2D: facets) that belong to one facet only."""
-    surface = pair.contactor
-    rim = np.zeros(len(surface.points), dtype=bool)
-    ends = []
-    for kind, facets in by_kind(surface):
-        cell, nodes = CELLS[kind], surface.nodes[facets]
-        if cell.dim == 1:
-            ends.append(np.stack([nodes[:, :2].ravel(), nodes[:, :2].ravel()], axis=1))
-        else:
-            ends += [np.sort(nodes[:, [i, (i + 1) % cell.corners]], axis=1) for i in range(cell.corners)]
-    edges, count = np.unique(np.concatenate(ends), axis=0, return_counts=True)
-    rim[edges[count == 1]] = True
-    return rim
-
-
-def _node_graph(pair: Pair, nodal: NDArray[np.float64]) -> tuple[Any, NDArray[np.float64]]:
-    surface = pair.contactor
-    n = len(surface.points)
-    used = surface.nodes >= 0
-    value = np.zeros(n)
-    value[surface.nodes[used]] = nodal[used]
-    ends = []
-    for kind, facets in by_kind(surface):
-        cell = CELLS[kind]
-        corners = cell.corners
-        edges = [(0, 1)] if cell.dim == 1 else [(i, (i + 1) % corners) for i in range(corners)]
-        for i, (a, b) in enumerate(edges):
-            chain = (a, b) if cell.degree == 1 or pair.coupling.degree < 2 else (a, corners + i, b)
-            ends += [surface.nodes[facets][:, list(step)] for step in itertools.pairwise(chain)]
-    return _graph(np.concatenate(ends), n), value
-
-
-def _facet_graph(pair: Pair, nodal: NDArray[np.float64]) -> tuple[Any, NDArray[np.float64]]:
-    surface = pair.contactor
-    facet, local = np.nonzero(surface.nodes >= 0)
-    shares = sp.csr_matrix(
-        (np.ones(len(facet)), (facet, surface.nodes[facet, local])), shape=(len(surface), len(surface.points))
-    )
-    corners = sp.csr_matrix(shares @ shares.T)
-    corners.data = (corners.data >= surface.dim - 1).astype(float)
-    corners.setdiag(0.0)
-    corners.eliminate_zeros()
-    return corners, np.nanmean(nodal, axis=1)
-
-
-def _graph(ends: NDArray[np.int32], n: int) -> Any:
-    graph = sp.csr_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(n, n))
-    graph = graph + graph.T
-    graph.data[:] = 1.0
-    return graph

@@ -15,11 +15,12 @@ from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
-from abut.interface.recover import carry_to_target, facet_node_values
-from abut.model import Model
+from abut.interface.recover import at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
+from abut.model import METHODS, Model
 from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
 
+SUPPORTED = 0.5  # covered share of a point's support from which on its pressure counts for the largest
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
@@ -134,16 +135,22 @@ def _contact(
         area, depth = float(coupling.covered.sum()), 0.0
     else:
         normal = values
-        gaps = pair.space.transfer @ (gap / weight)
+        gaps = pair.space.plain @ (gap / weight)
         area, depth = float(weight[active].sum()), float((-gap / weight).max(initial=0.0))
     covered = coupling.segments > 0
-    nodal = facet_node_values(pair.contactor, degree, normal)
+    raw = facet_node_values(pair.contactor, degree, normal)
+    integrated = pair.contact.method == METHODS[0]
+    at = averages(pair.contactor, coupling) if integrated else None
+    nodal = raw if at is None else at_facet_nodes(pair.contactor, at.of(normal))
+    share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(pair.contactor, at.share)
+    supported = nodal[share >= SUPPORTED] if (share >= SUPPORTED).any() else nodal
+    shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
         contactor=pair.contactor,
         target=pair.target,
         force=force.reshape(-1, dim).sum(axis=0),
-        max_pressure=float(np.nanmax(nodal)),
+        max_pressure=float(np.nanmax(supported)),
         area=area,
         max_penetration=max(depth, 0.0),
         active=int(active.sum()),
@@ -151,11 +158,13 @@ def _contact(
         removed=pair.space.removed,
         segments=int(coupling.segments.sum()),
         pressure=nodal,
+        multiplier=raw,
+        share=share,
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, degree, normal),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, beside),
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside),
     )
 
 

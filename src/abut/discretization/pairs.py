@@ -16,7 +16,7 @@ from abut.interface.geometry import facet_sizes, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
 from abut.mesh.surface import Surface
-from abut.model import Contact, Model
+from abut.model import LAWS, Contact, Model
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
 SHARPNESS = (  # theory (L8)
@@ -151,8 +151,8 @@ def _couple(
         cut = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
         coupling = replace(coupling, sights=cut.sights)
     else:
-        name, degree = resolve(contact.pressure, contactor)
         tied = contact.kind == "tied"
+        name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
         coupling = couple(
             contactor,
             target,
@@ -231,7 +231,7 @@ def _tied(
     weight = np.concatenate(weights)
     transfer = sp.hstack([t for t, _ in spaces]).tocsr()
     component_of = np.concatenate([np.full(t.shape[1], a) for t, a in spaces])
-    vector_space = PressureSpace(space.name, space.degree, transfer, weight, component_of, space.removed)
+    vector_space = PressureSpace(space.name, space.degree, transfer, transfer, weight, component_of, space.removed)
     return Pair(
         contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
         prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,

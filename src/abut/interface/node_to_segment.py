@@ -18,7 +18,8 @@ from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.interface.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.interface.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
-from abut.interface.pressure import PressureSpace, facet_functions, non_negative
+from abut.interface.bases import non_negative
+from abut.interface.pressure import PressureSpace, facet_functions
 from abut.mesh.surface import Surface
 
 INSIDE = 1e-9  # how far outside a facet, in reference coordinates, a foot still counts as on it
@@ -65,9 +66,8 @@ def node_to_segment(
         weight=weight, mass=np.zeros((len(contactor), 9, 9)),
         covered=full_moments(contactor, 0)[:, 0] * share, segments=nodes_seen.astype(np.int32),
     )  # fmt: skip
-    space = PressureSpace(
-        "nodal", degree, gather[:, seen].tocsr(), area[seen], ids[seen].astype(np.int64), len(ids) - len(seen), False
-    )
+    transfer, at = gather[:, seen].tocsr(), ids[seen].astype(np.int64)
+    space = PressureSpace("nodal", degree, transfer, transfer, area[seen], at, len(ids) - len(seen), False)
     return coupling, space
 
 

@@ -15,14 +15,16 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
 from abut.errors import InputError
+from abut.interface.bases import dual, non_negative
 from abut.interface.coupling import Coupling, surface_degree
 from abut.interface.geometry import by_kind, full_moments, function_count
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
+WEAK_DUAL = 0.2  # the same for dual functions, whose pieces on slivers swing more
+DUAL, DUAL_P1 = "dual", "dual-P1"
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,7 @@ class PressureSpace:
 
     transfer: (9 n_facets, n) sparse, coefficients -> facet-wise nodal values. The basis functions are non-negative (P2:
               Bernstein-like; the dual basis only in the mean), so that coefficient and weighted gap can be compared.
+    plain:    (9 n_facets, n) the same with the ordinary functions in place of the dual ones; else ``transfer``.
     weight:   (n,) int of each basis function over the covered part, > 0.
     node:     (n,) point at which the function sits, -1 for functions that belong to a facet alone.
     removed:  how many multipliers were removed or made to follow a neighbour.
@@ -40,6 +43,7 @@ class PressureSpace:
     name: str
     degree: int
     transfer: Any
+    plain: Any
     weight: NDArray[np.float64]
     node: NDArray[np.int64]
     removed: int = 0
@@ -48,17 +52,27 @@ class PressureSpace:
     def __len__(self) -> int:
         return int(self.transfer.shape[1])
 
+    @property
+    def continuous(self) -> bool:
+        """Whether coefficients belong to points, so that their ordinary functions make a continuous field."""
+        return bool((self.node >= 0).all())
 
-def resolve(name: str, contactor: Surface) -> tuple[str, int]:
-    """The space's name with "auto" resolved (continuous, of the displacement's order), and its degree.
 
-    name: "auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous" or "dual".
+def resolve(name: str, contactor: Surface, free_edge: bool = True) -> tuple[str, int]:
+    """The space's name with "auto" resolved, and the degree of its facet-wise functions.
+
+    name: "auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual" or "dual-P1".
+    free_edge: whether contact may open, and its law looks at weighted gaps (complementarity). Then "auto" is "dual" on
+    linear facets and "dual-P1" on quadratic ones, docs/theory/pressure-spaces.md; else the continuous space of the
+    displacement's order, and "dual-P1", which is dual at the edge of contact only, is "P1".
     Raises InputError for quadratic pressure on linear facets.
     """
     highest = surface_degree(contactor)
     if name == "auto":
-        name = f"P{highest}"
-    degree = 1 if name == "dual" else int(name[1])
+        name = (DUAL if highest == 1 else DUAL_P1) if free_edge else f"P{highest}"
+    if name == DUAL_P1 and not free_edge:
+        name = "P1"
+    degree = 2 if name.startswith("P2") else 1
     if degree > highest:
         raise InputError(
             f"pressure: {name} needs quadratic facets, but '{contactor.name}' has linear ones; choose P1 or auto"
@@ -70,26 +84,49 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> Pressur
     """Build the space ``name`` on the covered part of the contactor.
 
     name: as from ``resolve``; coupling: of that contactor, with the degree from ``resolve``. Multipliers with hardly any
-    of their support covered follow a neighbour, theory (P5), (P6); those with none vanish.
+    of their support covered follow a neighbour, theory (P5), (P6); those with none vanish. "dual-P1" begins as "dual":
+    ``with_plain_facets``.
     """
     row, node = facet_functions(contactor, coupling.degree)
     rows = 9 * len(contactor)
-    if name in ("P1", "P2", "dual"):
-        ids, column = np.unique(node, return_inverse=True)
-        column = column.ravel()
-    else:
+    if name == "P0":
+        ids, column = np.full(len(contactor), -1), row // 9
+    elif name.endswith("discontinuous"):
         ids, column = np.full(len(row), -1), np.arange(len(row))
-    gather = sp.csr_matrix((np.ones(len(row)), (row, column)), shape=(rows, len(ids)))
-    if name == "dual":
-        transfer = _dual(contactor, coupling) @ gather
-    elif coupling.degree == 2:
-        transfer = non_negative(contactor) @ gather
     else:
-        transfer = gather
-    transfer = transfer.tocsr()
-    space = PressureSpace(name, coupling.degree, transfer, transfer.T @ coupling.weight, ids.astype(np.int64))
-    share = space.weight / np.maximum(transfer.T @ full_moments(contactor, coupling.degree).ravel(), 1e-300)
-    return reduce(space, coupling, keep=share >= WEAK_SUPPORT, exists=share > NO_SUPPORT)
+        ids, column = np.unique(node, return_inverse=True)
+    gather = sp.csr_matrix((np.ones(len(row)), (row, column.ravel())), shape=(rows, len(ids)))
+    plain = (non_negative(contactor) @ gather).tocsr() if coupling.degree == 2 else gather
+    is_dual = name in (DUAL, DUAL_P1)
+    transfer = (dual(contactor, coupling) @ gather).tocsr() if is_dual else plain
+    space = PressureSpace(
+        name, coupling.degree, transfer, plain, transfer.T @ coupling.weight, ids.astype(np.int64)
+    )
+    share = covered_share(space, contactor, coupling)
+    return reduce(space, coupling, keep=share >= (WEAK_DUAL if is_dual else WEAK_SUPPORT), exists=share > NO_SUPPORT)
+
+
+def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) -> NDArray[np.float64]:
+    """Theory (P5), (n,): by the ordinary functions, since dual ones know nothing of the part that is not covered."""
+    full = space.plain.T @ full_moments(contactor, coupling.degree).ravel()
+    return np.asarray(space.plain.T @ coupling.weight / np.maximum(full, 1e-300))
+
+
+def inner_facets(space: PressureSpace, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets (n_facets,) whose multipliers are all active; active: (n,) bool."""
+    uses = abs(space.plain)
+    closed, opened = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (active, ~active))
+    return np.asarray(closed & ~opened)
+
+
+def with_plain_facets(
+    space: PressureSpace, contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_]
+) -> PressureSpace:
+    """A dual space with the ordinary functions on some facets, theory (P9): continuous, and exact for linear pressures,
+    where contact is closed. Coefficients keep their meaning and weights, since int phi_k = int N_k on every facet.
+
+    plain: (n_facets,) bool."""
+    return replace(space, transfer=(dual(contactor, coupling, plain) @ space.plain).tocsr())
 
 
 def reduce(
@@ -107,7 +144,7 @@ def reduce(
     kept = np.flatnonzero(keep)
     position = np.full(n, -1)
     position[kept] = np.arange(len(kept))
-    pattern = space.transfer.copy()
+    pattern = space.plain.copy()
     pattern.data = np.ones_like(pattern.data)
     facets = sp.csr_matrix(
         (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // 9, np.arange(pattern.shape[0] + 1))
@@ -126,6 +163,7 @@ def reduce(
     return replace(
         space,
         transfer=transfer,
+        plain=(space.plain @ follow).tocsr(),
         weight=transfer.T @ coupling.weight,
         node=space.node[kept],
         removed=space.removed + n - len(kept),
@@ -140,70 +178,3 @@ def facet_functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64],
     facet = np.repeat(np.arange(len(contactor)), count)
     local = np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count)
     return 9 * facet + local, contactor.nodes[facet, local].astype(np.int64)
-
-
-def _block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Any:
-    """Sparse (9 n, 9 n) matrix from one dense block (or one per facet) for each facet type."""
-    rows, columns, values = [], [], []
-    for kind, facets in by_kind(contactor):
-        block = np.broadcast_to(blocks[kind], (len(facets), *blocks[kind].shape[-2:]))
-        i, j = np.meshgrid(np.arange(block.shape[1]), np.arange(block.shape[2]), indexing="ij")
-        rows.append((9 * facets[:, None] + i.ravel()).ravel())
-        columns.append((9 * facets[:, None] + j.ravel()).ravel())
-        values.append(block.reshape(len(facets), -1).ravel())
-    size = 9 * len(contactor)
-    matrix = sp.csr_matrix(
-        (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size)
-    )
-    matrix.eliminate_zeros()
-    return matrix
-
-
-def non_negative_block(kind: str, c: float) -> NDArray[np.float64]:
-    """Nodal values (nodes, nodes) of a non-negative basis of a quadratic facet's space, one column a function.
-
-    On an edge the functions are (1 -+ s)/2 - c (1 - s^2) at the ends and 2 c (1 - s^2) in the middle: a
-    partition of unity for every c, theory (P2), (P3), the Bernstein polynomials for c = 1/4. With c = 1/8 the
-    serendipity functions of quad8 are non-negative as well (with 1/4 those at the corners are not).
-    """
-    cell = CELLS[kind]
-    block = np.eye(cell.nodes)
-    if cell.degree == 1:
-        return block
-    middle, end = 2.0 * c, 0.5 - c
-    if cell.dim == 1:
-        block[2] = [end, end, middle]
-        return block
-    n = cell.corners
-    for e in range(n):
-        block[n + e] = 0.0
-        block[n + e, [e, (e + 1) % n]] = end
-        block[n + e, n + e] = middle
-    if cell.nodes == 9:
-        block[8, :4], block[8, 4:8], block[8, 8] = end * end, end * middle, middle * middle
-    return block
-
-
-def non_negative(contactor: Surface) -> Any:
-    """Sparse (9 n, 9 n): facet-wise nodal values of the non-negative basis of every facet's quadratic functions."""
-    kinds = [kind for kind, _ in by_kind(contactor)]
-    c = 0.125 if "quad8" in kinds else 0.25  # one value on the whole surface keeps edges between types continuous
-    return _block_diagonal(contactor, {kind: non_negative_block(kind, c) for kind in kinds})
-
-
-def _dual(contactor: Surface, coupling: Coupling) -> Any:
-    """Biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl int N_l on each covered facet,
-    theory (P4)."""
-    blocks = {}
-    for kind, facets in by_kind(contactor):
-        n = function_count(kind, 1)
-        mass = coupling.mass[facets][:, :n, :n]
-        weight = coupling.weight.reshape(-1, 9)[facets, :n]
-        block = np.tile(np.eye(n), (len(facets), 1, 1))
-        # A sliver of a facet has no well-determined dual basis: it keeps the plain functions.
-        sound = np.array([np.linalg.cond(m) < 1e4 if m.any() else False for m in mass], dtype=bool)
-        if sound.any():
-            solved = np.linalg.solve(mass[sound], np.eye(n) * weight[sound][:, None, :])
-            block[sound] = solved  # column k: nodal values of phi_k
-        blocks[kind] = block
-    return _block_diagonal(contactor, blocks)

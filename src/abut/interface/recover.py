@@ -1,7 +1,8 @@
-"""Pressure and gap where a person wants to see them: at the facets' nodes, on both sides."""
+"""Pressure and gap at the facets' nodes, on both sides: what is shown of a multiplier."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,72 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
-from abut.interface.geometry import by_kind, function_count, node_coordinates, pressure_kind
+from abut.interface.coupling import Coupling
+from abut.interface.geometry import by_kind, full_moments, function_count, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
 
+NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
 FOUND = 1e-13  # step in reference coordinates after which a foot is found
 SINGULAR = 1e-14  # of the metric's trace
+
+
+@dataclass(frozen=True)
+class Averages:
+    """Averages of facet-wise fields over the corner functions N_i of the contactor, theory (P10).
+
+    corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
+    the covered part; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
+    contactor, 0 at points that are no corners of it.
+    """
+
+    corners: NDArray[np.int64]
+    moments: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    share: NDArray[np.float64]
+
+    def loads(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """int N_i f of a field given by its coefficients (9 n_facets, ...), at the points, (n_points, ...)."""
+        table = values.reshape(len(self.corners), 9, -1)
+        total = np.zeros((len(self.weight), table.shape[2]))
+        used = self.corners >= 0
+        np.add.at(total, self.corners[used], np.matmul(self.moments, table)[used])
+        return total.reshape(-1, *values.shape[1:])
+
+    def of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Their averages at the points, (n_points, ...), 0 where nothing is covered."""
+        loads = self.loads(values)
+        weight = self.weight.reshape(-1, *[1] * (loads.ndim - 1))
+        return np.where(weight > 0.0, loads / np.where(weight > 0.0, weight, 1.0), 0.0)
+
+
+def averages(contactor: Surface, coupling: Coupling) -> Averages:
+    """What it takes to average fields on a contactor; coupling: of degree 1 or 2."""
+    corners = np.full(contactor.nodes.shape, -1, dtype=np.int64)
+    moments = np.zeros_like(coupling.mass)
+    for kind, facets in by_kind(contactor):
+        n = CELLS[kind].corners
+        corners[facets, :n] = contactor.nodes[facets, :n]
+        # The corners' functions are combinations of the facet's: their values at its nodes are the coefficients.
+        own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(pressure_kind(kind, coupling.degree)))
+        moments[facets[:, None], np.arange(n)] = np.einsum("ki,fkl->fil", own, coupling.mass[facets, : len(own)])
+    used = corners >= 0
+    weight, whole = (
+        np.bincount(corners[used], values[used], minlength=len(contactor.points))
+        for values in (moments.sum(axis=2), full_moments(contactor, 1))
+    )
+    share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
+    return Averages(corners, moments, np.where(share > NO_SUPPORT, weight, 0.0), share)
+
+
+def at_facet_nodes(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at a surface's corner points (n_points,) at every node of each facet, linear between the corners,
+    (n_facets, 9), NaN where padded."""
+    result = np.full(surface.nodes.shape, np.nan)
+    for kind, facets in by_kind(surface):
+        cell = CELLS[kind]
+        own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(kind))
+        result[facets, : cell.nodes] = values[surface.nodes[facets, : cell.corners]] @ own.T
+    return result
 
 
 def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -23,21 +85,27 @@ def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float6
     result = np.full(table.shape, np.nan)
     for kind, facets in by_kind(contactor):
         n = function_count(kind, degree)
-        if degree == 0:
-            result[facets, : CELLS[kind].nodes] = table[facets, :1]
-            continue
         own, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, node_coordinates(kind))
         result[facets, : CELLS[kind].nodes] = table[facets, :n] @ own.T
     return result
 
 
+def corner_values(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at the facets' nodes (n_facets, 9) as coefficients of the corners' functions, (9 n_facets,)."""
+    result = np.zeros(values.shape)
+    for kind, facets in by_kind(surface):
+        n = CELLS[kind].corners
+        result[facets, :n] = values[facets, :n]
+    return result.ravel()
+
+
 def carry_to_target(
-    contactor: Surface, target: Surface, pairs: Any, degree: int, values: NDArray[np.float64]
+    contactor: Surface, target: Surface, pairs: Any, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Pressure at the target's nodes, (n_target_facets, 9): read off the contactor at the foot of each node; zero where
     no contactor facet lies opposite, NaN where padded.
 
-    pairs: (9 n_contactor_facets, n_points or dim n_points) sparse ``target_part`` of the coupling: it knows which
+    values: (9 n_contactor_facets,) coefficients of the corners' functions; pairs: (9 n_contactor_facets, n_points or dim n_points) sparse ``target_part`` of the coupling: it knows which
     contactor facets see which target nodes.
     """
     width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
@@ -51,12 +119,9 @@ def carry_to_target(
         kind = BY_CODE[code].name
         own = seen[contactor.kinds[seen[:, 0]] == code]
         xi, outside = _foot(contactor, kind, own[:, 0], target.points[own[:, 1]])
-        if degree == 0:
-            value = table[own[:, 0], 0]
-        else:
-            carrier = CELLS[pressure_kind(kind, degree)]
-            shape, _ = shape_functions(carrier.code, np.ascontiguousarray(xi))
-            value = np.einsum("pn,pn->p", shape, table[own[:, 0], : carrier.nodes])
+        carrier = CELLS[pressure_kind(kind, 1)]
+        shape, _ = shape_functions(carrier.code, np.ascontiguousarray(xi))
+        value = np.einsum("pn,pn->p", shape, table[own[:, 0], : carrier.nodes])
         order = np.argsort(-outside)  # the nearest to a facet's inside is written last
         inside = order[outside[order] < 0.05]
         better = outside[inside] < best[own[inside, 1]]

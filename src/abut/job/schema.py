@@ -160,7 +160,7 @@ class ContactTable(Table):
     bodies: list[str] | None = None
     reach: Number | None = None
     kind: Literal["contact", "tied"] = "contact"
-    pressure: Literal["auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual"] = "auto"
+    pressure: Literal["auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1"] = "auto"
     law: Literal["complementarity", "constraint-function"] = "complementarity"
     epsilon: Number = 1e-12
     method: Literal["segment-to-segment", "node-to-segment", "node-to-segment-two-pass"] = "segment-to-segment"

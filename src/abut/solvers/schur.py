@@ -20,6 +20,7 @@ from abut.discretization.pairs import Pair
 from abut.interface.geometry import facet_stiffness
 from abut.solvers.fractional import inverse_root
 
+CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
 PREDICTIONS = 15  # active sets tried on the interface alone
 Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
@@ -45,21 +46,25 @@ def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
         component = pair.space.node if pair.tied else np.zeros(len(pair), dtype=np.int64)
         for a in np.unique(component):
             own = np.flatnonzero(component == a)
-            result.append(_interface(pair, pair.space.transfer.tocsc()[:, own], first + own, pair.space.weight[own]))
+            result.append(_interface(pair, own, first + own))
         first += len(pair)
     return result
 
 
-def _interface(pair: Pair, transfer: Any, rows: NDArray[np.int64], weight: NDArray[np.float64]) -> Interface:
+def _interface(pair: Pair, own: NDArray[np.int64], rows: NDArray[np.int64]) -> Interface:
+    """own: (m,) the coefficients of the pair's space that it is about."""
+    space = pair.space
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     lowest = (2.0 / extent) ** 2
-    continuous = pair.space.name in ("P1", "P2") and pair.coupling.mass.any()
-    if not continuous:  # no Laplacian across jumps: lumped, with the compliance of the shortest waves
-        mass = sp.diags(weight, format="csr")
+    if space.name not in CONTINUOUS or not pair.coupling.mass.any():
+        # No Laplacian across jumps: lumped, with the compliance of the shortest waves.
+        mass = sp.diags(space.weight[own], format="csr")
         return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
-    mass = (transfer.T @ sp.block_diag(list(pair.coupling.mass), format="csr") @ transfer).tocsr()
+    transfer, plain = space.transfer.tocsc()[:, own], space.plain.tocsc()[:, own]
+    # Of a dual space int phi_k N_l, which is diagonal: the same pressure field has the same coefficients either way.
+    mass = (transfer.T @ sp.block_diag(list(pair.coupling.mass), format="csr") @ plain).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
-    laplacian = (transfer.T @ slopes @ transfer).tocsr()
+    laplacian = (plain.T @ slopes @ plain).tocsr()
     return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, pair.compliance, lowest)
 
 

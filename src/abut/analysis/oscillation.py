@@ -1,0 +1,139 @@
+"""Whether the reported pressure alternates from node to node: the certificate's line "oscillation"."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.cells import CELLS
+from abut.discretization.pairs import Pair
+from abut.interface.geometry import by_kind
+from abut.interface.recover import Averages
+
+CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
+WHOLE = 1e-2  # a facet covered to within this share is fully covered
+
+
+def oscillation(
+    pair: Pair, at: Averages, values: NDArray[np.float64], pressure: NDArray[np.float64], largest: float
+) -> float:
+    """Largest alternating part of the pressure inside the contact over the largest pressure, theory (P11).
+
+    values: (9 n_facets,) facet-wise coefficients of the multiplier; pressure: (n_points,) as reported; largest: of it.
+    Of discontinuous spaces, whose average may hide what alternates, also that of the facets' means."""
+    nodes = Graph.of_nodes(pair)
+    worst = _alternating(nodes, pressure, _excluded(pair, at, nodes), largest)
+    if not pair.space.continuous:
+        facets = Graph.of_facets(pair)
+        ones = pair.space.plain @ np.ones(len(pair))
+        area = pair.coupling.weight * ones
+        total = np.maximum(area.reshape(-1, 9).sum(axis=1), 1e-300)
+        mean = (area * values).reshape(-1, 9).sum(axis=1) / total
+        worst = max(worst, _edges(facets, mean, _closed_inside(facets, mean, largest), largest))
+        worst = max(worst, _jumps(pair, values, pressure, largest))
+    return worst
+
+
+class Graph:
+    """Who neighbours whom. matrix: (n, n) symmetric, ones; used: (n,) which take part; rim: (n,) on the surface's border."""
+
+    def __init__(self, ends: NDArray[np.int64], n: int, rim: NDArray[np.bool_]) -> None:
+        matrix = sp.csr_matrix((np.ones(2 * len(ends)), (np.r_[ends[:, 0], ends[:, 1]], np.r_[ends[:, 1], ends[:, 0]])), (n, n))
+        matrix.data[:] = 1.0
+        self.matrix, self.rim = matrix, rim
+        self.degree = np.asarray(matrix.sum(axis=1)).ravel()
+
+    def mean(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Mean of the neighbours' values, 0 for none."""
+        return np.asarray(self.matrix @ values) / np.maximum(self.degree, 1.0)
+
+    def all_of(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether all neighbours have the flag; no for none."""
+        return np.asarray((self.matrix @ flags.astype(float) == self.degree) & (self.degree > 0))
+
+    def any_of(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        return np.asarray(self.matrix @ flags.astype(float) > 0.0)
+
+    @staticmethod
+    def of_nodes(pair: Pair) -> Graph:
+        """Corner points along facet edges; the rim belongs to one facet only."""
+        surface, n = pair.contactor, len(pair.contactor.points)
+        ends = []
+        for kind, facets in by_kind(surface):
+            corners, nodes = CELLS[kind].corners, surface.nodes[facets].astype(np.int64)
+            pairs = [(0, 1)] if CELLS[kind].dim == 1 else [(i, (i + 1) % corners) for i in range(corners)]
+            ends += [np.sort(nodes[:, list(own)], axis=1) for own in pairs]
+        edges, count = np.unique(np.concatenate(ends), axis=0, return_counts=True)
+        rim = np.zeros(n, dtype=bool)
+        if surface.dim == 2:
+            rim[np.bincount(edges.ravel(), minlength=n) == 1] = True
+        else:
+            rim[edges[count == 1]] = True
+        return Graph(edges, n, rim)
+
+    @staticmethod
+    def of_facets(pair: Pair) -> Graph:
+        """Facets that share an edge (2D: a point)."""
+        surface = pair.contactor
+        facet, local = np.nonzero(surface.nodes >= 0)
+        shape = (len(surface), len(surface.points))
+        has = sp.csr_matrix((np.ones(len(facet)), (facet, surface.nodes[facet, local])), shape=shape)
+        common = sp.triu(has @ has.T, 1).tocoo()
+        edges = np.stack([common.row, common.col], axis=1)[common.data >= surface.dim - 1]
+        return Graph(edges.astype(np.int64), len(surface), np.zeros(len(surface), dtype=bool))
+
+
+def _excluded(pair: Pair, at: Averages, graph: Graph) -> NDArray[np.bool_]:
+    """Points at the contactor's rim or of partly covered facets, and their neighbours: the pressure of a body with corners
+    is singular there, and no mesh shows that without a swing."""
+    near = graph.rim.copy()
+    near[(at.share > 0.0) & (np.abs(at.share - 1.0) > WHOLE)] = True
+    return near | graph.any_of(near)
+
+
+def _closed_inside(graph: Graph, pressure: NDArray[np.float64], largest: float) -> NDArray[np.bool_]:
+    closed = pressure > CLOSED * largest
+    return np.asarray(closed & graph.all_of(closed))
+
+
+def _edges(graph: Graph, pressure: NDArray[np.float64], inside: NDArray[np.bool_], largest: float) -> float:
+    """Over edges with both ends inside: root of -r_i r_j, r = p - mean of the neighbours."""
+    ripple = np.where(inside & (graph.degree > 1), pressure - graph.mean(pressure), 0.0)
+    edges = sp.triu(graph.matrix, 1).tocoo()
+    product = ripple[edges.row] * ripple[edges.col]
+    return float(np.sqrt(np.maximum(-product, 0.0).max(initial=0.0))) / largest
+
+
+def _alternating(graph: Graph, pressure: NDArray[np.float64], excluded: NDArray[np.bool_], largest: float) -> float:
+    closed = pressure > CLOSED * largest
+    used = graph.degree > 0
+    ripple = _edges(graph, pressure, _closed_inside(graph, pressure, largest) & ~excluded, largest)
+    single = used & closed & ~graph.any_of(closed) & ~excluded
+    hole = used & ~closed & graph.all_of(closed) & ~excluded
+    alone = float(pressure[single].max(initial=0.0)) / largest
+    missing = float(graph.mean(pressure)[hole].max(initial=0.0)) / largest
+    return max(ripple, alone, missing)
+
+
+def _jumps(pair: Pair, values: NDArray[np.float64], pressure: NDArray[np.float64], largest: float) -> float:
+    """Largest distance of a facet's own value at a corner from the reported one, where all facets there are closed."""
+    if pair.space.name == "P0":
+        return 0.0
+    surface = pair.contactor
+    facet, local, node = [], [], []
+    for kind, facets in by_kind(surface):
+        n = CELLS[kind].corners
+        facet.append(np.repeat(facets, n))
+        local.append(np.tile(np.arange(n), len(facets)))
+        node.append(surface.nodes[facets, :n].ravel())
+    i, k, at = np.concatenate(facet), np.concatenate(local), np.concatenate(node)
+    own = values.reshape(-1, 9)[i, k]
+    opened = np.bincount(at, own <= CLOSED * largest, minlength=len(pressure))
+    inside = (opened == 0)[at]
+    return float(np.abs(own - pressure[at])[inside].max(initial=0.0)) / largest
+
+
+__all__ = ["Graph", "oscillation"]
