@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.faceting import bulge
-from abut.mesh.make import box, cylinder, half_disc, join, rectangle, ring, sphere_octant
+from abut.analysis.faceting import bulge, misfit, unseen
+from abut.discretization.pairs import pair
+from abut.discretization.supports import supports
+from abut.mesh.make import box, cylinder, join, rectangle, ring, sphere_octant
 from abut.state import Check
 
 STEEL = abut.LinearElastic(210e3, 0.3)
@@ -63,64 +65,65 @@ def test_quadratic_and_flat_facets_leave_nothing_out() -> None:
         assert np.abs(bulge(surface, np.arange(len(surface), dtype=np.int32), shapes)).max() < 1e-14
 
 
-@pytest.mark.parametrize(("around", "interference", "off"), [((96, 90), 0.01, 0.03), ((26, 24), 0.05, 0.04)])
-def test_chords_of_one_circle_may_cut_into_each_other(around: tuple[int, int], interference: float, off: float) -> None:
-    """By many times what the pressure presses in: that no function sees it is no harm, the pressure is right."""
-    solution = abut.solve(fit(around, interference))
+def off(solution: abut.Solution, interference: float) -> float:
+    """Largest error of the pressure over Lame's."""
     pressure = solution.contacts[0].pressure
-    exact = fit_pressure(interference)
-    assert np.nanmax(np.abs(pressure[np.isfinite(pressure)] - exact)) < off * exact
-    assert failed(solution) <= {"oscillation"}
-    assert checks(solution)["overlap"].value < 0.3
+    return float(np.nanmax(np.abs(pressure / fit_pressure(interference) - 1.0)))
 
 
-@pytest.mark.parametrize(("around", "interference"), [((32, 24), 0.01), ((24, 32), 0.01), ((16, 12), 0.05)])
+@pytest.mark.parametrize(("around", "interference"), [((96, 90), 0.05), ((24, 26), 0.05), ((24, 32), 0.05)])
+def test_chords_of_one_circle_may_cut_into_each_other(around: tuple[int, int], interference: float) -> None:
+    """By far more than the pressure presses in: that no function sees it is no harm, the pressure is right."""
+    model = fit(around, interference)
+    solution = abut.solve(model)
+    assert off(solution, interference) < 0.05
+    assert failed(solution) == set()
+    own = pair(model, model.contacts[0], supports(model))
+    chords = misfit(own)
+    assert chords is not None
+    seen = own.compliance * fit_pressure(interference) * own.size / np.pi  # (L10), as a length
+    assert np.abs(unseen(own, chords)).max() > 1.2 * seen
+
+
+@pytest.mark.parametrize(
+    ("around", "interference"), [((32, 24), 0.01), ((24, 32), 0.01), ((24, 64), 0.01), ((64, 24), 0.05)]
+)
 def test_chords_that_make_the_pressure_fail(around: tuple[int, int], interference: float) -> None:
-    """Their roundness varies from function to function by as much as the interference: the pressure is wrong by half."""
+    """Their roundness varies from function to function, or is in all, by as much as the interference."""
     solution = abut.solve(fit(around, interference))
-    pressure = solution.contacts[0].pressure
-    exact = fit_pressure(interference)
-    assert np.nanmax(np.abs(pressure[np.isfinite(pressure)] - exact)) > 0.3 * exact
+    assert off(solution, interference) > 0.2
     assert "faceting" in failed(solution)
     assert checks(abut.solve(fit(around, interference, "quad8")))["faceting"].value == 0.0
 
 
-def two_pairs(approach: float) -> abut.Model:
-    """A block pressed on a block, and beside them half a disc, coarse where it touches, that comes down by ``approach``."""
-    mesh = join(
-        {
-            "foot": rectangle((-2, 4), (-1, 0), (30, 5), "quad8"),
-            "block": rectangle((2, 3), (0, 1), (5, 5), "quad8"),
-            "ball": half_disc(centre=(0, 1), fine=0.4, cells=1, cell="quad8"),
-        }
-    )
+def light_fit(down: float) -> abut.Model:
+    """A fit with hardly any interference, and beside it a block pressed on another by ``down``."""
+    light = fit((26, 24), 1e-4)
+    parts = {"foot": rectangle((40, 50), (-10, 0), (6, 6)), "block": rectangle((40, 50), (0, 10), (5, 5))}
+    mesh = join({"fit": light.mesh, **parts})
     return abut.Model(
         mesh,
         [abut.Solid(body, STEEL) for body in mesh.bodies],
-        [
-            abut.Support("foot.bottom", x=0, y=0),
-            abut.Support("block.top", x=0, y=-1e-3),
-            abut.Support("ball.flat", x=0, y=-approach),
-        ],
+        [replace(s, on=f"fit.{s.on}") for s in light.supports]
+        + [abut.Support("foot.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-down)],
         contacts=[
-            abut.Contact("block.bottom", "foot.top", name="block"),
-            abut.Contact("ball.round", "foot.top", name="ball"),
+            abut.Contact("fit.hub.inner", "fit.shaft.outer", offset=-1e-4, name="fit"),
+            abut.Contact("foot.top", "block.bottom", name="blocks"),
         ],
-        plane="strain",
+        plane="stress",
     )
 
 
 def test_a_pair_that_is_nearly_unloaded() -> None:
-    """Contact narrower than a facet, wrong by far, at a pressure that is nothing beside the other pair's, whose own
-    pressure is right; pressed more, the same contact fails."""
+    """Chords get its own small pressure all wrong, but that is nothing beside what the other pair carries; as soon as that
+    one carries little as well, it fails."""
 
-    def overlap(approach: float) -> Check:
-        solution = abut.solve(two_pairs(approach))
-        (found,) = (c for c in solution.certificate if (c.contact, c.name) == ("ball", "overlap"))
-        return found
+    def line(down: float) -> Check:
+        every = abut.solve(light_fit(down)).certificate
+        return next(c for c in every if (c.contact, c.name) == ("fit", "faceting"))
 
-    assert overlap(1e-5).passed
-    assert not overlap(1e-2).passed
+    assert line(0.4).passed
+    assert line(1e-4).value > 1.0
 
 
 def sheets(pressed: str) -> abut.Model:

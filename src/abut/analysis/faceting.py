@@ -7,20 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.discretization.pairs import Pair
+from abut.discretization.supports import Supports
 from abut.interface.coupling import Sights
-from abut.interface.geometry import by_kind, nodal_normals
+from abut.interface.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
+from abut.model import Model
 
 MIDDLE = 2.0 / 3.0  # weight of a segment's middle; its corners share the rest: exact for parabolas on lines and squares
+HELD = 1e-9  # share of an axis held at a point below which it is free there
 ROUND = 1e-9  # of the facet size: less roundness than that is none
 
 
 @dataclass(frozen=True)
 class Misfit:
     """The true gap minus that between facets, a length: ``point`` (n_sights,) where the contactor looks; ``node``
-    (n_points,) its mean under the contactor's linear functions, NaN where none reach."""
+    (n_points,) its mean under the pressure function that sits there, NaN where there is none."""
 
     point: NDArray[np.float64]
     node: NDArray[np.float64]
@@ -61,15 +65,39 @@ def misfit(pair: Pair) -> Misfit | None:
     point = -bulge(pair.contactor, at.facet, at.own) - bulge(pair.target, at.target_facet, at.other)
     if np.abs(point).max() <= ROUND * pair.size:
         return None
-    area, mean, middle = _segments(pair.contactor, at, point)
-    total = weighted = np.zeros(len(pair.contactor.points))
-    for a in range(at.own.shape[1]):
-        node, share = pair.contactor.nodes[at.facet[middle], a], area * at.own[middle, a]
-        node, share = np.where(node >= 0, node, 0), np.where(node >= 0, share, 0.0)
-        total = total + np.bincount(node, share, len(total))
-        weighted = weighted + np.bincount(node, share * mean, len(total))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return Misfit(point, np.where(total > 0.0, weighted / total, np.nan))
+    moments = _moments(pair, at, point)
+    space, node = pair.space, np.full(len(pair.contactor.points), np.nan)
+    if space.continuous:
+        node[space.node] = (space.transfer.T @ moments) / space.weight
+    else:  # functions of single facets: the mean under the corner functions of all facets at a node stands for them
+        facet, local = np.nonzero(pair.contactor.nodes >= 0)
+        here, row = pair.contactor.nodes[facet, local], 9 * facet + (local if pair.coupling.degree else 0)
+        weight = np.bincount(here, pair.coupling.weight[row], len(node))
+        known = weight > 0.0
+        node[known] = np.bincount(here, moments[row], len(node))[known] / weight[known]
+    return Misfit(point, node)
+
+
+def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integrals (9 n_facets,) of a value given at the sights with the facet-wise pressure functions; in 2D exact to
+    the third order (Simpson's rule), in 3D an estimate."""
+    contactor, degree = pair.contactor, pair.coupling.degree
+    functions = np.zeros_like(at.own)
+    for kind, facets in by_kind(contactor):
+        here = np.isin(at.facet, facets)
+        if degree == 0:
+            functions[here, 0] = 1.0
+            continue
+        carrier = CELLS[pressure_kind(kind, degree)]
+        values, _ = shape_functions(carrier.code, node_coordinates(kind))
+        functions[np.ix_(here, np.arange(carrier.nodes))] = at.own[here, : CELLS[kind].nodes] @ values
+    area, middle, number = _segments(contactor, at)
+    corners = np.bincount(number, minlength=len(middle)) - 1
+    weight = (1.0 - MIDDLE) / np.maximum(corners, 1)[number]
+    weight[middle] = np.where(corners > 0, MIDDLE, 1.0)
+    row = (9 * at.facet[:, None].astype(np.int64) + np.arange(9)).ravel()
+    product = (area[number] * weight * value)[:, None] * functions
+    return np.asarray(np.bincount(row, product.ravel(), 9 * len(contactor)), dtype=np.float64)
 
 
 def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:
@@ -77,14 +105,28 @@ def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:
     at = pair.coupling.sights
     assert at is not None
     nodes = np.maximum(pair.contactor.nodes[at.facet], 0)
-    return of.point - np.nansum(at.own * of.node[nodes], axis=1)
+    mean = np.nan_to_num(of.node[nodes])
+    return np.asarray(of.point - (at.own * mean).sum(axis=1))
 
 
-def faceting(pair: Pair, nodal: NDArray[np.float64], closed: float) -> float:
+def free_axes(model: Model, held: Supports, pair: Pair) -> NDArray[np.bool_]:
+    """Along which axes, (dim,), the body of one side at least may shift as a whole: no support holds it there."""
+    free = np.zeros(model.dim, dtype=bool)
+    for surface in (pair.contactor, pair.target):
+        bodies = [body for body, cells in model.mesh.bodies.items() if np.isin(surface.cells, cells).any()]
+        nodes = np.unique(np.concatenate([model.mesh.nodes_of(body) for body in bodies]))
+        for a, axis in enumerate(np.eye(model.dim)):
+            share = held.held_share(nodes, np.broadcast_to(axis, (len(nodes), model.dim)))
+            free[a] |= bool((share < HELD).all())
+    return free
+
+
+def faceting(pair: Pair, nodal: NDArray[np.float64], closed: float, free: NDArray[np.bool_]) -> float:
     """Pressure that the misfit makes where it is carried: theory (L12), an estimate.
 
-    nodal: (n_facets, 9) pressure, of which what exceeds ``closed`` counts as contact. What a shift of a whole side takes
-    up is left out, and so is the rim, where normals are known from one side only, unless contact is nowhere else.
+    nodal: (n_facets, 9) pressure, of which what exceeds ``closed`` counts as contact; free: (dim,) axes along
+    which a side may shift. What such a shift takes up is left out, and so is the rim, where normals are known from one
+    side only, unless contact is nowhere else.
     """
     of = misfit(pair)
     if of is None or pair.compliance == 0.0:
@@ -98,20 +140,23 @@ def faceting(pair: Pair, nodal: NDArray[np.float64], closed: float) -> float:
     loaded = inside if inside.any() else loaded
     if not loaded.any():
         return 0.0
-    node = np.where(known, of.node - _shift(surface, of.node, loaded), 0.0)
+    node = np.where(known, of.node - _shift(surface, of.node, loaded, free), 0.0)
     a, b = _edges(surface).T
     both = (loaded[a] & known[b]) | (loaded[b] & known[a])  # a node that kinks keep open is left out of contact by them
     step = np.abs(node[a] - node[b])[both] / np.linalg.norm(surface.points[a] - surface.points[b], axis=1)[both]
     extent = max(float(np.ptp(surface.points[loaded], axis=0).max()), pair.size)
-    even = np.pi * float(np.abs(node[loaded].mean())) / extent
+    even = float(np.abs(node[loaded].mean())) / extent
     return max(float(step.max(initial=0.0)), even) / pair.compliance
 
 
-def _shift(surface: Surface, value: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """The part of nodal values (n_points,) that is the normal share of one shift of the whole, by least squares."""
+def _shift(
+    surface: Surface, value: NDArray[np.float64], known: NDArray[np.bool_], free: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """The part of nodal values (n_points,) that is the normal share of one shift along the free axes, by least squares."""
     used = surface.nodes >= 0
     normals = np.zeros_like(surface.points)
     normals[surface.nodes[used]] = nodal_normals(surface)[used]
+    normals = normals[:, free]
     shift = np.linalg.lstsq(normals[known], value[known], rcond=1e-6)[0]
     return np.asarray(normals @ shift)
 
@@ -145,30 +190,22 @@ def _near_rim(surface: Surface) -> NDArray[np.bool_]:
     return rim
 
 
-def _segments(
-    surface: Surface, at: Sights, value: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
-    """Area and mean value of every segment, (n_segments,), and the number of its sight in the middle; the others follow."""
+def _segments(surface: Surface, at: Sights) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Area of every segment, (n_segments,), the number of its sight in the middle, which comes first, and of every sight
+    that of its segment, (n_sights,)."""
     new = np.ones(len(at.gap), dtype=bool)
     new[1:] = (at.facet[1:] != at.facet[:-1]) | (at.target_facet[1:] != at.target_facet[:-1])
     middle = np.flatnonzero(new)
     number = np.cumsum(new) - 1
-    corners = np.maximum(np.bincount(number) - 1, 1)
     x = np.einsum("ka,kad->kd", at.own, surface.points[np.maximum(surface.nodes[at.facet], 0)])
-    around = np.bincount(number[~new], value[~new], len(middle)) / corners
-    mean = np.where(np.bincount(number) > 1, MIDDLE * value[middle] + (1.0 - MIDDLE) * around, value[middle])
-    radius = np.linalg.norm(x - x[middle[number]], axis=1)
+    arm = x - x[middle[number]]
     if surface.dim == 2:
-        return _sums(number[~new], radius[~new], len(middle)), mean, middle
-    # A fan of triangles round the middle; the last corner is followed by the first.
-    following = np.arange(len(x)) + 1
-    last = np.append(new[1:], True)
-    following[last] = middle[number[last]] + 1
-    fan = ~new & (following < len(x))
-    a, b = x - x[middle[number]], x[np.minimum(following, len(x) - 1)] - x[middle[number]]
-    triangle = 0.5 * np.linalg.norm(np.cross(a[fan], b[fan]), axis=1)
-    return _sums(number[fan], triangle, len(middle)), mean, middle
-
-
-def _sums(number: NDArray[np.int64], value: NDArray[np.float64], n: int) -> NDArray[np.float64]:
-    return np.asarray(np.bincount(number, value, n), dtype=np.float64)
+        area = np.linalg.norm(arm, axis=1)
+    else:  # a fan of triangles round the middle; the last corner is followed by the first
+        following = np.minimum(np.arange(len(x)) + 1, len(x) - 1)
+        last = np.append(new[1:], True)
+        following[last] = np.minimum(middle[number[last]] + 1, len(x) - 1)
+        area = np.where(new, 0.0, 0.5 * np.linalg.norm(np.cross(arm, arm[following]), axis=1))
+    if surface.axisymmetric:
+        area = area * 2.0 * np.pi * x[:, 0]
+    return np.asarray(np.bincount(number, area, len(middle)), dtype=np.float64), middle, number

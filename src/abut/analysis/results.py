@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
+from abut.analysis.faceting import free_axes
 from abut.analysis.loads import Loads
 from abut.analysis.overlap import overlaps
 from abut.analysis.volume import Volume
@@ -75,7 +76,17 @@ def step_result(
         },
         load=loaded.resultant @ stage.weights,
         contacts=tuple(
-            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference, depth, beside)
+            _contact(
+                pair,
+                pressure,
+                gap,
+                active,
+                outcome.iterations[-1].contact_residual,
+                reference,
+                depth,
+                beside,
+                free_axes(model, held, pair),
+            )
             for pair, pressure, gap, active, reference, depth in zip(
                 system.pairs,
                 pressures,
@@ -123,6 +134,7 @@ def _contact(
     reference: float,
     overlap: NDArray[np.float64],
     beside: float,
+    free: NDArray[np.bool_],
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -164,7 +176,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside, free),
     )
 
 
