@@ -15,6 +15,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 RESPONSE = 0.5  # nothing between 0 and 1
 REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
 
@@ -54,13 +55,15 @@ class Phase:
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words."""
+    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words.
+    last: it counts in the last step only, since it is bound to fail while loads are still small."""
 
     contact: str
     name: str
     value: float
     limit: float
     meaning: str
+    last: bool = False
 
     @property
     def passed(self) -> bool:
@@ -142,6 +145,9 @@ class Step:
     spring: float | None = None  # largest force that holds motions without resistance; None where there are none
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
+    strain: float = (
+        0.0  # largest contact pressure over the stiffness of the two bodies, about that over Young's modulus
+    )
     strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
@@ -232,13 +238,14 @@ class Solution:
             balance = Check(
                 "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the forces' size"
             )
-            model = [balance, response]
+            strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
+            model = [balance, response, strain]
             if step.regularisation is not None:
                 model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
                                    "force that holds motions without resistance, over the forces' size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
-                if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
+                if check.last or key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
                     worst[key] = check
         return tuple(worst.values())
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
+from abut.analysis.resolution import resolution
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import full_moments
 from abut.interface.recover import Averages
@@ -21,6 +22,7 @@ LESSER = 0.05  # a pair's pressure over the largest of the model from which down
 TENSION = 0.05  # over the largest pressure
 COMPLEMENTARITY = 1e-6
 OSCILLATION = 0.08
+RESOLUTION = 0.4  # three facets to each side of the middle
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
@@ -47,8 +49,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     matters = max(largest, LESSER * beside)
     checks = []
 
-    def add(what: str, value: float, limit: float, meaning: str) -> None:
-        checks.append(Check(name, what, float(value), limit, meaning))
+    def add(what: str, value: float, limit: float, meaning: str, last: bool = False) -> None:
+        checks.append(Check(name, what, float(value), limit, meaning, last))
 
     areas = full_moments(pair.contactor, 0)[:, 0]
     share = pair.coupling.covered / areas
@@ -73,6 +75,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
             reported[at.corners[used]] = nodal[used]
             add("oscillation", oscillation(pair, at, values, reported, largest), OSCILLATION,
                 "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
+            facets = resolution(pair, at, reported, largest) if largest > LESSER * beside else 0.0
+            add("resolution", facets, RESOLUTION, "one over the facets from the edge of contact to its middle, at the end",
+                last=True)  # fmt: skip
     if pair.contact.method == "segment-to-segment":
         add("facet moments", _moment_error(pair, areas, share, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip

@@ -57,6 +57,27 @@ def step_result(
     beside = max(
         [float(np.abs(p).max(initial=0.0)) for p in largest] + _largest_pressures(len(system.pairs), before) + [0.0]
     )
+    contacts = tuple(
+        _contact(
+            pair,
+            pressure,
+            gap,
+            active,
+            outcome.iterations[-1].contact_residual,
+            reference,
+            depth,
+            beside,
+            free_axes(model, held, pair),
+        )
+        for pair, pressure, gap, active, reference, depth in zip(
+            system.pairs,
+            pressures,
+            system.split(system.gap(unknowns, stage.weights)),
+            system.split(unknowns.active),
+            _largest_pressures(len(system.pairs), before),
+            deepest,
+        )
+    )
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
         if own.any():
@@ -75,27 +96,7 @@ def step_result(
             for on in {s.on: s for s in model.supports}
         },
         load=loaded.resultant @ stage.weights,
-        contacts=tuple(
-            _contact(
-                pair,
-                pressure,
-                gap,
-                active,
-                outcome.iterations[-1].contact_residual,
-                reference,
-                depth,
-                beside,
-                free_axes(model, held, pair),
-            )
-            for pair, pressure, gap, active, reference, depth in zip(
-                system.pairs,
-                pressures,
-                system.split(system.gap(unknowns, stage.weights)),
-                system.split(unknowns.active),
-                _largest_pressures(len(system.pairs), before),
-                deepest,
-            )
-        ),
+        contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
         rigid={body.rigid.body: RigidResult(*body.motion(nodal), *body.resultant(by_supports)) for body in held.bodies},
@@ -104,6 +105,7 @@ def step_result(
         pressed=max(
             (float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, pressures)), default=0.0
         ),
+        strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
         strained=_strained(system, displacement, internal),
     )
 

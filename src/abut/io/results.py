@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
 from abut.io.atomic import make_directory, write_text
 from abut.io.fields import WriteFields, found_name, is_whole, write_fields
@@ -90,6 +91,7 @@ def summary(solution: Solution) -> dict[str, Any]:
                     "limit": check.limit,
                     "passed": check.passed,
                     "meaning": check.meaning,
+                    "cure": cure(check, solution),
                 }
                 for check in solution.certificate
             ],
