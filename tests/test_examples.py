@@ -29,8 +29,8 @@ def test_example_runs_and_balances(path: Path) -> None:
     """Supports carry what the loads bring; the contact carries it from body to body (to 1e-9 of the load)."""
     solution = abut.solve(load_job(path).model)
     assert solution.converged
-    check_expected(path, solution.contacts[0])
     step = solution.steps[-1]
+    check_expected(path, step)
     size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
     assert np.abs(step.load + step.reaction).max() < 1e-9 * size
     for contact in step.contacts:  # action and reaction: the target gets the opposite, on the same lines of action
@@ -38,14 +38,14 @@ def test_example_runs_and_balances(path: Path) -> None:
     assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
 
 
-def check_expected(path: Path, contact: abut.state.ContactResult) -> None:
-    """What theory says of the first contact: expected.json beside the job, by the job file's name."""
+def check_expected(path: Path, step: abut.state.Step) -> None:
+    """What theory says of the first contact and of probes: expected.json beside the job, by the job file's name."""
     expected = json.loads((path.parent / "expected.json").read_text())[path.stem]
-    quantities = known_quantities(contact)
+    quantities = known_quantities(step)
     for name, wanted in expected.items():
         assert wanted["source"]
         if name == PROFILE:
-            check_profile(contact, expected, wanted["tolerance"])
+            check_profile(step.contacts[0], expected, wanted["tolerance"])
             continue
         value = quantities[name]
         if "value" in wanted:

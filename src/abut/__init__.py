@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         Model,
         NodalForce,
         Pressure,
+        Probe,
         Rigid,
         Solid,
         SolveOptions,
@@ -43,15 +44,15 @@ _HOME = {
     "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
     "find_contacts": "abut.facing", **dict.fromkeys(
         ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
-         "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
+         "Pressure", "Probe", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
         "abut.model",
     ),
 }  # fmt: skip
 
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
-    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Rigid",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Probe",
+    "Rigid", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
     "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 

@@ -30,12 +30,13 @@ from abut.conditions import (
 )
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
+from abut.probe import Probe, check_probes
 from abut.solids.integration import INTEGRATIONS, check_integration
 from abut.solids.materials import LinearElastic
 
 __all__ = [
     "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model",
-    "NodalForce", "Pressure", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "NodalForce", "Pressure", "Probe", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip
 
 PLANES = ("strain", "stress", "axisymmetric")
@@ -185,15 +186,17 @@ class Model:
     solve: SolveOptions = field(default_factory=SolveOptions)
     equations: Sequence[Equation] = ()
     rigid: Sequence[Rigid] = ()
+    probes: Sequence[Probe] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid"):
+        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
         self._check_rigid()
         self._check_solids()
         self._check_names()
         self._check_equations()
+        check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
     @property
     def materials(self) -> dict[str, LinearElastic]:

@@ -119,6 +119,23 @@ class RigidResult:
 
 
 @dataclass(frozen=True)
+class ProbeResult:
+    """What a probe reads at the end of a step.
+
+    points: (n, dim) coordinates in the undeformed mesh, length; distance: (n,) along the line from its start, length, and
+    nodes: (n,) numbers of the mesh's points, each None where the probe is no line or no set.
+    values: by name displacement (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises, pressure, gap (n,), as far as asked
+    for; NaN where a quantity does not exist at a point.
+    """
+
+    name: str
+    points: NDArray[np.float64]
+    distance: NDArray[np.float64] | None
+    nodes: NDArray[np.int64] | None
+    values: Mapping[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
 class Step:
     """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
     displacements applied, where no amplitude says otherwise.
@@ -151,6 +168,7 @@ class Step:
     strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
+    probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
 
     @property
     def balance_error(self) -> float:
@@ -183,7 +201,8 @@ class Step:
 class Saved:
     """What it takes to go on after a converged step, and to have its results again.
 
-    displacement: (n_free,), pressure, active: (n,) the state; own_displacement, own_pressure: the same in the unknowns of
+    displacement: (n_free,), pressure, active: (n,) the state; inside: (n,) where "dual-P1" has ordinary functions;
+    own_displacement, own_pressure: the same in the unknowns of
     the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
     largest_pressure: up to here, against which rounding is judged later.
     """
@@ -196,6 +215,7 @@ class Saved:
     displacement: NDArray[np.float64]
     pressure: NDArray[np.float64]
     active: NDArray[np.bool_]
+    inside: NDArray[np.bool_]
     own_displacement: NDArray[np.float64]
     own_pressure: NDArray[np.float64]
     iterations: tuple[Iteration, ...]
@@ -227,6 +247,11 @@ class Solution:
     def contacts(self) -> tuple[ContactResult, ...]:
         """The contact results of the last step."""
         return self.steps[-1].contacts
+
+    @property
+    def probes(self) -> tuple[ProbeResult, ...]:
+        """What the probes read in the last step."""
+        return self.steps[-1].probes
 
     @property
     def certificate(self) -> tuple[Check, ...]:

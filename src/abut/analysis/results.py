@@ -16,7 +16,7 @@ from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
-from abut.interface.recover import at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
+from abut.interface.recover import Averages, at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
 from abut.model import METHODS, Model
 from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
@@ -153,9 +153,8 @@ def _contact(
         area, depth = float(weight[active].sum()), float((-gap / weight).max(initial=0.0))
     covered = coupling.segments > 0
     raw = facet_node_values(pair.contactor, degree, normal)
-    integrated = pair.contact.method == METHODS[0]
-    at = averages(pair.contactor, coupling) if integrated else None
-    nodal = raw if at is None else at_facet_nodes(pair.contactor, at.of(normal))
+    at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
+    nodal = raw if at is None else at_facet_nodes(pair.contactor, _reported(pair, at, normal, bool(active.all())))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(pair.contactor, at.share)
     supported = nodal[share >= SUPPORTED] if (share >= SUPPORTED).any() else nodal
     shown = corner_values(pair.contactor, nodal)
@@ -180,6 +179,16 @@ def _contact(
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
         checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside, free),
     )
+
+
+def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: bool) -> NDArray[np.float64]:
+    """The pressure at the contactor's points, (n_points,): averages of the facet-wise coefficients ``values``, theory (P10);
+    sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
+    average = at.of(values)
+    if not (pair.tied or (closed and pair.space.continuous and pair.space.ordinary)):
+        return average
+    sharp = at.sharpened(average, pair.contactor.points)
+    return average if not pair.tied and sharp.min() < 0.0 else sharp
 
 
 def _traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.interface.laws import Linearisation
@@ -13,13 +14,15 @@ from abut.solvers.active_set import Outcome, Stage, System, Unknowns
 from abut.state import Saved
 
 
-def saved_step(outcome: Outcome, own: Unknowns, after: Stage, time: float, linear: str) -> Saved:
+def saved_step(
+    outcome: Outcome, own: Unknowns, after: Stage, time: float, linear: str, inside: NDArray[np.bool_]
+) -> Saved:
     """outcome: of the step in all free displacements; own: its state in the unknowns of the linear solver; after: the stage
-    that follows."""
+    that follows; inside: as in ``abut.analysis.load_step.Reached``."""
     u = outcome.unknowns
     return Saved(
         number=after.number - 1, factor=time, linear=linear, largest_force=after.force, largest_pressure=after.pressure,
-        displacement=u.displacement, pressure=u.pressure, active=u.active,
+        displacement=u.displacement, pressure=u.pressure, active=u.active, inside=inside,
         own_displacement=own.displacement, own_pressure=own.pressure, iterations=outcome.iterations,
     )  # fmt: skip
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.clock import Clock
+from abut.analysis.load_step import load_step, with_plain
 from abut.analysis.problem import problem
 from abut.analysis.results import step_result
 from abut.analysis.resume import begin_after, check_order, restored, saved_step
@@ -17,7 +18,8 @@ from abut.conditions import weights
 from abut.discretization.rigid import near_null
 from abut.errors import SingularModelError
 from abut.model import Model
-from abut.solvers.active_set import Outcome, Stage, following, solve_step, start
+from abut.probing import find_places, read
+from abut.solvers.active_set import Outcome, Stage, System, following, start
 from abut.solvers.iterative import NotConverged
 from abut.solvers.linear import Prepared, expected_seconds
 from abut.state import Observer, OnStep, Phase, Saved, Solution, Step
@@ -58,6 +60,9 @@ def solve(
         observe(text)
 
     clock = Clock()
+    places = find_places(model)
+    for text in (text for place in places for text in place.notes):
+        note(text)
     if team is None and model.solve.linear == "petsc":
         from abut.parallel.team import start_team
 
@@ -75,13 +80,13 @@ def solve(
         note(result.note)
         return result
 
-    def result(outcome: Outcome, stage: Stage, time: float) -> Step:
+    def result(outcome: Outcome, system: System, stage: Stage, time: float) -> Step:
         displacement = held.free @ outcome.unknowns.displacement + held.prescribed @ stage.weights
         spring = own.idle.force(outcome.unknowns.displacement) if len(own.idle) else None
         displacement = own.idle.without_motions(displacement)
         _check_size(model, displacement, note)
         step = step_result(model, own.volume, own.loaded, displacement, system, outcome, stage, time, steps, held)
-        return replace(step, spring=spring)
+        return replace(step, spring=spring, probes=tuple(read(place, step) for place in places))
 
     def so_far(complete: bool) -> Solution:
         return Solution(model, tuple(steps), own.n_free, solver.name, tuple(notes), dict(clock.timings), complete)
@@ -98,7 +103,8 @@ def solve(
         observe(Phase("restoring the steps done before"))
         for saved in resume:
             stage = Stage(saved.number, weights(model.histories, saved.factor), force, pressure)
-            steps.append(result(restored(saved), stage, saved.factor))
+            inner = with_plain(model, held, system, saved.inside) if saved.inside.any() else system
+            steps.append(result(restored(saved), inner, stage, saved.factor))
             force, pressure = saved.largest_force, saved.largest_pressure
         state = begin_after(resume[-1], state, note)
         clock.mark("results")
@@ -107,24 +113,25 @@ def solve(
         observe(Phase(f"step {number} of {count}", None, number - 1, count))
         stage = Stage(number, weights(model.histories, time), force, pressure)
         try:
-            outcome = solve_step(solver.system, state, stage, model.solve.max_iterations, observe)
+            reached = load_step(model, held, system, solver, state, stage, observe)
         except NotConverged as reason:
             note(f"step {number}: {reason}: going on with the direct solver")
             kind = "direct"
             solver = linear_solver(kind)
-            outcome = solve_step(solver.system, start(solver.system), stage, model.solve.max_iterations, observe)
+            reached = load_step(model, held, system, solver, start(solver.system), stage, observe)
+        outcome = reached.outcome
         state = outcome.unknowns
-        after = following(solver.system, stage, outcome, stage.weights)
+        after = following(reached.solver.system, stage, outcome, stage.weights)
         force, pressure = after.force, after.pressure
-        outcome = solver.finish(outcome, stage.weights)
+        outcome = reached.solver.finish(outcome, stage.weights)
         clock.mark("solve")
         observe(Phase(f"stresses and checks of step {number}", None, number - 1, count))
-        steps.append(result(outcome, stage, time))
+        steps.append(result(outcome, reached.system, stage, time))
         clock.mark("results")
         if not outcome.converged:
             note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
             break
-        keep(so_far(complete=False), saved_step(outcome, state, after, time, kind))
+        keep(so_far(complete=False), saved_step(outcome, state, after, time, kind, reached.inside))
         clock.mark("writing")
     if solver.count is not None:
         note(f"{solver.count.iterations} linear iterations in all")

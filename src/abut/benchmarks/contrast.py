@@ -83,7 +83,7 @@ def _hertz(name: str, young: tuple[float, float], cells: tuple[int, int], contac
             [Solid(body, LinearElastic(e, POISSON)) for body, e in zip(("cylinder", "block"), young)],
             [Support("block.bottom", x=0, y=0), Support("cylinder.axis", x=0)],
             [Force("cylinder.flat", (0.0, -load))],
-            [Contact(*pair, law="constraint-function")],
+            [Contact(*pair)],
             plane="strain",
         )
 

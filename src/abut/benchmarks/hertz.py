@@ -34,7 +34,7 @@ def _line(cell: str, cells: int) -> Benchmark:
             [Solid("cylinder", LinearElastic(210e3, 0.3)), Solid("block", LinearElastic(70e3, 0.3))],
             [Support("block.bottom", x=0, y=0), Support("cylinder.axis", x=0)],
             [Force("cylinder.flat", (0.0, -LINE_FORCE))],
-            [Contact("block.top", "cylinder.round", law="constraint-function")],
+            [Contact("block.top", "cylinder.round")],
             plane="strain",
         )
 
@@ -99,7 +99,7 @@ def _axisymmetric(level: int) -> Model:
         [Solid(body, RUBBER) for body in parts],
         [Support("plane.bottom", x=0, y=0), Support("plane.top", x=0, y=0)],
         [Force("ball.flat", (0.0, -BALL_FORCE))],
-        [Contact("ball.round", "plane.top", law="constraint-function")],
+        [Contact("ball.round", "plane.top")],
         plane="axisymmetric",
     )
 
@@ -116,7 +116,7 @@ def _octant(level: int) -> Model:
         [Solid(body, RUBBER) for body in parts],
         [*rigid, Support("ball.x0", x=0), Support("ball.y0", y=0)],
         [Force("ball.z0", (0.0, 0.0, -BALL_FORCE / 4.0))],
-        [Contact("ball.round", "plane.top", law="constraint-function")],
+        [Contact("ball.round", "plane.top")],
     )
 
 

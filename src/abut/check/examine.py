@@ -9,6 +9,7 @@ from abut.check.cost import cost
 from abut.check.finding import Finding, Motion, Report, from_error, in_order
 from abut.check.interface import MIXED, interface, not_facing
 from abut.check.motions import motions
+from abut.check.probes import probes
 from abut.check.quality import quality
 from abut.check.sides import sides
 from abut.check.units import units
@@ -21,7 +22,7 @@ from abut.model import Model
 
 def check(model: Model) -> Report:
     """Examine a model without solving it. What depends on something that is itself in error is left out."""
-    findings, doubts = quality(model.mesh), units(model)
+    findings, doubts = [*quality(model.mesh), *probes(model)], units(model)
     shown: list[Motion] = []
     try:
         held = supports(model)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from abut.cli.progress import Progress
     from abut.job import Job
     from abut.parallel.team import Team
-    from abut.state import Iteration, Phase, Saved, Solution
+    from abut.state import Iteration, Phase, ProbeResult, Saved, Solution
 
 DONE = 0
 STATUS = """exit status:
@@ -172,6 +172,14 @@ def _solve(
     return solution, directory
 
 
+def _read(result: ProbeResult) -> str:
+    """A probe in a line: of one point its values, of several what is farthest from zero."""
+    from abut.probing.table import peaks
+
+    values = ", ".join(f"{name} {'none' if value is None else f'{value:.6g}'}" for name, value in peaks(result).items())
+    return values if len(result.points) == 1 else f"{len(result.points)} points, farthest from zero: {values}"
+
+
 def _unused(options: Sequence[str]) -> str:
     """What became of options that PETSc did not ask for; empty where there are none."""
     names = unused(options) if options else []
@@ -222,6 +230,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
             f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
             f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
+    for result in solution.probes:
+        print(f"probe '{result.name}': {_read(result)}")
     print("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name

@@ -12,9 +12,17 @@ from numpy.typing import NDArray
 from abut.discretization.supports import Supports
 from abut.errors import InputError
 from abut.interface.coupling import Couple, Coupling, couple, default_reach
-from abut.interface.geometry import facet_sizes, nodal_normals
+from abut.interface.geometry import facet_sizes, full_moments, nodal_normals
 from abut.interface.node_to_segment import node_to_segment
-from abut.interface.pressure import PressureSpace, pressure_space, reduce, resolve
+from abut.interface.pressure import (
+    DUAL_P1,
+    PressureSpace,
+    inner_facets,
+    pressure_space,
+    reduce,
+    resolve,
+    with_plain_facets,
+)
 from abut.mesh.surface import Surface
 from abut.model import LAWS, Contact, Model
 
@@ -23,6 +31,7 @@ SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
+WHOLE = 1e-2  # a facet covered to within this share is fully covered
 FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
 DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
 
@@ -138,6 +147,26 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
+    )  # fmt: skip
+
+
+def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
+    """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
+
+    active: (n,) bool, the multipliers in contact."""
+    if own.space.name != DUAL_P1:
+        return own
+    share = own.coupling.covered / full_moments(own.contactor, 0)[:, 0]
+    inner = inner_facets(own.space, own.contactor, np.abs(share - 1.0) < WHOLE, active)
+    if not inner.any():
+        return own
+    space = with_plain_facets(own.space, own.contactor, own.coupling, inner)
+    rows = (space.transfer.T @ own.coupling.operator).tocsr()
+    constant, varying = offsets(model, own.contact)
+    return replace(
+        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(),
+        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ own.coupling.gap + constant * space.weight,
     )  # fmt: skip
 
 

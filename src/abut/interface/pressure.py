@@ -24,6 +24,7 @@ from abut.mesh.surface import Surface
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
 WEAK_DUAL = 0.2  # the same for dual functions, whose pieces on slivers swing more
+BAND = 2  # layers of closed facets with dual functions along the edge of contact
 DUAL, DUAL_P1 = "dual", "dual-P1"
 
 
@@ -57,19 +58,24 @@ class PressureSpace:
         """Whether coefficients belong to points, so that their ordinary functions make a continuous field."""
         return bool((self.node >= 0).all())
 
+    @property
+    def ordinary(self) -> bool:
+        """Whether no function is a dual one."""
+        return self.transfer is self.plain
+
 
 def resolve(name: str, contactor: Surface, free_edge: bool = True) -> tuple[str, int]:
     """The space's name with "auto" resolved, and the degree of its facet-wise functions.
 
     name: "auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual" or "dual-P1".
-    free_edge: whether contact may open, and its law looks at weighted gaps (complementarity). Then "auto" is "dual" on
-    linear facets and "dual-P1" on quadratic ones, docs/theory/pressure-spaces.md; else the continuous space of the
-    displacement's order, and "dual-P1", which is dual at the edge of contact only, is "P1".
+    free_edge: whether contact may open, and its law looks at weighted gaps (complementarity). Then "auto" is "dual-P1",
+    docs/theory/pressure-spaces.md; else the continuous space of the displacement's order, and "dual-P1", which is dual at
+    the edge of contact only, is "P1".
     Raises InputError for quadratic pressure on linear facets.
     """
     highest = surface_degree(contactor)
     if name == "auto":
-        name = (DUAL if highest == 1 else DUAL_P1) if free_edge else f"P{highest}"
+        name = DUAL_P1 if free_edge else f"P{highest}"
     if name == DUAL_P1 and not free_edge:
         name = "P1"
     degree = 2 if name.startswith("P2") else 1
@@ -112,11 +118,32 @@ def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) 
     return np.asarray(space.plain.T @ coupling.weight / np.maximum(full, 1e-300))
 
 
-def inner_facets(space: PressureSpace, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Facets (n_facets,) whose multipliers are all active; active: (n,) bool."""
+def inner_facets(
+    space: PressureSpace, contactor: Surface, covered: NDArray[np.bool_], active: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Facets (n_facets,) far enough inside closed contact for ordinary functions, theory (P9): with ``BAND`` layers of
+    closed facets between them and the next one that is open or not all covered. On linear facets, where that gains nothing
+    once a part is open, all or none.
+
+    covered: (n_facets,) bool, facets with the target opposite all of them; active: (n,) bool."""
     uses = abs(space.plain)
-    closed, opened = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (active, ~active))
-    return np.asarray(closed & ~opened)
+    inner = _within(uses, active) & covered
+    if surface_degree(contactor) == 1:
+        return np.full(len(inner), inner.all())
+    for _ in range(BAND):
+        inner = _within(uses, ~_touched(uses, ~inner)) & inner
+    return inner
+
+
+def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets that have multipliers, all of them closed."""
+    some, others = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (closed, ~closed))
+    return np.asarray(some & ~others)
+
+
+def _touched(uses: Any, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Multipliers with a part on given facets."""
+    return np.asarray(uses.T @ np.repeat(facets, 9).astype(float) > 0.0)
 
 
 def with_plain_facets(
@@ -126,7 +153,8 @@ def with_plain_facets(
     where contact is closed. Coefficients keep their meaning and weights, since int phi_k = int N_k on every facet.
 
     plain: (n_facets,) bool."""
-    return replace(space, transfer=(dual(contactor, coupling, plain) @ space.plain).tocsr())
+    transfer = space.plain if plain.all() else (dual(contactor, coupling, plain) @ space.plain).tocsr()
+    return replace(space, transfer=transfer)
 
 
 def reduce(
@@ -159,11 +187,12 @@ def reduce(
             rows.append(k)
             columns.append(position[near[np.argmax(space.weight[near])]])
     follow = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, len(kept)))
-    transfer = (space.transfer @ follow).tocsr()
+    plain = (space.plain @ follow).tocsr()
+    transfer = plain if space.ordinary else (space.transfer @ follow).tocsr()
     return replace(
         space,
         transfer=transfer,
-        plain=(space.plain @ follow).tocsr(),
+        plain=plain,
         weight=transfer.T @ coupling.weight,
         node=space.node[kept],
         removed=space.removed + n - len(kept),

@@ -15,6 +15,8 @@ from abut.interface.geometry import by_kind, full_moments, function_count, node_
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
+ON_AXIS = 1e-9  # radius over the contactor's largest
+FLAT_STAR = 1e-3  # eigenvalue of a star of facets' second moments over the largest below which it has no extent
 FOUND = 1e-13  # step in reference coordinates after which a foot is found
 SINGULAR = 1e-14  # of the metric's trace
 
@@ -24,47 +26,94 @@ class Averages:
     """Averages of facet-wise fields over the corner functions N_i of the contactor, theory (P10).
 
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
-    the covered part; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
-    contactor, 0 at points that are no corners of it.
+    the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
+    contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose average each one shows, itself but
+    on the axis of linear cells.
     """
 
     corners: NDArray[np.int64]
     moments: NDArray[np.float64]
+    mass: NDArray[np.float64]
     weight: NDArray[np.float64]
     share: NDArray[np.float64]
+    shared: NDArray[np.int64]
 
     def loads(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """int N_i f of a field given by its coefficients (9 n_facets, ...), at the points, (n_points, ...)."""
         table = values.reshape(len(self.corners), 9, -1)
-        total = np.zeros((len(self.weight), table.shape[2]))
-        used = self.corners >= 0
-        np.add.at(total, self.corners[used], np.matmul(self.moments, table)[used])
-        return total.reshape(-1, *values.shape[1:])
+        return self._sum(np.matmul(self.moments, table)).reshape(-1, *values.shape[1:])
 
     def of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Their averages at the points, (n_points, ...), 0 where nothing is covered."""
-        loads = self.loads(values)
-        weight = self.weight.reshape(-1, *[1] * (loads.ndim - 1))
-        return np.where(weight > 0.0, loads / np.where(weight > 0.0, weight, 1.0), 0.0)
+        loads, weight = np.zeros((len(self.weight), *values.shape[1:])), np.zeros(len(self.weight))
+        np.add.at(loads, self.shared, self.loads(values))
+        np.add.at(weight, self.shared, self.weight)
+        return _divided(loads, weight)[self.shared]
+
+    def sharpened(self, average: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Averages (n_points,) of a field on all of the contactor at points x (n_points, dim), without what averaging takes
+        from a linear field: theory (P12). Of the same resultant, since what one point gains another loses."""
+        rows, n = np.maximum(self.corners, 0), len(average)
+        at = _divided(self._sum(np.einsum("fij,fjd->fid", self.mass, x[rows])), self.weight)
+        used = (self.mass != 0.0).astype(float)
+        apart, rise = at[rows][:, None] - at[rows][:, :, None], average[rows][:, None] - average[rows][:, :, None]
+        close = used / np.maximum((apart**2).sum(axis=-1), 1e-300)
+        metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))
+        slope = np.linalg.pinv(metric, rcond=FLAT_STAR, hermitian=True) @ self._sum(
+            np.einsum("fij,fija,fij->fia", close, apart, rise)
+        ).reshape(n, -1, 1)
+        g, away = slope[rows, :, 0], x[rows][:, :, None] - x[rows][:, None]
+        gain = 0.5 * np.einsum("fij,fijd,fijd->fi", self.mass, away, g[:, :, None] + g[:, None])
+        return np.asarray(average + _divided(self._sum(gain), self.weight))
+
+    def _sum(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Values at the corners of facets (n_facets, 9, ...) added up at the points."""
+        total = np.zeros((len(self.weight), *values.shape[2:]))
+        used = self.corners >= 0
+        np.add.at(total, self.corners[used], values[used])
+        return total
+
+
+def _divided(values: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (n, ...) over weights (n,), 0 where the weight is."""
+    weight = weight.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(np.where(weight > 0.0, values / np.where(weight > 0.0, weight, 1.0), 0.0))
 
 
 def averages(contactor: Surface, coupling: Coupling) -> Averages:
     """What it takes to average fields on a contactor; coupling: of degree 1 or 2."""
     corners = np.full(contactor.nodes.shape, -1, dtype=np.int64)
-    moments = np.zeros_like(coupling.mass)
+    moments, mass = np.zeros_like(coupling.mass), np.zeros_like(coupling.mass)
     for kind, facets in by_kind(contactor):
         n = CELLS[kind].corners
         corners[facets, :n] = contactor.nodes[facets, :n]
         # The corners' functions are combinations of the facet's: their values at its nodes are the coefficients.
         own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(pressure_kind(kind, coupling.degree)))
         moments[facets[:, None], np.arange(n)] = np.einsum("ki,fkl->fil", own, coupling.mass[facets, : len(own)])
+        mass[facets, :n, :n] = moments[facets, :n, : len(own)] @ own
     used = corners >= 0
     weight, whole = (
         np.bincount(corners[used], values[used], minlength=len(contactor.points))
         for values in (moments.sum(axis=2), full_moments(contactor, 1))
     )
     share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
-    return Averages(corners, moments, np.where(share > NO_SUPPORT, weight, 0.0), share)
+    return Averages(corners, moments, mass, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor))
+
+
+def _shared(contactor: Surface) -> NDArray[np.int64]:
+    """Points on the axis of a body of revolution with linear cells show the average of their neighbour and themselves: their
+    own nodal force is wrong by the order of h / a, since no linear cell has the radial displacement c(z) r, while the
+    pressure is even in r."""
+    shared = np.arange(len(contactor.points))
+    if contactor.axisymmetric:
+        for _, facets in ((k, f) for k, f in by_kind(contactor) if CELLS[k].degree == 1):
+            first, second = contactor.nodes[facets, :2].T.astype(np.int64)
+            radius = contactor.points[:, 0]
+            touching = ON_AXIS * radius[contactor.node_ids].max()
+            for here, other in ((first, second), (second, first)):
+                axis = radius[here] <= touching
+                shared[here[axis]] = other[axis]
+    return shared
 
 
 def at_facet_nodes(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:

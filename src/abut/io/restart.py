@@ -19,16 +19,17 @@ from abut.model import Model
 from abut.state import Iteration, Saved
 
 FOLDER = "restart"
-ARRAYS = ("displacement", "pressure", "active", "own_displacement", "own_pressure")
+ARRAYS = ("displacement", "pressure", "active", "inside", "own_displacement", "own_pressure")
 NAMED = 4  # differences of a changed model that the message lists
 
 
 def description(model: Model) -> dict[str, str]:
     """Everything that decides a model's solution, leaf by leaf: "supports[1].z" -> "-0.02"; of arrays a hash.
 
-    How it is solved (``Model.solve``) is left out. Functions of position cannot be compared: only that there is one.
+    How it is solved (``Model.solve``) and what is read from it (``Model.probes``) are left out. Functions of position
+    cannot be compared: only that there is one.
     """
-    fields = [f.name for f in dataclasses.fields(model) if f.name != "solve"]
+    fields = [f.name for f in dataclasses.fields(model) if f.name not in ("solve", "probes")]
     return dict(leaf for name in fields for leaf in _leaves(getattr(model, name), name))
 
 

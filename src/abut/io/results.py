@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,11 +14,13 @@ import numpy as np
 
 from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
+from abut.io import probes
 from abut.io.atomic import make_directory, write_text
 from abut.io.fields import WriteFields, found_name, is_whole, write_fields
 from abut.io.grids import contact_grid
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
+from abut.probe import label
 from abut.report import Origin, write_report
 from abut.state import Solution, Step
 
@@ -34,8 +35,9 @@ def write(
     """Write everything about a solution to ``directory`` (made if need be) and return it.
 
     report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
-    each contact. origin: what the report says of the job (its name, its text, what theory expects); steps: those whose
-    VTU files are still to be written, all of them by default; fields: what writes the fields of a step.
+    each contact; probe_NAME.csv for each probe. origin: what the report says of the job (its name, its text, what theory
+    expects); steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields
+    of a step.
     Raises InputError where the directory cannot be written.
     """
     folder = Path(directory)
@@ -61,15 +63,12 @@ def write_index(folder: Path, solution: Solution) -> None:
     _write_collection(folder, "fields", solution.steps, [found_name(folder, step.number) for step in solution.steps])
     for contact in solution.contacts:
         files = [_contact_file(contact.name, step) for step in solution.steps]
-        _write_collection(folder, f"contact_{file_name(contact.name)}", solution.steps, files)
+        _write_collection(folder, f"contact_{label(contact.name)}", solution.steps, files)
+    for number, probe in enumerate(solution.model.probes):
+        write_text(folder / probes.table_name(probe.name), probes.table(solution.steps, number))
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
-
-
-def file_name(name: str) -> str:
-    """A contact's name as part of a file name."""
-    return re.sub(r"[^A-Za-z0-9._-]+", "_", name)
 
 
 def summary(solution: Solution) -> dict[str, Any]:
@@ -118,7 +117,7 @@ def is_written(folder: Path, step: Step) -> bool:
 
 
 def _contact_file(contact: str, step: Step) -> str:
-    return f"contact_{file_name(contact)}_{step.number:04d}.vtu"
+    return f"contact_{label(contact)}_{step.number:04d}.vtu"
 
 
 def _step_summary(step: Step) -> dict[str, Any]:
@@ -153,6 +152,7 @@ def _step_summary(step: Step) -> dict[str, Any]:
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
+        "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [
             {
@@ -172,22 +172,27 @@ def _number(value: float) -> float | None:
 
 def _history(solution: Solution) -> str:
     dim = solution.model.dim
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    force = [f"force_{a}" for a in "xyz"[:dim]]
-    turn = [a for a in "xyz" if dim == 3 or a == "z"]
-    moving = ["rigid", *(f"displacement_{a}" for a in "xyz"[:dim]), *(f"rotation_{a}" for a in turn)]
-    moving = [*moving, *(f"moment_{a}" for a in turn)] if solution.model.rigid else []
+    axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
+    force, moved = [f"force_{a}" for a in axes], [f"displacement_{a}" for a in axes]
+    rotation, moment = [f"rotation_{a}" for a in turns], [f"moment_{a}" for a in turns]
     of_contact = ["max_pressure", "area", "max_penetration", "active"]
-    table.writerow(["step", "factor", "converged", "contact", *force, *of_contact, *moving])
+    head = ["step", "factor", "converged", "contact", *force, *of_contact]
+    if solution.model.rigid:
+        head += ["rigid", *moved, *rotation, *moment]
+    head += [name for name in probes.history_columns(solution.steps) if name not in head]
+    text = io.StringIO()
+    table = csv.DictWriter(text, head, lineterminator="\n")
+    table.writeheader()
     for step in solution.steps:
+        first = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
         for c in step.contacts:
-            row = [step.number, step.factor, int(step.converged), c.name, *c.force.tolist()]
-            row += [c.max_pressure, c.area, c.max_penetration, c.active]
-            table.writerow([*row, *[""] * len(moving)])
+            values = {name: getattr(c, name) for name in of_contact}
+            table.writerow({**first, "contact": c.name, **dict(zip(force, c.force.tolist())), **values})
         for name, body in step.rigid.items():
-            row = [step.number, step.factor, int(step.converged), "", *body.force.tolist(), *[""] * len(of_contact)]
-            table.writerow([*row, name, *body.displacement.tolist(), *body.rotation.tolist(), *body.moment.tolist()])
+            row = dict(zip([*force, *moved], [*body.force.tolist(), *body.displacement.tolist()]))
+            row |= dict(zip([*rotation, *moment], [*body.rotation.tolist(), *body.moment.tolist()]))
+            table.writerow({**first, "rigid": name, **row})
+        table.writerows({**first, **row} for row in probes.history_rows(step))
     return text.getvalue()
 
 

@@ -64,7 +64,7 @@ def job_table(model: Model, mesh: str) -> dict[str, Any]:
         table["model"] = {"plane": model.plane}
     table["materials"] = {n: {"kind": "linear-elastic", **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
-    for name in ("supports", "loads", "contacts", "equations", "rigid"):
+    for name in ("supports", "loads", "contacts", "equations", "rigid", "probes"):
         records = [_load(own) if name == "loads" else _plain(own) for own in getattr(model, name)]
         if records:
             table[name] = records

@@ -26,6 +26,7 @@ from abut.model import (
     Model,
     NodalForce,
     Pressure,
+    Probe,
     Rigid,
     Solid,
     SolveOptions,
@@ -131,6 +132,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         solve=SolveOptions(**file.solve.model_dump()),
         equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
         rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
+        probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved
 

@@ -28,6 +28,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contacts": "pairs of surfaces that may touch, or are tied",
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
+        "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go",
     },
@@ -113,6 +114,16 @@ MEANINGS: dict[str, dict[str, str]] = {
     "IntegrationTable": {
         "rule": "Gauss points, or Newton-Cotes points as in the paper",
         "points": "points for each direction of a segment; auto: as many as make it exact",
+    },
+    "ProbeTable": {
+        "name": "your own name for it, also of its file probe_NAME.csv",
+        "at": "a point of the undeformed mesh [length]",
+        "line": "two points, start and end [length]",
+        "on": "name of the node set or surface whose nodes are read",
+        "points": "how many points on the line, both ends among them; left out: 50",
+        "of": "what to read; left out: all there is, pressure and gap only on surfaces of contacts",
+        "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
+        "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp",

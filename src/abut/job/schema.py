@@ -170,6 +170,17 @@ class ContactTable(Table):
     amplitude: Points | None = None
 
 
+class ProbeTable(Table):
+    name: str
+    at: list[Number] | None = None
+    line: list[list[Number]] | None = None
+    on: str | None = None
+    points: int | None = None
+    of: list[Literal["displacement", "stress", "von-mises", "pressure", "gap"]] | None = None
+    contact: str | None = None
+    body: str | None = None
+
+
 class SolveTable(Table):
     steps: int = SolveOptions.steps
     linear: Literal["auto", "direct", "amg", "petsc"] = "auto"
@@ -194,6 +205,7 @@ class JobFile(Table):
     contacts: list[ContactTable] = []
     equations: list[EquationTable] = []
     rigid: list[RigidTable] = []
+    probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
 

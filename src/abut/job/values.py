@@ -15,7 +15,7 @@ def values(table: BaseModel, where: str, leave_out: Collection[str] = ()) -> dic
     """What a table gives to its record: lists as tuples, the amplitude as one."""
     given = table.model_dump(exclude=set(leave_out))
     result = {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    if result["amplitude"] is not None:
+    if result.get("amplitude") is not None:
         try:
             result["amplitude"] = Amplitude(result["amplitude"])
         except InputError as error:

@@ -103,15 +103,20 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
             f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
             '"complementarity", or leave the option -pc_type out'
         )
-    layout, team = matrix.layout, matrix.team
-    kind = team.each(multigrid, own=layout.shares(np.linalg.qr(motions)[0]))[0]
-    scale = pressure_scale(system)
-    count, parts = Count(), interfaces(system.pairs)
-    solver = Iterative(matrix, system.operator, parts, loose, scale, count)
+    kind = matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(motions)[0]))[0]
+    return _iterative(matrix, system, loose, kind, Count())
+
+
+def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, count: Count) -> Prepared:
+    parts = interfaces(system.pairs)
+    solver = Iterative(matrix, system.operator, parts, loose, pressure_scale(system), count)
     predict = predictor(parts, np.asarray(system.operator @ loose))
     iterative = replace(system, step=solver.step, exact=False, accurate=ACCURATE, predict=predict)
     name = f"PETSc Krylov with {kind}"
-    return Prepared(iterative, lambda outcome, _: outcome, name, f"{name}, {_processes(team)}", count)
+    return Prepared(
+        iterative, lambda outcome, _: outcome, lambda other: _iterative(matrix, other, loose, kind, count), name,
+        f"{name}, {_processes(matrix.team)}", count,
+    )  # fmt: skip
 
 
 def prepare_direct(matrix: Distributed, system: System) -> Prepared:
@@ -123,8 +128,8 @@ def prepare_direct(matrix: Distributed, system: System) -> Prepared:
         )
     solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
     return Prepared(
-        replace(system, step=solver.step), lambda outcome, _: outcome, f"PETSc direct ({name})",
-        f"PETSc's direct solver {name}, {_processes(matrix.team)}",
+        replace(system, step=solver.step), lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other),
+        f"PETSc direct ({name})", f"PETSc's direct solver {name}, {_processes(matrix.team)}",
     )  # fmt: skip
 
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from abut.state import ContactResult, Solution
+from abut.probing.table import peaks
+from abut.state import Solution, Step
 
 PROFILE = "contact.profile"
 
@@ -36,21 +37,22 @@ def read_origin(path: Path, text: str) -> Origin:
     return Origin(title, text, entry if isinstance(entry, dict) else {})
 
 
-def quantities(contact: ContactResult) -> dict[str, float]:
-    """What ``expected.json`` may speak of, by its names there."""
-    return {
-        "contact.max_pressure": contact.max_pressure,
-        "contact.area": contact.area,
-        **{f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)},
-    }
+def quantities(step: Step) -> dict[str, float]:
+    """What ``expected.json`` may speak of, by its names there: the first contact, and the peaks of all probes."""
+    known: dict[str, float] = {}
+    for result in step.probes:
+        own = peaks(result)
+        known |= {f"probe.{result.name}.{name}": value for name, value in own.items() if value is not None}
+    for contact in step.contacts[:1]:
+        known |= {"contact.max_pressure": contact.max_pressure, "contact.area": contact.area}
+        known |= {f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)}
+    return known
 
 
 def comparison(solution: Solution, expected: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Rows quantity, value, expected (words), deviation (relative, or None), passed, source; what cannot be read is left
     out: the file may be somebody else's."""
-    if not solution.contacts:
-        return []
-    known, rows = quantities(solution.contacts[0]), []
+    known, rows = quantities(solution.steps[-1]), []
     for name, wanted in expected.items():
         if name not in known or not isinstance(wanted, dict):
             continue

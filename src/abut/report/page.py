@@ -20,6 +20,7 @@ from abut.io.versions import versions
 from abut.report.describe import tables
 from abut.report.lines import Line, pressure_lines
 from abut.report.origin import Origin, comparison, ellipse
+from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
 from abut.state import Solution
 
@@ -36,6 +37,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
+        "probes": _charts(solution),
     }
     parts = {
         "title": escape(origin.title),
@@ -45,6 +47,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "certificate": _certificate(solution),
         "comparison": _comparison(solution, origin),
         "trouble": _trouble(solution),
+        "probes": _probes(solution),
         "contacts": _contacts(solution) + _rigid(solution),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
@@ -133,7 +136,9 @@ def _comparison(solution: Solution, origin: Origin) -> str:
     ]
     if not rows:
         return ""
-    head = ["", f"of {escape(solution.contacts[0].name)}", "computed", "theory", "deviation", "source"]
+    known = [solution.contacts[0].name] if solution.contacts else []
+    known += ["probes"] if any(name.startswith("probe.") for name in origin.expected) else []
+    head = ["", f"of {escape(' and '.join(known))}", "computed", "theory", "deviation", "source"]
     return "<section><h2>Beside theory</h2>" + _table(head, rows, raw=True) + "</section>"
 
 
@@ -161,6 +166,17 @@ def _rigid(solution: Solution) -> str:
     ]
     head = ["rigid body", "displacement", "rotation", "force that moves it", "moment about its reference"]
     return _table(head, rows) if rows else ""
+
+
+def _probes(solution: Solution) -> str:
+    """The section of the probes, empty without any; plots follow the table."""
+    table = probe_table(solution)
+    if table is None:
+        return ""
+    return (
+        f"<section><h2>Probes</h2>{_table(table['head'], table['rows'], table['title'])}"
+        '<div class="plots" id="probes"></div></section>'
+    )
 
 
 def _vector(values: Iterable[float]) -> str:
@@ -247,6 +263,18 @@ def _history(solution: Solution) -> dict[str, Any]:
             for name, own in zip(names, each)
         ],
     }
+
+
+def _charts(solution: Solution) -> list[dict[str, Any]]:
+    return [
+        {
+            "title": chart.title,
+            "label": chart.label,
+            "x": _plain(chart.x),
+            "series": [{"label": name, "values": _plain(values)} for name, values in chart.series.items()],
+        }
+        for chart in charts(solution)
+    ]
 
 
 def _opening(line: Line) -> NDArray[np.float64]:

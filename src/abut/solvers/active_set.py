@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -36,6 +36,7 @@ TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts a
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
 FINE = 1e-5  # the same once sets repeat
 FINEST = 1e-9  # the same at most, for the final set
+SEARCHED = 1e-6  # of equilibrium and of closed gaps, where only the set is wanted
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
@@ -57,20 +58,31 @@ def start(system: System) -> Unknowns:
 
 
 def solve_step(
-    system: System, begin: Unknowns, stage: Stage, limit: int, observe: Callable[[Iteration], None]
+    system: System,
+    begin: Unknowns,
+    stage: Stage,
+    limit: int,
+    observe: Callable[[Iteration], None],
+    earlier: Sequence[Iteration] = (),
+    search: bool = False,
+    settled: bool = False,
 ) -> Outcome:
-    """Find the state at the end of a load step, from the state ``begin``."""
+    """Find the state at the end of a load step, from the state ``begin``.
+
+    earlier: iterations of the same step before; search: only the active set is wanted, of laws that have one;
+    settled: the set of ``begin`` is likely to be the final one."""
     state = begin
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
-    done: list[Iteration] = []
+    done = list(earlier)
     changes: list[int] = []
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
     finest = ROUGH
-    accuracy = 0.1 * system.accurate if state.active.all() else ROUGH  # closed all over may well be the answer
-    for count in range(1, limit + 1):
+    likely = settled or state.active.all()  # closed all over may well be the answer
+    accuracy = 0.1 * system.accurate if likely else ROUGH
+    for count in range(len(done) + 1, len(done) + limit + 1):
         clock = time.perf_counter()
         active = system.complete(state.active, system.gap(state, stage.weights)) | tied
         state = replace(state, active=active)
@@ -85,11 +97,13 @@ def solve_step(
         history.append(active)
         if not changed.any():
             error = max(row.residual, closure)
+            if search and (system.exact or error <= SEARCHED):
+                return Outcome(solved, tuple(done), True, changed, partial(active_laws, weights=stage.weights))
             if system.exact or error <= system.accurate:
                 return finish_smooth(system, solved, stage, limit, done, observe)
-            state, accuracy = solved, max(0.3 * system.accurate / error, FINEST)
+            state, accuracy = solved, max(0.3 * (SEARCHED if search else system.accurate) / error, FINEST)
             continue
-        if system.predict is not None and not share and (count <= EARLY or changed.sum() > FEW * active.sum()):
+        if system.predict is not None and not share and (count - len(earlier) <= EARLY or changed.sum() > FEW * active.sum()):
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 wanted = guess

@@ -92,8 +92,8 @@ def pressure_scale(system: System) -> float:
     return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
 
 
-def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) -> tuple[System, Count]:
-    """The system with its linear systems solved iteratively, and the count of iterations.
+def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], count: Count) -> System:
+    """The system with its linear systems solved iteratively; ``count`` goes on counting.
 
     Raises InputError for pairs with the constraint function, whose rows this preconditioner does not know."""
     smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
@@ -103,7 +103,7 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64]) 
             '"complementarity", or linear = "direct"'
         )
     scale = pressure_scale(system)
-    count, parts = Count(), interfaces(system.pairs)
+    parts = interfaces(system.pairs)
     solver = Iterative(system.operator, hierarchy, parts, motions, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ motions))
-    return replace(system, step=solver.step, exact=False, predict=predict), count
+    return replace(system, step=solver.step, exact=False, predict=predict)

@@ -18,7 +18,7 @@ from abut.solvers.active_set import Outcome, System
 from abut.solvers.condensed import condense
 from abut.solvers.direct import solver_name
 from abut.solvers.iterative import Count, iterate
-from abut.solvers.multigrid import hierarchy
+from abut.solvers.multigrid import Hierarchy, hierarchy
 
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
@@ -34,11 +34,13 @@ def expected_seconds(linear: str, n_free: int, dim: int) -> float:
 
 @dataclass(frozen=True)
 class Prepared:
-    """system: with its linear solver; finish: what a step's outcome still needs, at its histories' weights; name: for the
-    summary; note: for the log; count: linear iterations of an iterative solver."""
+    """system: with its linear solver; finish: what a step's outcome still needs, at its histories' weights; renew: the same
+    for a system with another interface over the same stiffness; name: for the summary; note: for the log; count: linear
+    iterations of an iterative solver."""
 
     system: System
     finish: Callable[[Outcome, NDArray[np.float64]], Outcome]
+    renew: Callable[[System], Prepared]
     name: str
     note: str
     count: Count | None = None
@@ -83,16 +85,29 @@ def prepare(
     Raises InputError where the solver is not installed or cannot serve the system.
     """
     if linear == "amg":
-        levels = hierarchy(system.stiffness, free, near_null, points)
-        iterative, count = iterate(system, levels, loose)
-        return Prepared(iterative, lambda outcome, _: outcome, "multigrid (PyAMG)", levels.summary, count)
+        return _iterative(system, hierarchy(system.stiffness, free, near_null, points), loose, Count())
+    return _direct(system, loose)
+
+
+def _iterative(system: System, levels: Hierarchy, loose: NDArray[np.float64], count: Count) -> Prepared:
+    return Prepared(
+        iterate(system, levels, loose, count), lambda outcome, _: outcome,
+        lambda other: _iterative(other, levels, loose, count), "multigrid (PyAMG)", levels.summary, count,
+    )  # fmt: skip
+
+
+def _direct(system: System, loose: NDArray[np.float64]) -> Prepared:
     condensed = condense(system, loose)
     name = f"direct ({solver_name()})"
+
+    def renew(other: System) -> Prepared:
+        return _direct(other, loose)
+
     if condensed is None:
-        return Prepared(system, lambda outcome, _: outcome, name, f"direct solver {solver_name()}")
+        return Prepared(system, lambda outcome, _: outcome, renew, name, f"direct solver {solver_name()}")
 
     def finish(outcome: Outcome, weights: NDArray[np.float64]) -> Outcome:
         return replace(outcome, unknowns=condensed.expand(outcome.unknowns, weights, outcome.laws))
 
     note = f"direct solver {solver_name()}; all displacements eliminated but {len(condensed.kept)}, the rest is dense"
-    return Prepared(condensed.system, finish, name, note)
+    return Prepared(condensed.system, finish, renew, name, note)

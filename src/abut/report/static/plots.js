@@ -77,11 +77,20 @@ function drawPlots(data) {
   const at = (id) => { const e = document.getElementById(id); e.replaceChildren(); return e; };
   const lines = at("lines");
   lines.closest("section").hidden = !data.lines.length;
+  if (data.probes.length) at("probes");
   for (const line of data.lines) {
     const series = [{ label: "pressure", values: line.pressure, colour: "accent", points: false }];
     if (line.theory) series.push({ label: "theory", values: line.theory, colour: "second", dash: [6, 5], points: false });
     if (line.gap.some((v) => v != null)) series.push({ label: "gap", values: line.gap, colour: "third", right: true, width: 1.2, points: false });
     plot(lines, `${line.contact}: pressure ${line.label}`, `distance from ${line.zero}`, line.distance, series);
+  }
+  const colours = ["accent", "second", "third", "good", "bad", "soft"];
+  for (const chart of data.probes) {
+    const series = chart.series.map((s, i) => ({
+      ...s, colour: colours[i % colours.length], dash: i < colours.length ? undefined : [6, 5],
+      right: s.label === "gap" && chart.series.length > 1, points: chart.x.length < 30,
+    }));
+    plot(document.getElementById("probes"), chart.title, chart.label, chart.x, series);
   }
   const run = data.convergence;
   const count = run.step.map((_, i) => i + 1);
@@ -99,7 +108,6 @@ function drawPlots(data) {
   ], whole);
   const history = at("history");
   if (data.history.factor.length > 1) {
-    const colours = ["accent", "second", "third", "good", "bad", "soft"];
     for (const [key, title] of [["force", "Contact force"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
       if (!data.history.contacts.length) break;
       plot(history, title, "time (share of the load, where no amplitude says otherwise)", data.history.factor,

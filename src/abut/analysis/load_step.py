@@ -1,0 +1,78 @@
+"""One load step: the search for the active set, and with "dual-P1" a second one with ordinary functions inside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.discretization.pairs import with_plain_functions
+from abut.discretization.supports import Supports
+from abut.interface.coupling import surface_degree
+from abut.interface.pressure import DUAL_P1
+from abut.model import Model
+from abut.solvers.active_set import Outcome, Stage, System, Unknowns, solve_step
+from abut.solvers.linear import Prepared
+from abut.state import Iteration
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The end of a load step. outcome: in the unknowns of ``solver``; system: in the free displacements; inside: (n,) bool,
+    the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones."""
+
+    outcome: Outcome
+    solver: Prepared
+    system: System
+    inside: NDArray[np.bool_]
+
+
+def load_step(
+    model: Model,
+    held: Supports,
+    system: System,
+    solver: Prepared,
+    begin: Unknowns,
+    stage: Stage,
+    observe: Callable[[Iteration], None],
+) -> Reached:
+    """Solve one load step from the state ``begin``, theory (P9).
+
+    system, solver: with dual functions wherever the space has them. What is closed all over at the outset may stay so:
+    that is tried first. Else dual functions tell where contact is closed, and there the ordinary ones take their place."""
+    limit, none = model.solve.max_iterations, np.zeros(len(begin.active), dtype=bool)
+    spaces = [p for p in system.pairs if p.space.name == DUAL_P1]
+    search = any(surface_degree(p.contactor) == 2 for p in spaces)
+    earlier: tuple[Iteration, ...] = ()
+    inner = with_plain(model, held, system, begin.active) if begin.active.all() else system
+    if inner is not system:
+        renewed = solver.renew(inner)
+        outcome = solve_step(renewed.system, begin, stage, 1, observe)
+        if outcome.converged:
+            return Reached(outcome, renewed, inner, begin.active)
+        earlier = outcome.iterations
+    outcome = solve_step(solver.system, begin, stage, limit, observe, earlier, search=search)
+    inside = outcome.unknowns.active
+    inner = with_plain(model, held, system, inside) if spaces and outcome.converged else system
+    if inner is system:
+        done = not (search and outcome.converged) or (solver.system.exact and not any(p.smooth for p in system.pairs))
+        if not done:
+            outcome = solve_step(
+                solver.system, outcome.unknowns, stage, limit, observe, outcome.iterations, settled=True
+            )
+        return Reached(outcome, solver, system, none)
+    renewed = solver.renew(inner)
+    outcome = solve_step(renewed.system, outcome.unknowns, stage, limit, observe, outcome.iterations, settled=True)
+    return Reached(outcome, renewed, inner, inside)
+
+
+def with_plain(model: Model, held: Supports, system: System, inside: NDArray[np.bool_]) -> System:
+    """The system with the ordinary functions of "dual-P1" where the multipliers ``inside`` (n,) let them be; the same one
+    where they are nowhere."""
+    pairs = [with_plain_functions(model, p, held, own) for p, own in zip(system.pairs, system.split(inside))]
+    if all(new is old for new, old in zip(pairs, system.pairs)):
+        return system
+    return replace(system, pairs=pairs, operator=sp.vstack([p.operator for p in pairs]).tocsr())

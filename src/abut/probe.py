@@ -1,0 +1,151 @@
+"""What a user wants to know at places of the model: a record that checks itself, and the names of its results."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from abut import checks
+from abut.errors import InputError, nearest
+from abut.mesh.mesh import Mesh
+
+IN_BODIES = ("displacement", "stress", "von-mises")
+ON_CONTACTS = ("pressure", "gap")
+QUANTITIES = (*IN_BODIES, *ON_CONTACTS)
+POINTS = 50  # along a line, where the user does not say
+MOST_POINTS = 10_000
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Results at a place, for every step: at a point ``at``, along a ``line`` (start, end) at ``points`` in equal distances,
+    both ends among them (50 where left out), or at the nodes of ``on``, a node set or surface. Places are those of the
+    undeformed mesh (length).
+
+    ``of``: "displacement", "stress", "von-mises", "pressure", "gap"; left out: all that exist there, pressure and gap only
+    where the place lies on a surface of a contact. ``contact``: whose pressure and gap, where more than one is there.
+    ``body``: whose displacement, stress and side of a contact, where points lie on several; left out: the first in the
+    order of the mesh.
+    """
+
+    name: str
+    at: Vector | None = None
+    line: tuple[Vector, Vector] | None = None
+    on: str | None = None
+    points: int | None = None
+    of: tuple[str, ...] | None = None
+    contact: str | None = None
+    body: str | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise InputError(f"probe: name: expected a text that is not empty, got {self.name!r}")
+        where = f"probe '{self.name}'"
+        given = [name for name in ("at", "line", "on") if getattr(self, name) is not None]
+        if len(given) != 1:
+            got = " and ".join(given) or "none of them"
+            raise InputError(f"{where}: give one of at (a point), line, on (a node set or surface); got {got}")
+        if self.at is not None:
+            object.__setattr__(self, "at", _point(self.at, f"{where}: at"))
+        if self.line is not None:
+            object.__setattr__(self, "line", _line(self.line, f"{where}: line"))
+        self._check_points(where)
+        if self.of is not None:
+            object.__setattr__(self, "of", _quantities(self.of, f"{where}: of"))
+            if self.contact is not None and not set(self.of) & set(ON_CONTACTS):
+                raise InputError(f"{where}: contact is for pressure and gap; leave it out, or add them to 'of'")
+        if self.on is not None and self.body is not None:
+            raise InputError(f"{where}: body is for points and lines; the nodes of '{self.on}' are read; leave it out")
+
+    def _check_points(self, where: str) -> None:
+        if self.points is None:
+            return
+        if self.line is None:
+            raise InputError(f"{where}: points is for lines; leave it out")
+        if isinstance(self.points, bool) or not isinstance(self.points, int) or not 2 <= self.points <= MOST_POINTS:
+            raise InputError(
+                f"{where}: points: expected a whole number from 2 (both ends) to {MOST_POINTS}, got {self.points!r}"
+            )
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        if self.at is not None:
+            return f"at {_words(self.at)}"
+        if self.line is not None:
+            return f"{self.points or POINTS} points from {_words(self.line[0])} to {_words(self.line[1])}"
+        return f"nodes of {self.on}"
+
+
+def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str]) -> None:
+    """Names and dimensions of probes against the mesh and the names of the contacts. Raises InputError."""
+    files: dict[str, str] = {}
+    for i, probe in enumerate(probes):
+        where = f"probes[{i}]"
+        if any(probe.name == before.name for before in probes[:i]):
+            raise InputError(f"{where}.name: '{probe.name}' is used twice; give each probe its own name")
+        other = files.setdefault(label(probe.name), probe.name)
+        if other != probe.name:
+            raise InputError(
+                f"{where}.name: files of '{probe.name}' and '{other}' would have the same name; change one"
+            )
+        for key, points in (("at", [probe.at]), ("line", probe.line or ())):
+            for point in points:
+                if point is not None and len(point) != mesh.dim:
+                    raise InputError(f"{where}.{key}: expected {mesh.dim} numbers for a point, got {len(point)}")
+        _known(probe.on, [*mesh.surfaces, *mesh.node_sets], f"{where}.on", "surface or node set")
+        _known(probe.body, mesh.bodies, f"{where}.body", "body")
+        _known(probe.contact, contacts, f"{where}.contact", "contact")
+        wanted = [name for name in probe.of or () if name in ON_CONTACTS]
+        if wanted and not contacts:
+            raise InputError(f"{where}.of: the model has no contacts, and so no {wanted[0]}; take it out")
+        if probe.on is not None and not len(mesh.nodes_of(probe.on)):
+            raise InputError(f"{where}.on: '{probe.on}' is empty")
+
+
+def label(name: str) -> str:
+    """A name as part of a file name."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "_", name)
+
+
+def _known(name: str | None, known: Collection[str], where: str, what: str) -> None:
+    if name is not None and name not in known:
+        raise InputError(f"{where}: no {what} named {name!r}{nearest(str(name), known)}")
+
+
+def _point(values: Any, name: str) -> Vector:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}")
+    result = tuple(checks.finite(value, name) for value in values)
+    if len(result) not in (2, 3):
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
+    return result
+
+
+def _line(values: Any, name: str) -> tuple[Vector, Vector]:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise InputError(f"{name}: expected two points, got {values!r}")
+    ends = tuple(values)
+    if len(ends) != 2:
+        raise InputError(f"{name}: expected two points, its start and its end, got {len(ends)}")
+    start, end = _point(ends[0], name), _point(ends[1], name)
+    if start == end:
+        raise InputError(f"{name}: starts where it ends, at {_words(start)}; give two points, or a point (at)")
+    return start, end
+
+
+def _quantities(values: Any, name: str) -> tuple[str, ...]:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise InputError(f"{name}: expected a list of names, got {values!r}")
+    result = tuple(checks.choice(value, name, QUANTITIES) for value in values)
+    if not result:
+        raise InputError(f"{name}: the list is empty; leave it out for all, or name some of {', '.join(QUANTITIES)}")
+    return tuple(quantity for quantity in QUANTITIES if quantity in result)
+
+
+def _words(point: Vector) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in point) + ")"

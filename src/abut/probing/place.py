@@ -1,0 +1,170 @@
+"""Where a probe reads: its points in cells, or at nodes, and on the surfaces of a contact."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from abut.errors import InputError
+from abut.mesh.exterior import outside_of_body
+from abut.mesh.mesh import Mesh
+from abut.model import Contact, Model
+from abut.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
+from abut.probing.cells import NEAR, Boxes, boxes, locate
+from abut.probing.feet import feet
+from abut.probing.sides import CONTACTOR, Side, choose
+
+
+@dataclass(frozen=True)
+class OnSurface:
+    """Points on one side of a contact. contact: its number in the model; side: "contactor" or "target"; point, facet: (k,)
+    which point has a foot on which facets; weights: (k, 9) shape functions of the facet there."""
+
+    contact: int
+    side: str
+    point: NDArray[np.int64]
+    facet: NDArray[np.int64]
+    weights: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a probe reads.
+
+    of: quantities; points, distance, nodes: as in ``abut.state.ProbeResult``; weights: (n, n_points) from the values at the
+    mesh's points to those at the probe's, CSR, None where nothing of the bodies is asked for; surface: likewise for
+    the contact; notes: choices that were made, in words.
+    """
+
+    probe: Probe
+    of: tuple[str, ...]
+    points: NDArray[np.float64]
+    distance: NDArray[np.float64] | None
+    nodes: NDArray[np.int64] | None
+    weights: csr_matrix | None
+    surface: OnSurface | None
+    notes: tuple[str, ...] = ()
+
+
+def find_places(model: Model) -> tuple[Place, ...]:
+    """The places of all probes of a model. Raises InputError for the first that is not on it."""
+    around = boxes(model.mesh) if any(probe.on is None for probe in model.probes) else ()
+    return tuple(find_place(model, probe, around) for probe in model.probes)
+
+
+def find_place(model: Model, probe: Probe, around: Sequence[Boxes] = ()) -> Place:
+    """The place of one probe; around: ``boxes`` of the mesh, made here where left out. Raises InputError for points outside
+    all bodies, and where a pressure or gap is asked for that does not exist, or of more than one contact."""
+    mesh = model.mesh
+    points, distance, nodes = _points(mesh, probe)
+    side = choose(model, probe, points)
+    of = _quantities(model, probe, side)
+    notes: list[str] = []
+    weights = None
+    if set(of) & set(IN_BODIES):
+        if nodes is not None:
+            entries = np.ones(len(nodes)), (np.arange(len(nodes)), nodes)
+            weights = csr_matrix(entries, shape=(len(nodes), len(mesh.points)))
+        else:
+            weights, said = _in_cells(model, probe, around or boxes(mesh), points)
+            notes += said
+    surface = None
+    if side is not None and set(of) & set(ON_CONTACTS):
+        surface, said = _on_surface(model, probe, side, points, nodes)
+        notes += said
+    return Place(probe, of, points, distance, nodes, weights, surface, tuple(notes))
+
+
+def _points(
+    mesh: Mesh, probe: Probe
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.int64] | None]:
+    """Coordinates (n, dim), distance along a line, numbers of nodes."""
+    if probe.on is not None:
+        nodes = np.unique(mesh.nodes_of(probe.on)).astype(np.int64)
+        return mesh.points[nodes], None, nodes
+    if probe.line is None:
+        return np.array([probe.at], dtype=float), None, None
+    start, end = np.array(probe.line)
+    share = np.linspace(0.0, 1.0, probe.points or POINTS)
+    return (1.0 - share[:, None]) * start + share[:, None] * end, share * float(np.linalg.norm(end - start)), None
+
+
+def _quantities(model: Model, probe: Probe, side: Side | None) -> tuple[str, ...]:
+    if probe.of is None:
+        there = () if side is None else ON_CONTACTS if side.role == CONTACTOR else ON_CONTACTS[:1]
+        return tuple(quantity for quantity in QUANTITIES if quantity in (*IN_BODIES, *there))
+    if "gap" in probe.of and side is not None and side.role != CONTACTOR:
+        contact = model.contacts[side.contact]
+        raise InputError(
+            f"probe '{probe.name}': the gap of contact '{contact.name}' is known on its contactor '{contact.contactor}', "
+            f"but the probe lies on its target '{contact.target}'; put it on the contactor, or take gap out of its 'of'"
+        )
+    return probe.of
+
+
+def _in_cells(
+    model: Model, probe: Probe, around: Sequence[Boxes], points: NDArray[np.float64]
+) -> tuple[csr_matrix, list[str]]:
+    inside = locate(model.mesh, around, points, probe.body)
+    outside = inside.outside
+    if len(outside):
+        raise InputError(_outside(model, probe, points[outside], len(points)))
+    shared = Counter(own for own in inside.bodies if len(own) > 1)
+    notes = []
+    for own, count in shared.items():
+        what = "it lies" if len(points) == 1 else f"{count} of its points lie"
+        names = " and ".join(f"'{name}'" for name in own)
+        notes.append(f"probe '{probe.name}': {what} in {names}; read in '{own[0]}' (body = \"{own[1]}\" for the other)")
+    return inside.weights, notes
+
+
+def _outside(model: Model, probe: Probe, points: NDArray[np.float64], count: int) -> str:
+    """Message for the points that lie in no cell, (m, dim), of ``count``."""
+    mesh = model.mesh
+    names = list(mesh.bodies) if probe.body is None else [probe.body]
+    away = {name: feet(mesh.facets(outside_of_body(mesh, name)), points[:1]).distance[0] for name in names}
+    nearest = min(names, key=lambda name: float(away[name]))
+    where = "(" + ", ".join(f"{value:.6g}" for value in points[0]) + ")"
+    if count > 1:
+        where = f"{len(points)} of its {count} points, the first at {where},"
+    if probe.body is None:
+        what = f"outside every body, {away[nearest]:.3g} from the nearest, '{nearest}'"
+    else:
+        what = f"outside body '{nearest}', {away[nearest]:.3g} from it"
+    cure = "move it" if count == 1 else "move its ends"
+    if model.contacts:
+        cure += ', or ask for what is on contact surfaces only (of = ["pressure", "gap"])'
+    lies = "lie" if count > 1 and len(points) > 1 else "lies"
+    return f"probe '{probe.name}': {where} {lies} {what}; {cure}"
+
+
+def _on_surface(
+    model: Model, probe: Probe, side: Side, points: NDArray[np.float64], nodes: NDArray[np.int64] | None
+) -> tuple[OnSurface, list[str]]:
+    contact: Contact = model.contacts[side.contact]
+    name = getattr(contact, side.role)
+    surface = model.mesh.surface(name)
+    if nodes is not None:
+        facet, local = np.nonzero((surface.nodes >= 0) & np.isin(surface.nodes, nodes))
+        point = np.searchsorted(nodes, surface.nodes[facet, local])
+        weights = np.zeros((len(facet), surface.nodes.shape[1]))
+        weights[np.arange(len(facet)), local] = 1.0
+        return OnSurface(side.contact, side.role, point, facet, weights), []
+    own = feet(surface, points)
+    if own.beside.all():
+        raise InputError(
+            f"probe '{probe.name}': no point of it lies over surface '{name}' of contact '{contact.name}'; move it, or take "
+            "pressure and gap out of its 'of'"
+        )
+    notes = []
+    farthest = float(own.distance[~own.beside].max())
+    if not own.touching[~own.beside].all() and farthest > NEAR * float(
+        np.ptp(surface.points[surface.node_ids], axis=0).max()
+    ):
+        notes.append(f"probe '{probe.name}': points up to {farthest:.3g} off surface '{name}' are projected onto it")
+    return OnSurface(side.contact, side.role, own.point, own.facet, own.weights), notes

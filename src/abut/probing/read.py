@@ -1,0 +1,49 @@
+"""What a step says at a place."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.probing.place import OnSurface, Place
+from abut.probing.sides import CONTACTOR
+from abut.solids.invariants import von_mises
+from abut.state import ContactResult, ProbeResult, Step
+
+
+def read(place: Place, step: Step) -> ProbeResult:
+    """The values of a step at a place. Displacement and stress are those at the mesh's points, between them by the shape
+    functions of the cell; the von Mises stress is that of the stress found so. Pressure and gap likewise from the facets'
+    nodes, the mean of the facets that meet at a point where they jump; NaN where there is none."""
+    values: dict[str, NDArray[np.float64]] = {}
+    if place.weights is not None:
+        stress = np.asarray(place.weights @ step.stress)
+        every = {
+            "displacement": np.asarray(place.weights @ step.displacement),
+            "stress": stress,
+            "von-mises": von_mises(stress),
+        }
+        values |= {name.replace("-", "_"): value for name, value in every.items() if name in place.of}
+    if place.surface is not None:
+        contact = step.contacts[place.surface.contact]
+        for name in ("pressure", "gap"):
+            if name in place.of:
+                values[name] = _on_facets(place.surface, _table(place.surface, contact, name), len(place.points))
+    return ProbeResult(place.probe.name, place.points, place.distance, place.nodes, values)
+
+
+def _table(surface: OnSurface, contact: ContactResult, name: str) -> NDArray[np.float64]:
+    """Values at the facets' nodes, (n_facets, 9)."""
+    if name == "gap":
+        return contact.gap
+    return contact.pressure if surface.side == CONTACTOR else contact.target_pressure
+
+
+def _on_facets(surface: OnSurface, table: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """The mean at each point over the facets that it is on and that have a value, (count,)."""
+    used = surface.weights != 0.0
+    each = (surface.weights * np.where(used, table[surface.facet], 0.0)).sum(axis=1)
+    known = np.isfinite(each)
+    total = np.bincount(surface.point[known], each[known], count)
+    number = np.bincount(surface.point[known], minlength=count)
+    return np.where(number > 0, total / np.maximum(number, 1), np.nan)
