@@ -71,7 +71,7 @@ def off(solution: abut.Solution, interference: float) -> float:
     return float(np.nanmax(np.abs(pressure / fit_pressure(interference) - 1.0)))
 
 
-@pytest.mark.parametrize(("around", "interference"), [((96, 90), 0.05), ((24, 26), 0.05), ((24, 32), 0.05)])
+@pytest.mark.parametrize(("around", "interference"), [((96, 90), 0.05), ((24, 26), 0.05)])
 def test_chords_of_one_circle_may_cut_into_each_other(around: tuple[int, int], interference: float) -> None:
     """By far more than the pressure presses in: that no function sees it is no harm, the pressure is right."""
     model = fit(around, interference)
