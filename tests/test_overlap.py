@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.overlap import overlap
+from abut.analysis.overlap import overlaps
 from abut.analysis.remedies import remedies
 from abut.discretization.pairs import pair
 from abut.discretization.supports import supports
@@ -50,7 +50,7 @@ def depth(model: abut.Model, move: np.ndarray, offset: float = 0.0) -> float:
     own = pair(model, model.contacts[0], supports(model))
     upper = np.zeros(len(model.mesh.points), dtype=bool)
     upper[model.mesh.nodes_of("upper.bottom")] = True
-    return SIZE * overlap(own, np.where(upper[:, None], move, 0.0), offset)
+    return SIZE * float(overlaps(own, np.where(upper[:, None], move, 0.0), offset).max())
 
 
 CELLS = [("quad4", "tri3"), ("quad8", "quad9"), ("tri6", "quad4"), ("hex8", "hex20"), ("hex20", "tet10")]

@@ -64,6 +64,14 @@ def _amplitude(value: Any, where: str) -> None:
         raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(value).__name__}")
 
 
+def drives(condition: Any) -> bool:
+    """Whether a support, load, equation or rigid body prescribes anything but zero; a function of position is taken to."""
+    names = ("value", "normal", *COMPONENTS, *TURNS)
+    values = [getattr(condition, name, None) for name in names]
+    given = any(value is not None and (callable(value) or bool(np.any(value))) for value in values)
+    return given and (condition.amplitude is None or condition.amplitude.largest > 0.0)
+
+
 @dataclass(frozen=True)
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own

@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.conditions import drives
 from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
+RESPONSE = 0.5  # nothing between 0 and 1
 REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
 
 
@@ -52,13 +55,15 @@ class Phase:
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words."""
+    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words.
+    last: it counts in the last step only, since it is bound to fail while loads are still small."""
 
     contact: str
     name: str
     value: float
     limit: float
     meaning: str
+    last: bool = False
 
     @property
     def passed(self) -> bool:
@@ -155,21 +160,34 @@ class Step:
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     spring: float | None = None  # largest force that holds motions without resistance; None where there are none
-    internal: float = 0.0  # largest nodal force of stresses
+    internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
+    pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
+    strain: float = (
+        0.0  # largest contact pressure over the stiffness of the two bodies, about that over Young's modulus
+    )
+    strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
 
     @property
     def balance_error(self) -> float:
-        """Largest component of loads and reactions together, over the largest force. Radial sums of an axisymmetric
+        """Largest component of loads and reactions together, over the reference force. Radial sums of an axisymmetric
         model balance only together with the hoop stress and are left out."""
-        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.largest_force)
+        if not (self.strained or self.load.any()):  # bodies that move without touching: rounding over rounding
+            return 0.0
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.reference_force)
 
     @property
     def regularisation(self) -> float | None:
-        """Force that holds motions without resistance over the largest force, nodal ones among them (loads may cancel)."""
-        return None if self.spring is None else self.spring / max(self.largest_force, self.internal)
+        """Force that holds motions without resistance over the reference force."""
+        return None if self.spring is None else self.spring / self.reference_force
+
+    @property
+    def reference_force(self) -> float:
+        """What rounding is judged against, theory (V14): the largest of all resultants, of the forces between surfaces by
+        area, and of the sizes of all nodal forces of stresses together; loads and pressures may cancel, these do not."""
+        return max(self.largest_force, self.pressed, self.internal)
 
     @property
     def largest_force(self) -> float:
@@ -239,17 +257,20 @@ class Solution:
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         worst: dict[tuple[str, str], Check] = {}
+        idle = _driven(self.model) and not any(step.strained for step in self.steps)
+        response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
         for step in self.steps:
             balance = Check(
-                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the largest force"
+                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the forces' size"
             )
-            model = [balance]
+            strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
+            model = [balance, response, strain]
             if step.regularisation is not None:
                 model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
-                                   "force that holds motions without resistance, over the largest force"))  # fmt: skip
+                                   "force that holds motions without resistance, over the forces' size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
-                if key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
+                if check.last or key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
                     worst[key] = check
         return tuple(worst.values())
 
@@ -269,6 +290,13 @@ class Solution:
         import abut
 
         return abut.plot(self, what, **options)
+
+
+def _driven(model: Model) -> bool:
+    """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
+    given = (*model.supports, *model.loads, *model.equations, *model.rigid)
+    hot = any(solid.temperature for solid in model.solids)
+    return hot or any(map(drives, given)) or any(contact.offset < 0.0 for contact in model.contacts)
 
 
 Observer = Callable[[Iteration | Phase | str], None]  # gets each iteration, stages that begin, and notes as text

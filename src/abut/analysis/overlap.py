@@ -5,20 +5,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.faceting import misfit, unseen
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import facet_sizes
 
 ROUNDING = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 
 
-def overlap(pair: Pair, displacement: NDArray[np.float64], offset: float) -> float:
-    """Largest overlap at the corners and middles of the segments over the size of the contactor's facet, 0 for none.
+def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> NDArray[np.float64]:
+    """Largest overlap at the corners and middles of each facet's segments over its size, (n_facets,), 0 for none.
+
+    Where linear facets are chords of a curve, an overlap counts as far as the curves overlap as well: theory (L11).
 
     displacement: (n_points, dim); offset: added to the geometric gap, a length.
     """
     at = pair.coupling.sights
+    deepest = np.zeros(len(pair.contactor))
     if at is None or not len(at.gap):
-        return 0.0
+        return deepest
     change = np.zeros(len(at.gap))
     for sign, surface, facet, shapes in (
         (1.0, pair.contactor, at.facet, at.own),
@@ -28,4 +32,8 @@ def overlap(pair: Pair, displacement: NDArray[np.float64], offset: float) -> flo
         for a in range(surface.dim):
             change += sign * at.normal[:, a] * (shapes * displacement[nodes, a]).sum(axis=1)
     depth = -(at.gap + offset + change) - ROUNDING * float(np.abs(change).max())
-    return max(float((depth / facet_sizes(pair.contactor)[at.facet]).max()), 0.0)
+    chords = misfit(pair)
+    if chords is not None:
+        depth = np.minimum(depth, depth - unseen(pair, chords))
+    np.maximum.at(deepest, at.facet, depth / facet_sizes(pair.contactor)[at.facet])
+    return deepest

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import certificate
+from abut.analysis.faceting import free_axes
 from abut.analysis.loads import Loads
-from abut.analysis.overlap import overlap
+from abut.analysis.overlap import overlaps
 from abut.analysis.volume import Volume
 from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
@@ -21,6 +22,7 @@ from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
 
 SUPPORTED = 0.5  # covered share of a point's support from which on its pressure counts for the largest
+NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
 def step_result(
@@ -47,10 +49,35 @@ def step_result(
     nodal = displacement.reshape(-1, dim)
     carried = reaction if held.links is None else reaction - held.links.forces(reaction)
     by_supports = carried.reshape(-1, dim)
-    overlaps = []
+    deepest = []
     for pair in system.pairs:
         constant, varying = offsets(model, pair.contact)
-        overlaps.append(overlap(pair, nodal, constant + float(varying @ stage.weights)))
+        deepest.append(overlaps(pair, nodal, constant + float(varying @ stage.weights)))
+    largest = [pair.space.transfer @ p for pair, p in zip(system.pairs, pressures) if not pair.tied]
+    beside = max(
+        [float(np.abs(p).max(initial=0.0)) for p in largest] + _largest_pressures(len(system.pairs), before) + [0.0]
+    )
+    contacts = tuple(
+        _contact(
+            pair,
+            pressure,
+            gap,
+            active,
+            outcome.iterations[-1].contact_residual,
+            reference,
+            depth,
+            beside,
+            free_axes(model, held, pair),
+        )
+        for pair, pressure, gap, active, reference, depth in zip(
+            system.pairs,
+            pressures,
+            system.split(system.gap(unknowns, stage.weights)),
+            system.split(unknowns.active),
+            _largest_pressures(len(system.pairs), before),
+            deepest,
+        )
+    )
     cycling = {}
     for pair, own in zip(system.pairs, system.split(outcome.cycling)):
         if own.any():
@@ -69,23 +96,24 @@ def step_result(
             for on in {s.on: s for s in model.supports}
         },
         load=loaded.resultant @ stage.weights,
-        contacts=tuple(
-            _contact(pair, pressure, gap, active, outcome.iterations[-1].contact_residual, reference, depth)
-            for pair, pressure, gap, active, reference, depth in zip(
-                system.pairs,
-                pressures,
-                system.split(system.gap(unknowns, stage.weights)),
-                system.split(unknowns.active),
-                _largest_pressures(len(system.pairs), before),
-                overlaps,
-            )
-        ),
+        contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
         rigid={body.rigid.body: RigidResult(*body.motion(nodal), *body.resultant(by_supports)) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
-        internal=float(np.abs(internal).max(initial=0.0)),
+        internal=float(np.abs(internal).sum()),
+        pressed=max(
+            (float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, pressures)), default=0.0
+        ),
+        strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
+        strained=_strained(system, displacement, internal),
     )
+
+
+def _strained(system: System, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
+    """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
+    stiffest = float(system.stiffness.diagonal().max(initial=0.0))
+    return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
 
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
@@ -106,7 +134,9 @@ def _contact(
     active: NDArray[np.bool_],
     residual: float,
     reference: float,
-    overlap: float,
+    overlap: NDArray[np.float64],
+    beside: float,
+    free: NDArray[np.bool_],
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -147,7 +177,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside, free),
     )
 
 

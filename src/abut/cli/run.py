@@ -221,6 +221,7 @@ def _failure(solution: Solution, directory: Path) -> str:
 
 
 def _print_result(solution: Solution, directory: Path) -> None:
+    from abut.analysis.cures import cure
     from abut.analysis.remedies import remedies
 
     for contact in solution.contacts:
@@ -235,6 +236,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
+        if not check.passed:
+            print(f"        cure: {cure(check, solution)}")
     for remedy in remedies(solution):
         print(f"  try {remedy}")
     print(

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
 from abut.io import probes
 from abut.io.atomic import make_directory, write_text
@@ -89,6 +90,7 @@ def summary(solution: Solution) -> dict[str, Any]:
                     "limit": check.limit,
                     "passed": check.passed,
                     "meaning": check.meaning,
+                    "cure": cure(check, solution),
                 }
                 for check in solution.certificate
             ],

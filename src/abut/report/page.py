@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
+from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
 from abut.io.versions import versions
 from abut.report.describe import tables
@@ -106,11 +107,15 @@ def _certificate(solution: Solution) -> str:
             escape(check.name),
             f"{check.value:.2e}",
             f"{check.limit:.2e}",
-            escape(check.meaning),
+            escape(check.meaning) + _cure(cure(check, solution)),
         ]
         for check in solution.certificate
     ]
     return _table(["", "contact", "check", "value", "limit", "what it says"], rows, raw=True)
+
+
+def _cure(text: str) -> str:
+    return f"<br><b>Cure:</b> {escape(text)}" if text else ""
 
 
 def _mark(passed: bool) -> str:

@@ -1,0 +1,211 @@
+"""What chords of curved surfaces get wrong: the roundness that linear facets leave out, theory (L11)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.cells import CELLS
+from abut.discretization.pairs import Pair
+from abut.discretization.supports import Supports
+from abut.interface.coupling import Sights
+from abut.interface.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
+from abut.mesh.surface import Surface
+from abut.model import Model
+
+MIDDLE = 2.0 / 3.0  # weight of a segment's middle; its corners share the rest: exact for parabolas on lines and squares
+HELD = 1e-9  # share of an axis held at a point below which it is free there
+ROUND = 1e-9  # of the facet size: less roundness than that is none
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """The true gap minus that between facets, a length: ``point`` (n_sights,) where the contactor looks; ``node``
+    (n_points,) its mean under the pressure function that sits there, NaN where there is none."""
+
+    point: NDArray[np.float64]
+    node: NDArray[np.float64]
+
+
+def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far a smooth surface through the nodes with their normals rises above linear facets, (n,), a length, outward;
+    0 on quadratic facets, which follow it by themselves.
+
+    facet: (n,) numbers, shapes: (n, 9) shape functions. Exact on circles, cylinders and spheres: theory (L11). At the end
+    of a line the normal is known from one side only; there the other end stands for both.
+    """
+    linear = np.zeros(len(surface), dtype=bool)
+    for kind, own in by_kind(surface):
+        linear[own] = CELLS[kind].degree == 1
+    height = np.zeros(len(facet))
+    if not linear.any():
+        return height
+    normals = nodal_normals(surface)
+    corners = range(int((surface.nodes[linear] >= 0).sum(axis=1).max()))
+    nodes = np.maximum(surface.nodes[facet], 0)
+    rim = _rim(surface) if surface.dim == 2 else np.zeros(len(surface.points), dtype=bool)
+    at = np.zeros((len(facet), surface.dim))
+    for a in corners:
+        at += shapes[:, a, None] * surface.points[nodes[:, a]]
+    for a in corners:
+        rise = np.einsum("kd,kd->k", normals[facet, a], surface.points[nodes[:, a]] - at)
+        other = rim[nodes[:, 1 - a]] if surface.dim == 2 else False
+        height += np.where(rim[nodes[:, a]], 0.0, np.where(other, 1.0, 0.5)) * shapes[:, a] * rise
+    return np.where(linear[facet], height, 0.0)
+
+
+def misfit(pair: Pair) -> Misfit | None:
+    """Of a pair, or None where both sides are flat or quadratic, or nothing is known of its sights."""
+    at = pair.coupling.sights
+    if at is None or not len(at.gap):
+        return None
+    point = -bulge(pair.contactor, at.facet, at.own) - bulge(pair.target, at.target_facet, at.other)
+    if np.abs(point).max() <= ROUND * pair.size:
+        return None
+    moments = _moments(pair, at, point)
+    space, node = pair.space, np.full(len(pair.contactor.points), np.nan)
+    if space.continuous:
+        node[space.node] = (space.transfer.T @ moments) / space.weight
+    else:  # functions of single facets: the mean under the corner functions of all facets at a node stands for them
+        facet, local = np.nonzero(pair.contactor.nodes >= 0)
+        here, row = pair.contactor.nodes[facet, local], 9 * facet + (local if pair.coupling.degree else 0)
+        weight = np.bincount(here, pair.coupling.weight[row], len(node))
+        known = weight > 0.0
+        node[known] = np.bincount(here, moments[row], len(node))[known] / weight[known]
+    return Misfit(point, node)
+
+
+def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integrals (9 n_facets,) of a value given at the sights with the facet-wise pressure functions; in 2D exact to
+    the third order (Simpson's rule), in 3D an estimate."""
+    contactor, degree = pair.contactor, pair.coupling.degree
+    functions = np.zeros_like(at.own)
+    for kind, facets in by_kind(contactor):
+        here = np.isin(at.facet, facets)
+        if degree == 0:
+            functions[here, 0] = 1.0
+            continue
+        carrier = CELLS[pressure_kind(kind, degree)]
+        values, _ = shape_functions(carrier.code, node_coordinates(kind))
+        functions[np.ix_(here, np.arange(carrier.nodes))] = at.own[here, : CELLS[kind].nodes] @ values
+    area, middle, number = _segments(contactor, at)
+    corners = np.bincount(number, minlength=len(middle)) - 1
+    weight = (1.0 - MIDDLE) / np.maximum(corners, 1)[number]
+    weight[middle] = np.where(corners > 0, MIDDLE, 1.0)
+    row = (9 * at.facet[:, None].astype(np.int64) + np.arange(9)).ravel()
+    product = (area[number] * weight * value)[:, None] * functions
+    return np.asarray(np.bincount(row, product.ravel(), 9 * len(contactor)), dtype=np.float64)
+
+
+def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:
+    """The part of the misfit at the sights, (n_sights,), that no mean over a pressure function sees."""
+    at = pair.coupling.sights
+    assert at is not None
+    nodes = np.maximum(pair.contactor.nodes[at.facet], 0)
+    mean = np.nan_to_num(of.node[nodes])
+    return np.asarray(of.point - (at.own * mean).sum(axis=1))
+
+
+def free_axes(model: Model, held: Supports, pair: Pair) -> NDArray[np.bool_]:
+    """Along which axes, (dim,), the body of one side at least may shift as a whole: no support holds it there."""
+    free = np.zeros(model.dim, dtype=bool)
+    for surface in (pair.contactor, pair.target):
+        bodies = [body for body, cells in model.mesh.bodies.items() if np.isin(surface.cells, cells).any()]
+        nodes = np.unique(np.concatenate([model.mesh.nodes_of(body) for body in bodies]))
+        for a, axis in enumerate(np.eye(model.dim)):
+            share = held.held_share(nodes, np.broadcast_to(axis, (len(nodes), model.dim)))
+            free[a] |= bool((share < HELD).all())
+    return free
+
+
+def faceting(pair: Pair, nodal: NDArray[np.float64], closed: float, free: NDArray[np.bool_]) -> float:
+    """Pressure that the misfit makes where it is carried: theory (L12), an estimate.
+
+    nodal: (n_facets, 9) pressure, of which what exceeds ``closed`` counts as contact; free: (dim,) axes along
+    which a side may shift. What such a shift takes up is left out, and so is the rim, where normals are known from one
+    side only, unless contact is nowhere else.
+    """
+    of = misfit(pair)
+    if of is None or pair.compliance == 0.0:
+        return 0.0
+    surface, known = pair.contactor, np.isfinite(of.node)
+    used = surface.nodes >= 0
+    pressure = np.zeros(len(known))
+    np.maximum.at(pressure, surface.nodes[used], nodal[used])
+    loaded = known & (pressure > closed)
+    inside = loaded & ~_near_rim(surface)
+    loaded = inside if inside.any() else loaded
+    if not loaded.any():
+        return 0.0
+    node = np.where(known, of.node - _shift(surface, of.node, loaded, free), 0.0)
+    a, b = _edges(surface).T
+    both = (loaded[a] & known[b]) | (loaded[b] & known[a])  # a node that kinks keep open is left out of contact by them
+    step = np.abs(node[a] - node[b])[both] / np.linalg.norm(surface.points[a] - surface.points[b], axis=1)[both]
+    extent = max(float(np.ptp(surface.points[loaded], axis=0).max()), pair.size)
+    even = float(np.abs(node[loaded].mean())) / extent
+    return max(float(step.max(initial=0.0)), even) / pair.compliance
+
+
+def _shift(
+    surface: Surface, value: NDArray[np.float64], known: NDArray[np.bool_], free: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """The part of nodal values (n_points,) that is the normal share of one shift along the free axes, by least squares."""
+    used = surface.nodes >= 0
+    normals = np.zeros_like(surface.points)
+    normals[surface.nodes[used]] = nodal_normals(surface)[used]
+    normals = normals[:, free]
+    shift = np.linalg.lstsq(normals[known], value[known], rcond=1e-6)[0]
+    return np.asarray(normals @ shift)
+
+
+def _edges(surface: Surface) -> NDArray[np.int64]:
+    """Both ends of every facet edge (2D: facet), (n, 2), those inside twice."""
+    ends = []
+    for kind, facets in by_kind(surface):
+        corners = CELLS[kind].corners if CELLS[kind].dim == 2 else 2
+        own = surface.nodes[facets]
+        ends += [own[:, [i, (i + 1) % corners]] for i in range(corners if corners > 2 else 1)]
+    return np.concatenate(ends).astype(np.int64)
+
+
+def _rim(surface: Surface) -> NDArray[np.bool_]:
+    """Points on the rim: ends of edges (2D: ends) that belong to one facet only."""
+    edges = np.sort(_edges(surface), axis=1)
+    if surface.dim == 2:
+        edges = np.repeat(edges.reshape(-1, 1), 2, axis=1)
+    single, count = np.unique(edges, axis=0, return_counts=True)
+    rim = np.zeros(len(surface.points), dtype=bool)
+    rim[single[count == 1]] = True
+    return rim
+
+
+def _near_rim(surface: Surface) -> NDArray[np.bool_]:
+    """Points of facets that have a point on the rim."""
+    rim = _rim(surface)
+    near = surface.nodes[(rim[np.maximum(surface.nodes, 0)] & (surface.nodes >= 0)).any(axis=1)]
+    rim[near[near >= 0]] = True
+    return rim
+
+
+def _segments(surface: Surface, at: Sights) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Area of every segment, (n_segments,), the number of its sight in the middle, which comes first, and of every sight
+    that of its segment, (n_sights,)."""
+    new = np.ones(len(at.gap), dtype=bool)
+    new[1:] = (at.facet[1:] != at.facet[:-1]) | (at.target_facet[1:] != at.target_facet[:-1])
+    middle = np.flatnonzero(new)
+    number = np.cumsum(new) - 1
+    x = np.einsum("ka,kad->kd", at.own, surface.points[np.maximum(surface.nodes[at.facet], 0)])
+    arm = x - x[middle[number]]
+    if surface.dim == 2:
+        area = np.linalg.norm(arm, axis=1)
+    else:  # a fan of triangles round the middle; the last corner is followed by the first
+        following = np.minimum(np.arange(len(x)) + 1, len(x) - 1)
+        last = np.append(new[1:], True)
+        following[last] = np.minimum(middle[number[last]] + 1, len(x) - 1)
+        area = np.where(new, 0.0, 0.5 * np.linalg.norm(np.cross(arm, arm[following]), axis=1))
+    if surface.axisymmetric:
+        area = area * 2.0 * np.pi * x[:, 0]
+    return np.asarray(np.bincount(number, area, len(middle)), dtype=np.float64), middle, number

@@ -1,0 +1,214 @@
+"""Sound runs that look odd to a check: each passes, and a related run that is wrong still fails."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import abut
+from abut.analysis.faceting import bulge, misfit, unseen
+from abut.discretization.pairs import pair
+from abut.discretization.supports import supports
+from abut.mesh.make import box, cylinder, join, rectangle, ring, sphere_octant
+from abut.state import Check
+
+STEEL = abut.LinearElastic(210e3, 0.3)
+
+
+def checks(solution: abut.Solution) -> dict[str, Check]:
+    return {check.name: check for check in solution.certificate}
+
+
+def failed(solution: abut.Solution) -> set[str]:
+    return {check.name for check in solution.certificate if not check.passed}
+
+
+def fit(around: tuple[int, int], interference: float, cell: str = "quad4") -> abut.Model:
+    """A quarter of a hub shrunk on a hollow shaft, radii 5, 10, 20; ``around``: facets of hub and shaft."""
+    hub, shaft = around
+    mesh = join({"hub": ring((10, 20), cells=(8, hub), cell=cell), "shaft": ring((5, 10), cells=(6, shaft), cell=cell)})
+    supports = [
+        abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))
+    ]
+    contact = abut.Contact("hub.inner", "shaft.outer", offset=-interference)
+    return abut.Model(mesh, [abut.Solid(b, STEEL) for b in mesh.bodies], supports, contacts=[contact], plane="stress")
+
+
+def fit_pressure(interference: float) -> float:
+    """Lame's, for equal materials."""
+    return interference * 210e3 / 10 / (500 / 300 + 125 / 75)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_roundness_that_facets_leave_out_is_exact_on_circles_and_balls(dim: int) -> None:
+    """At the middle of a facet inside the surface: radius minus the distance of the middle of the chord."""
+    if dim == 2:
+        surface = ring((1, 3), (0, 90), cells=(2, 9), cell="quad4").surface("outer")
+    else:
+        surface = sphere_octant(3.0, cells=4, fine=1.0, cell="hex8").surface("round")
+    corners = (surface.nodes >= 0).sum(axis=1)[0]
+    x = surface.points[surface.nodes[:, :corners]]
+    shapes = np.zeros((len(surface), 9))
+    shapes[:, :corners] = 1.0 / corners
+    exact = (9.0 - (x.mean(axis=1) ** 2).sum(axis=1)) / 6.0  # to the third order of the facet's size
+    high = bulge(surface, np.arange(len(surface), dtype=np.int32), shapes)
+    even = np.linalg.norm(x.mean(axis=1)[:, :-1] - (0.5 if dim == 3 else 2.1), axis=1)  # inside the evenly meshed zone
+    inside = np.argsort(even)[:2]
+    assert high[inside] == pytest.approx(exact[inside], rel=2e-2 if dim == 2 else 5e-2)
+
+
+def test_quadratic_and_flat_facets_leave_nothing_out() -> None:
+    for surface in (ring(cell="quad8").surface("outer"), rectangle(cell="quad4").surface("top")):
+        shapes = np.where(surface.nodes >= 0, 1.0, 0.0) / (surface.nodes >= 0).sum(axis=1, keepdims=True)
+        assert np.abs(bulge(surface, np.arange(len(surface), dtype=np.int32), shapes)).max() < 1e-14
+
+
+def off(solution: abut.Solution, interference: float) -> float:
+    """Largest error of the pressure over Lame's."""
+    pressure = solution.contacts[0].pressure
+    return float(np.nanmax(np.abs(pressure / fit_pressure(interference) - 1.0)))
+
+
+@pytest.mark.parametrize(("around", "interference"), [((96, 90), 0.05), ((24, 26), 0.05)])
+def test_chords_of_one_circle_may_cut_into_each_other(around: tuple[int, int], interference: float) -> None:
+    """By far more than the pressure presses in: that no function sees it is no harm, the pressure is right."""
+    model = fit(around, interference)
+    solution = abut.solve(model)
+    assert off(solution, interference) < 0.05
+    assert failed(solution) == set()
+    own = pair(model, model.contacts[0], supports(model))
+    chords = misfit(own)
+    assert chords is not None
+    seen = own.compliance * fit_pressure(interference) * own.size / np.pi  # (L10), as a length
+    assert np.abs(unseen(own, chords)).max() > 1.2 * seen
+
+
+@pytest.mark.parametrize(
+    ("around", "interference"), [((32, 24), 0.01), ((24, 32), 0.01), ((24, 64), 0.01), ((64, 24), 0.05)]
+)
+def test_chords_that_make_the_pressure_fail(around: tuple[int, int], interference: float) -> None:
+    """Their roundness varies from function to function, or is in all, by as much as the interference."""
+    solution = abut.solve(fit(around, interference))
+    assert off(solution, interference) > 0.2
+    assert "faceting" in failed(solution)
+    assert checks(abut.solve(fit(around, interference, "quad8")))["faceting"].value == 0.0
+
+
+def light_fit(down: float) -> abut.Model:
+    """A fit with hardly any interference, and beside it a block pressed on another by ``down``."""
+    light = fit((26, 24), 1e-4)
+    parts = {"foot": rectangle((40, 50), (-10, 0), (6, 6)), "block": rectangle((40, 50), (0, 10), (5, 5))}
+    mesh = join({"fit": light.mesh, **parts})
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, STEEL) for body in mesh.bodies],
+        [replace(s, on=f"fit.{s.on}") for s in light.supports]
+        + [abut.Support("foot.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-down)],
+        contacts=[
+            abut.Contact("fit.hub.inner", "fit.shaft.outer", offset=-1e-4, name="fit"),
+            abut.Contact("foot.top", "block.bottom", name="blocks"),
+        ],
+        plane="stress",
+    )
+
+
+def test_a_pair_that_is_nearly_unloaded() -> None:
+    """Chords get its own small pressure all wrong, but that is nothing beside what the other pair carries; as soon as that
+    one carries little as well, it fails."""
+
+    def line(down: float) -> Check:
+        every = abut.solve(light_fit(down)).certificate
+        return next(c for c in every if (c.contact, c.name) == ("fit", "faceting"))
+
+    assert line(0.4).passed
+    assert line(1e-4).value > 1.0
+
+
+def sheets(pressed: str) -> abut.Model:
+    """A base under two plates side by side; over the left one, within reach, lies another. All are targets."""
+    mesh = join(
+        {
+            "base": rectangle((0, 2), (0, 1), (8, 4), "quad4"),
+            "left": rectangle((0, 1), (1, 1.05), (3, 1), "quad4"),
+            "cover": rectangle((0, 1), (1.05, 1.5), (4, 2), "quad4"),
+            "right": rectangle((1, 2), (1, 1.5), (5, 2), "quad4"),
+        }
+    )
+    every = np.concatenate([mesh.surfaces[f"{body}.bottom"] for body in ("left", "cover", "right")])
+    mesh = replace(mesh, surfaces={**mesh.surfaces, "every": every})
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, abut.LinearElastic(1.0, 0.0)) for body in mesh.bodies],
+        [
+            abut.Support("base.bottom", x=0, y=0),
+            *(abut.Support(f"{b}.top", x=0, y=-0.01 if b == pressed else 0.01) for b in ("left", "cover", "right")),
+        ],
+        contacts=[abut.Contact("base.top", "every")],
+        plane="strain",
+    )
+
+
+def test_two_layers_of_target_where_nothing_presses() -> None:
+    """Facets that stay open may see as many layers as they like; those that are pressed, or cut into, may not."""
+    assert checks(abut.solve(sheets("right")))["covered twice"].value < 1e-9
+    assert checks(abut.solve(sheets("left")))["covered twice"].value == pytest.approx(1.0, abs=1e-9)
+
+
+def tubes(linear: str, cell: str = "hex8") -> abut.Model:
+    """A hub shrunk on a hollow shaft, both free in space."""
+    mesh = join(
+        {
+            "hub": cylinder(20.0, (0, 10), (2, 24, 2), cell, inner=10.0),
+            "shaft": cylinder(10.0, (0, 15), (2, 24, 3), cell, inner=5.0),
+        }
+    )
+    contact = abut.Contact("hub.inner", "shaft.round", offset=-0.01)
+    options = abut.SolveOptions(linear=linear)
+    return abut.Model(mesh, [abut.Solid(b, STEEL) for b in mesh.bodies], contacts=[contact], solve=options)
+
+
+@pytest.mark.parametrize("linear", ["direct", "amg"])
+def test_a_press_fit_balances_itself(linear: str) -> None:
+    """No load and no reaction: what is left of both is rounding, of a solver that stops at 2e-9 of the nodal forces too.
+    A reaction, or a spring, of a millionth of the force between the two is none."""
+    solution = abut.solve(tubes(linear))
+    assert failed(solution) == set()
+    assert checks(solution)["regularisation"].value < 5e-10
+    (step,) = solution.steps
+    assert step.pressed == pytest.approx(2 * np.pi * 10 * 10 * np.nanmean(solution.contacts[0].pressure), rel=0.5)
+    wrong = replace(step, reaction=step.reaction + 1e-6 * step.pressed, spring=1e-6 * step.pressed)
+    assert failed(replace(solution, steps=(wrong,))) == {"model balance", "regularisation"}
+
+
+def test_tied_bodies_that_are_heated_and_free() -> None:
+    """They grow evenly: every force is rounding, those of thermal strains but for those that cancel them."""
+    mesh = join({"a": box(z=(0, 1), cells=(3, 3, 2)), "b": box(z=(1, 2), cells=(2, 2, 2))})
+    material = abut.LinearElastic(210e3, 0.3, expansion=1e-5)
+    solids = [abut.Solid(body, material, temperature=100.0) for body in mesh.bodies]
+    solution = abut.solve(abut.Model(mesh, solids, contacts=[abut.Contact("a.top", "b.bottom", kind="tied")]))
+    assert failed(solution) == set()
+    (step,) = solution.steps
+    wrong = replace(step, reaction=step.reaction + 1e-6 * step.internal)
+    assert failed(replace(solution, steps=(wrong,))) == {"model balance"}
+
+
+def blocks(down: float, gap: float = 0.0) -> abut.Model:
+    mesh = join({"lower": rectangle((0, 1), (0, 1), (3, 3)), "upper": rectangle((0, 1), (1 + gap, 2 + gap), (2, 2))})
+    supports = [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=down)]
+    solids = [abut.Solid(body, STEEL) for body in mesh.bodies]
+    contacts = [abut.Contact("lower.top", "upper.bottom")]
+    return abut.Model(mesh, solids, supports, contacts=contacts, plane="strain")
+
+
+def test_a_result_of_nothing_fails() -> None:
+    """A block that is moved and never arrives, or a load on a held surface alone. One that nothing moves may rest, and one
+    that touches in a later step is sound."""
+    assert failed(abut.solve(blocks(-0.001, gap=0.01))) == {"response"}
+    held = blocks(0.0)
+    held = replace(held, loads=[abut.Force("upper.top", (0.0, -1.0))])
+    assert failed(abut.solve(held)) == {"response"}
+    assert failed(abut.solve(blocks(0.0))) == set()
+    steps = abut.SolveOptions(steps=2)
+    assert failed(abut.solve(replace(blocks(-0.015, gap=0.01), solve=steps))) == set()
