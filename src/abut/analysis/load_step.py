@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +16,7 @@ from abut.interface.coupling import surface_degree
 from abut.interface.pressure import DUAL_P1
 from abut.model import Model
 from abut.solvers.active_set import Outcome, Stage, System, Unknowns, solve_step
+from abut.solvers.blocks import newton_step
 from abut.solvers.linear import Prepared
 from abut.state import Iteration
 
@@ -75,4 +77,5 @@ def with_plain(model: Model, held: Supports, system: System, inside: NDArray[np.
     pairs = [with_plain_functions(model, p, held, own) for p, own in zip(system.pairs, system.split(inside))]
     if all(new is old for new, old in zip(pairs, system.pairs)):
         return system
-    return replace(system, pairs=pairs, operator=sp.vstack([p.operator for p in pairs]).tocsr())
+    operator = sp.vstack([p.operator for p in pairs]).tocsr()
+    return replace(system, pairs=pairs, operator=operator, step=partial(newton_step, system.stiffness, operator))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -11,29 +9,27 @@ from numpy.typing import NDArray
 from abut.cells import CELLS
 from abut.discretization.pairs import Pair
 from abut.interface.geometry import by_kind
-from abut.interface.recover import Averages
 
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 
 
 def oscillation(
-    pair: Pair, at: Averages, values: NDArray[np.float64], pressure: NDArray[np.float64], largest: float
+    pair: Pair, values: NDArray[np.float64], pressure: NDArray[np.float64], share: NDArray[np.float64], largest: float
 ) -> float:
     """Largest alternating part of the pressure inside the contact over the largest pressure, theory (P11).
 
-    values: (9 n_facets,) facet-wise coefficients of the multiplier; pressure: (n_points,) as reported; largest: of it.
-    Of discontinuous spaces, whose average may hide what alternates, also that of the facets' means."""
+    values: (9 n_facets,) facet-wise coefficients of the multiplier; pressure: (n_points,) as reported; share: (n_points,)
+    covered share of each point's support; largest: of the pressure.
+    Of discontinuous spaces, whose average may hide what alternates, also that of the facets' means and jumps."""
     nodes = Graph.of_nodes(pair)
-    worst = _alternating(nodes, pressure, _excluded(pair, at, nodes), largest)
+    worst = _alternating(nodes, pressure, _excluded(nodes, share), largest)
     if not pair.space.continuous:
         facets = Graph.of_facets(pair)
-        ones = pair.space.plain @ np.ones(len(pair))
-        area = pair.coupling.weight * ones
-        total = np.maximum(area.reshape(-1, 9).sum(axis=1), 1e-300)
-        mean = (area * values).reshape(-1, 9).sum(axis=1) / total
-        worst = max(worst, _edges(facets, mean, _closed_inside(facets, mean, largest), largest))
-        worst = max(worst, _jumps(pair, values, pressure, largest))
+        total = pair.coupling.weight.reshape(-1, 9).sum(axis=1)
+        load = (pair.coupling.weight * values).reshape(-1, 9).sum(axis=1)
+        mean = np.where(total > 0.0, load / np.where(total > 0.0, total, 1.0), 0.0)
+        worst = max(worst, _alternating(facets, mean, total <= 0.0, largest), _jumps(pair, values, pressure, largest))
     return worst
 
 
@@ -41,7 +37,8 @@ class Graph:
     """Who neighbours whom. matrix: (n, n) symmetric, ones; used: (n,) which take part; rim: (n,) on the surface's border."""
 
     def __init__(self, ends: NDArray[np.int64], n: int, rim: NDArray[np.bool_]) -> None:
-        matrix = sp.csr_matrix((np.ones(2 * len(ends)), (np.r_[ends[:, 0], ends[:, 1]], np.r_[ends[:, 1], ends[:, 0]])), (n, n))
+        i, j = np.r_[ends[:, 0], ends[:, 1]], np.r_[ends[:, 1], ends[:, 0]]
+        matrix = sp.csr_matrix((np.ones(len(i)), (i, j)), shape=(n, n))
         matrix.data[:] = 1.0
         self.matrix, self.rim = matrix, rim
         self.degree = np.asarray(matrix.sum(axis=1)).ravel()
@@ -86,11 +83,11 @@ class Graph:
         return Graph(edges.astype(np.int64), len(surface), np.zeros(len(surface), dtype=bool))
 
 
-def _excluded(pair: Pair, at: Averages, graph: Graph) -> NDArray[np.bool_]:
+def _excluded(graph: Graph, share: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Points at the contactor's rim or of partly covered facets, and their neighbours: the pressure of a body with corners
     is singular there, and no mesh shows that without a swing."""
     near = graph.rim.copy()
-    near[(at.share > 0.0) & (np.abs(at.share - 1.0) > WHOLE)] = True
+    near[(share > 0.0) & (np.abs(share - 1.0) > WHOLE)] = True
     return near | graph.any_of(near)
 
 
@@ -134,6 +131,3 @@ def _jumps(pair: Pair, values: NDArray[np.float64], pressure: NDArray[np.float64
     opened = np.bincount(at, own <= CLOSED * largest, minlength=len(pressure))
     inside = (opened == 0)[at]
     return float(np.abs(own - pressure[at])[inside].max(initial=0.0)) / largest
-
-
-__all__ = ["Graph", "oscillation"]

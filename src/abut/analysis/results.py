@@ -177,7 +177,7 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, at, beside, free),
+        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, share, beside, free),
     )
 
 

@@ -145,6 +145,14 @@ def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float6
     return result
 
 
+def at_points(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at the facets' nodes (n_facets, 9) that agree where facets meet, at the points, (n_points,), 0 elsewhere."""
+    result = np.zeros(len(surface.points))
+    used = surface.nodes >= 0
+    result[surface.nodes[used]] = values[used]
+    return result
+
+
 def corner_values(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Values at the facets' nodes (n_facets, 9) as coefficients of the corners' functions, (9 n_facets,)."""
     result = np.zeros(values.shape)

@@ -100,7 +100,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contactor": "surface that carries the pressure; better the softer one, and not the finer one",
         "target": "the surface opposite",
         "kind": "contact without friction, or tied in all directions",
-        "pressure": "pressure space; auto is continuous of the displacement's order, which is stable",
+        "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
         "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
         "method": "node-to-segment methods are there for comparison only",
