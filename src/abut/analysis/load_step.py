@@ -52,11 +52,12 @@ def load_step(
     inner = with_plain(model, held, system, begin.active) if begin.active.all() else system
     if inner is not system:
         renewed = solver.renew(inner)
-        outcome = solve_step(renewed.system, begin, stage, 1, observe)
+        outcome = solve_step(renewed.system, begin, stage, limit, observe, aim="this set")
         if outcome.converged:
             return Reached(outcome, renewed, inner, begin.active)
-        earlier = outcome.iterations
-    outcome = solve_step(solver.system, begin, stage, limit, observe, earlier, search=search)
+        earlier, opened = outcome.iterations, outcome.cycling
+        begin = replace(outcome.unknowns, active=begin.active & ~opened)
+    outcome = solve_step(solver.system, begin, stage, limit, observe, earlier, "set" if search else "solution")
     inside = outcome.unknowns.active
     inner = with_plain(model, held, system, inside) if spaces and outcome.converged else system
     if inner is system:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +36,9 @@ __all__ = ["Laws", "Outcome", "Rows", "Stage", "System", "Unknowns", "following"
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
 FINE = 1e-5  # the same once sets repeat
-FINEST = 1e-9  # the same at most, for the final set
-SEARCHED = 1e-6  # of equilibrium and of closed gaps, where only the set is wanted
+Aim = Literal["solution", "set", "this set"]
+STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
+SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
@@ -64,13 +66,14 @@ def solve_step(
     limit: int,
     observe: Callable[[Iteration], None],
     earlier: Sequence[Iteration] = (),
-    search: bool = False,
+    aim: Aim = "solution",
     settled: bool = False,
 ) -> Outcome:
     """Find the state at the end of a load step, from the state ``begin``.
 
-    earlier: iterations of the same step before; search: only the active set is wanted, of laws that have one;
-    settled: the set of ``begin`` is likely to be the final one."""
+    earlier: iterations of the same step before; aim: "set" where only the active set is wanted, of laws that have one, "this
+    set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settled: the set of ``begin`` is
+    likely to be the final one."""
     state = begin
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
     seen: set[bytes] = set()
@@ -80,8 +83,9 @@ def solve_step(
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     changed = np.zeros(len(state.active), dtype=bool)
     finest = ROUGH
-    likely = settled or state.active.all()  # closed all over may well be the answer
-    accuracy = 0.1 * system.accurate if likely else ROUGH
+    accuracy = STRIDE if settled else ROUGH
+    if state.active.all() and not settled:
+        accuracy = 0.1 * system.accurate  # closed all over may well be the answer
     for count in range(len(done) + 1, len(done) + limit + 1):
         clock = time.perf_counter()
         active = system.complete(state.active, system.gap(state, stage.weights)) | tied
@@ -97,12 +101,14 @@ def solve_step(
         history.append(active)
         if not changed.any():
             error = max(row.residual, closure)
-            if search and (system.exact or error <= SEARCHED):
+            if aim == "set" and (system.exact or error <= SEARCHED):
                 return Outcome(solved, tuple(done), True, changed, partial(active_laws, weights=stage.weights))
             if system.exact or error <= system.accurate:
                 return finish_smooth(system, solved, stage, limit, done, observe)
-            state, accuracy = solved, max(0.3 * (SEARCHED if search else system.accurate) / error, FINEST)
+            state, accuracy = solved, max(0.3 * (SEARCHED if aim == "set" else system.accurate) / error, STRIDE)
             continue
+        if aim == "this set":
+            break
         if system.predict is not None and not share and (count - len(earlier) <= EARLY or changed.sum() > FEW * active.sum()):
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:

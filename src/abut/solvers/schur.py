@@ -29,12 +29,14 @@ Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Interface:
-    """One pair (or one component of a tied one): its rows in the system, L + M / l^2 and M on its coefficients, kappa and
+    """One pair (or one component of a tied one): its rows in the system, L + M / l^2 and M of ordinary functions, what these
+    integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of ordinary functions M itself), kappa and
     1 / l^2."""
 
     rows: NDArray[np.int64]
     full: Any
     mass: Any
+    coupled: Any
     compliance: float
     lowest: float
 
@@ -59,13 +61,14 @@ def _interface(pair: Pair, own: NDArray[np.int64], rows: NDArray[np.int64]) -> I
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
         # No Laplacian across jumps: lumped, with the compliance of the shortest waves.
         mass = sp.diags(space.weight[own], format="csr")
-        return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
+        return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
     transfer, plain = space.transfer.tocsc()[:, own], space.plain.tocsc()[:, own]
-    # Of a dual space int phi_k N_l, which is diagonal: the same pressure field has the same coefficients either way.
-    mass = (transfer.T @ sp.block_diag(list(pair.coupling.mass), format="csr") @ plain).tocsr()
+    products = sp.block_diag(list(pair.coupling.mass), format="csr")
+    mass = (plain.T @ products @ plain).tocsr()
+    coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
     laplacian = (plain.T @ slopes @ plain).tocsr()
-    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, pair.compliance, lowest)
+    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest)
 
 
 def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Apply:
@@ -150,8 +153,8 @@ def _forward(part: Interface) -> Apply:
     solves = [spla.splu((part.full + s * part.mass).tocsc()).solve for s in shifts]
 
     def apply(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-        spread = part.mass @ pressure
-        return np.asarray(part.compliance * (part.mass @ sum(w * solve(spread) for w, solve in zip(weights, solves))))
+        spread = part.coupled @ pressure
+        return np.asarray(part.compliance * (part.coupled @ sum(w * solve(spread) for w, solve in zip(weights, solves))))
 
     return apply
 
@@ -166,10 +169,12 @@ def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
     full, mass = part.full[own][:, own], part.mass[own][:, own]
     shifts, weights = _resolvents(full, mass, part.lowest)
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
-    undo = spla.splu(mass.tocsc()).solve
+    undo = spla.splu(part.coupled[own][:, own].tocsc()).solve
+    ordinary = part.coupled is part.mass
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
-        rooted = sum(w * solve(gap) for w, solve in zip(weights, solves))
+        weighted = gap if ordinary else mass @ undo(gap)
+        rooted = sum(w * solve(weighted) for w, solve in zip(weights, solves))
         return np.asarray(undo(full @ rooted) / part.compliance)
 
     return apply
