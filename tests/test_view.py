@@ -98,7 +98,7 @@ def test_paraview_opens_every_file(cell: str, tmp_path: Path) -> None:
                 assert measure(grid) == pytest.approx(1.5, rel=1e-9)
             else:
                 assert found <= kinds  # the top and bottom of wedges are triangles only
-                assert set(points) == {"pressure", "gap", "displacement"}
+                assert set(points) == {"pressure", "multiplier", "gap", "displacement", "contact_force", "node"}
                 assert points["pressure"].max() == pytest.approx(step.contacts[0].max_pressure, rel=1e-12)
                 assert set(cells["side"]) == {0, 1}
                 assert measure(grid) == pytest.approx(1.5, rel=1e-9)

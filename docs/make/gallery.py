@@ -39,11 +39,12 @@ def solid_picture(
             plot.add_mesh(skin.extract_feature_edges(35), color="#5f7fa6", line_width=2)
     side = contact.extract_cells(contact["side"] == 0)
     side = side.extract_surface(nonlinear_subdivision=3, algorithm="dataset_surface")
-    side = side.threshold(0.01 * side["pressure"].max(), scalars="pressure", all_scalars=True)
+    side = side.threshold(0.01 * solution.contacts[0].max_pressure, scalars="pressure", all_scalars=True)
     look = np.subtract(view[0], view[1])
     side.points += 0.01 * side.length * look / np.linalg.norm(look)  # just in front of the body's own surface
     bar = {"title": title, "vertical": True, "position_x": 0.86, "position_y": 0.2, "height": 0.6, "color": "black"}
-    plot.add_mesh(side, scalars="pressure", cmap="inferno", lighting=False, scalar_bar_args=bar)
+    limits = (0.0, solution.contacts[0].max_pressure)
+    plot.add_mesh(side, scalars="pressure", cmap="inferno", clim=limits, lighting=False, scalar_bar_args=bar)
     plot.camera_position = view
     plot.camera.view_angle = angle
     plot.background_color = "white"

@@ -72,6 +72,40 @@ class Check:
 
 
 @dataclass(frozen=True)
+class PressureStatistics:
+    """The pressure of a contact over its loaded area, at points at least half of whose support is covered.
+
+    largest: of the reported pressure, force per area; place: (dim,) where, undeformed coordinates; partly_covered: the
+    largest at points with less of their support covered, which count nowhere else, NaN where none of these is loaded;
+    area: the loaded one, of multipliers in contact above a thousandth of the largest (2D: a length; axisymmetric: of the
+    whole turn); mean: normal force over it; percentile_95: the pressure that 95 % of it stays below. Where nothing is in
+    contact place, mean and percentile are NaN.
+    """
+
+    largest: float
+    place: NDArray[np.float64]
+    partly_covered: float
+    mean: float
+    percentile_95: float
+    area: float
+
+
+@dataclass(frozen=True)
+class Resultant:
+    """What the nodal forces of a contact on its contactor amount to, in undeformed coordinates.
+
+    force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the whole turn; moment: (1,) or (3,)
+    about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the force's line
+    of action nearest to the mean of the nodes (weighted by their forces along the resultant); on a plane contact it lies in
+    that plane, in axisymmetric models on the axis; NaN where forces cancel or there are none.
+    """
+
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+    centre: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class ContactResult:
     """One contact pair at the end of a step.
 
@@ -83,7 +117,10 @@ class ContactResult:
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
     target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
     covered_share: covered area over the contactor's area; checks: the certificate of this step.
-    For tied pairs ``pressure`` is the normal part of the tie traction (compression positive).
+    statistics: of the pressure over the loaded area; resultant: force, moment and centre of the contactor's nodal forces.
+    contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;
+    body_forces: body of the target -> (dim,) its part of their resultant.
+    For tied pairs ``pressure`` is the normal part of the tie traction (compression positive), the forces are all of it.
     """
 
     name: str
@@ -105,6 +142,11 @@ class ContactResult:
     covered_share: float
     target_pressure: NDArray[np.float64]
     checks: tuple[Check, ...]
+    statistics: PressureStatistics
+    resultant: Resultant
+    contactor_forces: NDArray[np.float64]
+    target_forces: NDArray[np.float64]
+    body_forces: Mapping[str, NDArray[np.float64]]
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ def to_pyvista(solution: Solution, step: int = -1) -> Any:
     grids ``contactor`` and ``target``); quadratic cells stay quadratic.
 
     step: index into ``solution.steps``. Points of bodies have displacement (n, 3), stress (n, 6: xx yy zz xy yz zx) and
-    von_mises; points of contacts pressure, gap (NaN where there is none) and displacement, cells status and side (as in
-    ``contact_*.vtu``). Raises InputError without PyVista, or where there is no such step.
+    von_mises; points of contacts pressure, multiplier and gap (NaN where there is none), displacement, contact_force (of the
+    mesh's point ``node``: points of that number repeat it), cells status and side (as in ``contact_*.vtu``). Raises InputError without PyVista, or where there is no such step.
     """
     pyvista = _pyvista()
     state = _step(solution, step)
@@ -60,7 +60,7 @@ def plot(
     plotter = pyvista.Plotter(off_screen=path is not None, window_size=(1280, 860))
     plotter.background_color = "white"
     on_contacts = what in ON_CONTACTS
-    largest = _largest(data, what)
+    largest = _largest(data, what, _step(solution, step))
     colours = {
         "scalars": FIELDS[what],
         "cmap": "inferno" if what == "pressure" else "viridis",
@@ -145,7 +145,10 @@ def _deformed(grid: Any, scale: float) -> Any:
     return surface
 
 
-def _largest(data: Any, what: str) -> float:
+def _largest(data: Any, what: str, step: Step) -> float:
+    """The upper end of the colours; of pressures that of nodes which the target covers well enough."""
+    if what == "pressure":
+        return max((contact.max_pressure for contact in step.contacts), default=0.0)
     grids = [sides["contactor"] for sides in data["contacts"]] if what in ON_CONTACTS else list(data["bodies"])
     largest = 0.0
     for grid in grids:

@@ -7,21 +7,29 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.certificate import certificate
+from abut.analysis.certificate import NOTHING, certificate
 from abut.analysis.faceting import free_axes
 from abut.analysis.loads import Loads
 from abut.analysis.overlap import overlaps
+from abut.analysis.statistics import (
+    forces_on_bodies,
+    loaded_part,
+    nodal_forces,
+    nodal_parts,
+    pressure_statistics,
+    resultant,
+)
 from abut.analysis.volume import Volume
 from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
 from abut.interface.recover import Averages, at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
+from abut.mesh.mesh import Mesh
 from abut.model import METHODS, Model
 from abut.solvers.newton import Outcome, Stage, System
 from abut.state import ContactResult, RigidResult, Step
 
-SUPPORTED = 0.5  # covered share of a point's support from which on its pressure counts for the largest
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
@@ -59,6 +67,7 @@ def step_result(
     )
     contacts = tuple(
         _contact(
+            model.mesh,
             pair,
             pressure,
             gap,
@@ -128,6 +137,7 @@ def _largest_pressures(n_pairs: int, steps: Sequence[Step]) -> list[float]:
 
 
 def _contact(
+    mesh: Mesh,
     pair: Pair,
     pressure: NDArray[np.float64],
     gap: NDArray[np.float64],
@@ -141,7 +151,8 @@ def _contact(
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
     values = _traction(pair, pressure) if pair.tied else pair.space.transfer @ pressure
-    force = np.asarray(coupling.contactor_part.T @ values)
+    own, other = nodal_forces(coupling, values, dim)
+    ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
     weight = pair.scale * pair.stiffness
     if pair.tied:
         normal = _compression(pair, values)
@@ -156,14 +167,19 @@ def _contact(
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
     nodal = raw if at is None else at_facet_nodes(pair.contactor, _reported(pair, at, normal, bool(active.all())))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(pair.contactor, at.share)
-    supported = nodal[share >= SUPPORTED] if (share >= SUPPORTED).any() else nodal
+    nothing = NOTHING * max(reference, beside)  # what is left after unloading
+    load, loaded = (nodal_parts(coupling, at, field) for field in (normal, loaded_part(pair, pressure, active, normal)))
+    statistics = pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing)
+    amount = resultant(
+        mesh.points[ids], own[ids], mesh.axisymmetric, bool(np.abs(values).max(initial=0.0) <= nothing)
+    )
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
         contactor=pair.contactor,
         target=pair.target,
-        force=force.reshape(-1, dim).sum(axis=0),
-        max_pressure=float(np.nanmax(supported)),
+        force=amount.force,
+        max_pressure=statistics.largest,
         area=area,
         max_penetration=max(depth, 0.0),
         active=int(active.sum()),
@@ -178,6 +194,11 @@ def _contact(
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
         checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, share, beside, free),
+        statistics=statistics,
+        resultant=amount,
+        contactor_forces=own[ids],
+        target_forces=other[target_ids],
+        body_forces=forces_on_bodies(pair.target, mesh.bodies, other[target_ids]),
     )
 
 

@@ -223,6 +223,7 @@ def _failure(solution: Solution, directory: Path) -> str:
 def _print_result(solution: Solution, directory: Path) -> None:
     from abut.analysis.cures import cure
     from abut.analysis.remedies import remedies
+    from abut.report.contact_words import lines
 
     for contact in solution.contacts:
         force = ", ".join(f"{value:.6g}" for value in contact.force)
@@ -230,6 +231,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
             f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
             f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
+        for line in lines(contact):
+            print(f"  {line}")
     for result in solution.probes:
         print(f"probe '{result.name}': {_read(result)}")
     print("certificate   value      limit")

@@ -48,10 +48,13 @@ def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -
 
 
 def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:
-    """Facets of a contact's sides with pressure, gap, displacement at points; status and side at cells.
+    """Facets of a contact's sides with pressure, multiplier, gap, displacement, contact_force, node at points; status and side
+    at cells.
 
-    Each facet has points of its own, so that the pressure may jump between facets.
-    status: 0 not covered by the target, 1 open, 2 closed; gap is NaN on the target, and where it is not covered.
+    Each facet has points of its own, so that the multiplier may jump between facets. contact_force (n, 3) is the force at
+    the mesh's point ``node``, which all points of that number repeat: over the nodes of a side, each taken once, it adds up
+    to the resultant. status: 0 not covered by the target, 1 open, 2 closed; gap is NaN on the target, and where it is not
+    covered; multiplier is NaN on the target.
     """
     first = 0
     blocks, points, data, cells = [], [], [], []
@@ -81,6 +84,8 @@ def _side(
     """The facets of one side by type: kind, points, arrays over points, arrays over cells."""
     surface: Surface = contact.contactor if side == CONTACTOR else contact.target
     pressure = contact.pressure if side == CONTACTOR else contact.target_pressure
+    forces = vectors(contact.contactor_forces if side == CONTACTOR else contact.target_forces)
+    ids = surface.node_ids
     closed = np.nan_to_num(pressure).max(axis=1) > TOUCHING * np.nan_to_num(contact.pressure).max(initial=0.0)
     unsettled = np.zeros(len(surface), dtype=np.int32)
     if side == CONTACTOR:
@@ -92,10 +97,14 @@ def _side(
         kind = BY_CODE[code]
         own = np.flatnonzero(surface.kinds == code)
         nodes = surface.nodes[own, : kind.nodes].ravel()
+        nothing = np.full(len(nodes), np.nan)
         values = {
             "pressure": np.nan_to_num(pressure[own, : kind.nodes]).ravel(),
-            "gap": contact.gap[own, : kind.nodes].ravel() if side == CONTACTOR else np.full(len(nodes), np.nan),
+            "multiplier": contact.multiplier[own, : kind.nodes].ravel() if side == CONTACTOR else nothing,
+            "gap": contact.gap[own, : kind.nodes].ravel() if side == CONTACTOR else nothing,
             "displacement": vectors(step.displacement[nodes]),
+            "contact_force": forces[np.searchsorted(ids, nodes)],
+            "node": nodes.astype(np.int32),
         }
         cells = {
             "status": status[own], "side": np.full(len(own), side, dtype=np.int32), "unsettled": unsettled[own],

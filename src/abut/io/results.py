@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
 from abut.io import probes
 from abut.io.atomic import make_directory, write_text
+from abut.io.contact_rows import OF_CONTACT, contact_summary, more_columns, more_values, number
 from abut.io.fields import WriteFields, found_name, is_whole, write_fields
 from abut.io.grids import contact_grid
 from abut.io.versions import versions
@@ -86,7 +86,7 @@ def summary(solution: Solution) -> dict[str, Any]:
                 {
                     "contact": check.contact,
                     "name": check.name,
-                    "value": _number(check.value),
+                    "value": number(check.value),
                     "limit": check.limit,
                     "passed": check.passed,
                     "meaning": check.meaning,
@@ -134,21 +134,7 @@ def _step_summary(step: Step) -> dict[str, Any]:
         "load": step.load.tolist(),
         "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
-        "contacts": [
-            {
-                "name": c.name,
-                "force": c.force.tolist(),
-                "max_pressure": _number(c.max_pressure),
-                "area": c.area,
-                "max_penetration": c.max_penetration,
-                "active": c.active,
-                "multipliers": c.multipliers,
-                "removed": c.removed,
-                "segments": c.segments,
-                "covered_share": c.covered_share,
-            }
-            for c in step.contacts
-        ],
+        "contacts": [contact_summary(c) for c in step.contacts],
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
@@ -166,27 +152,23 @@ def _step_summary(step: Step) -> dict[str, Any]:
     }
 
 
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def _history(solution: Solution) -> str:
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
     force, moved = [f"force_{a}" for a in axes], [f"displacement_{a}" for a in axes]
     rotation, moment = [f"rotation_{a}" for a in turns], [f"moment_{a}" for a in turns]
-    of_contact = ["max_pressure", "area", "max_penetration", "active"]
-    head = ["step", "factor", "converged", "contact", *force, *of_contact]
+    head = ["step", "factor", "converged", "contact", *force, *OF_CONTACT]
     if solution.model.rigid:
         head += ["rigid", *moved, *rotation, *moment]
     head += [name for name in probes.history_columns(solution.steps) if name not in head]
+    head += more_columns(dim)
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()
     for step in solution.steps:
         first = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
         for c in step.contacts:
-            values = {name: getattr(c, name) for name in of_contact}
+            values = {name: getattr(c, name) for name in OF_CONTACT} | more_values(c)
             table.writerow({**first, "contact": c.name, **dict(zip(force, c.force.tolist())), **values})
         for name, body in step.rigid.items():
             row = dict(zip([*force, *moved], [*body.force.tolist(), *body.displacement.tolist()]))

@@ -51,10 +51,12 @@ def pressure_lines(contact: ContactResult) -> tuple[Line, ...]:
     None where nothing is pressed."""
     own = patch(contact.contactor, 8 if contact.contactor.dim == 2 else 4)
     pressure, gap = own.nodal(contact.pressure), own.nodal(contact.gap)
-    if not len(own) or not np.nanmax(pressure, initial=0.0) > 0.0:
+    if not len(own) or not np.isfinite(contact.statistics.place).all():
         return ()
     x, size = own.points, float(np.ptp(own.points, axis=0).max())
-    top = int(np.nanargmax(pressure))
+    away = np.linalg.norm(x - contact.statistics.place, axis=1)
+    here = np.flatnonzero(away <= away.min() + 1e-9 * size)
+    top = int(here[np.argmax(pressure[here])])
     if x.shape[1] == 2:
         cuts = [("along the contactor", own.cells, np.stack([np.arange(len(x))] * 2, axis=1), np.zeros(len(x)))]
     else:

@@ -17,6 +17,7 @@ import abut
 from abut.analysis.cures import cure
 from abut.analysis.remedies import remedies, unsettled
 from abut.io.versions import versions
+from abut.report.contact_words import centre, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.lines import Line, pressure_lines
 from abut.report.origin import Origin, comparison, ellipse
@@ -146,7 +147,7 @@ def _contacts(solution: Solution) -> str:
     rows = [
         [
             c.name,
-            _vector(c.force),
+            vector(c.force),
             number(c.max_pressure),
             number(c.area),
             number(c.max_penetration),
@@ -156,12 +157,28 @@ def _contacts(solution: Solution) -> str:
         for c in solution.contacts
     ]
     head = ["contact", "force on the contactor", "largest pressure", "area", "penetration", "active", "covered"]
-    return _table(head, rows, "At the end of the last step") if rows else ""
+    return _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
+
+
+def _statistics(solution: Solution) -> str:
+    """Where the pressure is, and where the resultant acts; columns that say something only."""
+    columns = {
+        "contact": [c.name for c in solution.contacts],
+        "largest pressure at": [place(c) for c in solution.contacts],
+        "mean": [number(c.statistics.mean) for c in solution.contacts],
+        "95th percentile": [number(c.statistics.percentile_95) for c in solution.contacts],
+        "largest where less than half covered": [number(c.statistics.partly_covered) for c in solution.contacts],
+        "centre of pressure": [centre(c) for c in solution.contacts],
+        "moment about the origin": [moment(c) for c in solution.contacts],
+        "force on bodies of the target": [on_bodies(c) for c in solution.contacts],
+    }
+    shown = {head: cells for head, cells in columns.items() if not set(cells) <= {"none", ""}}
+    return _table(list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the contactor")
 
 
 def _rigid(solution: Solution) -> str:
     rows = [
-        [name, *(_vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
+        [name, *(vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
         for name, r in solution.steps[-1].rigid.items()
     ]
     head = ["rigid body", "displacement", "rotation", "force that moves it", "moment about its reference"]
@@ -177,10 +194,6 @@ def _probes(solution: Solution) -> str:
         f"<section><h2>Probes</h2>{_table(table['head'], table['rows'], table['title'])}"
         '<div class="plots" id="probes"></div></section>'
     )
-
-
-def _vector(values: Iterable[float]) -> str:
-    return "(" + ", ".join(number(value) for value in values) + ")"
 
 
 def _trouble(solution: Solution) -> str:
@@ -225,11 +238,6 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]], title: str = "", 
     names = "".join(f"<th>{text(name)}</th>" for name in head)
     heading = f"<h3>{escape(title)}</h3>" if title else ""
     return f"{heading}<div class=wide><table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table></div>"
-
-
-def number(value: float) -> str:
-    """A number as a person reads it: six digits at most."""
-    return f"{value:.6g}" if math.isfinite(value) else "none"
 
 
 def _plain(values: Iterable[float] | NDArray[np.float64]) -> list[float | None]:

@@ -65,6 +65,7 @@ def scene(solution: Solution, budget: int = BUDGET) -> Scene:
         "bodies": [_body(mesh, name, s) for name, s in skins.items()],
         "contacts": [_side(mesh, contacts[c], role, p) for (c, role), p in zip(sides, patches)],
         "steps": [_fields(step, list(skins.values()), sides, patches) for step in steps],
+        "largest": {"pressure": max((c.max_pressure for step in steps for c in step.contacts), default=0.0)},
     }
     return Scene(data, tuple(reduced))
 

@@ -69,7 +69,7 @@ class View {
     let weight = 0;
     for (const part of this.sides.filter((s) => s.item.role === "contactor")) {
       const p = part.field(last, "pressure"), normals = unpack(part.item.normals);
-      const top = p.reduce((a, b) => Math.max(a, b || 0), 0);
+      const top = Math.min(p.reduce((a, b) => Math.max(a, b || 0), 0), this.data.largest.pressure);
       for (let i = 0; i < p.length; i++) {
         if (!(p[i] > 0.01 * top)) continue;
         const x = Array.from(part.base.subarray(3 * i, 3 * i + 3));
@@ -157,6 +157,8 @@ class View {
     }
     if (!(high >= low)) [low, high] = [0, 1];
     if (name === "pressure") low = 0;
+    const counted = this.data.largest[name]; // nodes hardly covered do not set the scale
+    if (counted > 0) high = Math.min(high, counted);
     if (name === "gap" && high < 1e-9 * this.size) [low, high] = [0, 1e-9 * this.size]; // rounding
     return (this.extents[name] = [low, high]);
   }
