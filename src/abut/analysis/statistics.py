@@ -20,7 +20,9 @@ from abut.mesh.surface import Surface
 from abut.state import PressureStatistics, Resultant
 
 SUPPORTED = 0.5  # covered share of a point's support from which on its pressure counts
-LOADED = 1e-3  # multiplier over the largest above which it counts as loaded: the constraint function is never quite zero
+LOADED = (
+    1e-3  # multiplier over the largest above which it counts as loaded: the constraint function is never quite zero
+)
 SAME = 1e-9  # of the largest: pressures that differ by less are the same
 NONE = 1e-9  # shape function that is zero
 NO_RESULTANT = 1e-9  # resultant over the sum of the nodal forces' sizes, below which it has no line of action
@@ -73,8 +75,8 @@ def pressure_statistics(
 ) -> PressureStatistics:
     """Largest, mean and 95th percentile of the pressure over the loaded area.
 
-    pressure: (n_facets, 9) at the facets' own nodes, NaN where padded; load, area: (n_facets, 9) normal force and loaded area
-    that each of them stands for; share: (n_facets, 9) covered share of their supports, NaN where padded; nothing: largest
+    pressure: (n_facets, 9) at the facets' own nodes, NaN where padded; load, area: (n_facets, 9) normal force and loaded
+    area that each of them stands for; share: (n_facets, 9) covered share of their supports, NaN where padded; nothing: largest
     pressure that is taken for none. The mean is the force over the area, at most the largest. The percentile is that of
     the pressures at nodes, each at the middle of its area in their order, linear between them.
     """

@@ -48,8 +48,8 @@ def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -
 
 
 def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:
-    """Facets of a contact's sides with pressure, multiplier, gap, displacement, contact_force, node at points; status and side
-    at cells.
+    """Facets of a contact's sides with pressure, multiplier, gap, displacement, contact_force, node at points; status, side
+    and unsettled at cells.
 
     Each facet has points of its own, so that the multiplier may jump between facets. contact_force (n, 3) is the force at
     the mesh's point ``node``, which all points of that number repeat: over the nodes of a side, each taken once, it adds up

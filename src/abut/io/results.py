@@ -64,8 +64,8 @@ def write_index(folder: Path, solution: Solution) -> None:
     for contact in solution.contacts:
         files = [_contact_file(contact.name, step) for step in solution.steps]
         _write_collection(folder, f"contact_{label(contact.name)}", solution.steps, files)
-    for number, probe in enumerate(solution.model.probes):
-        write_text(folder / probes.table_name(probe.name), probes.table(solution.steps, number))
+    for index, probe in enumerate(solution.model.probes):
+        write_text(folder / probes.table_name(probe.name), probes.table(solution.steps, index))
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")

@@ -173,7 +173,9 @@ def _statistics(solution: Solution) -> str:
         "force on bodies of the target": [on_bodies(c) for c in solution.contacts],
     }
     shown = {head: cells for head, cells in columns.items() if not set(cells) <= {"none", ""}}
-    return _table(list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the contactor")
+    return _table(
+        list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the contactor"
+    )
 
 
 def _rigid(solution: Solution) -> str:
