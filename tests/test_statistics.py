@@ -232,7 +232,7 @@ def test_a_node_over_nothing_sets_no_scale(tmp_path: Path) -> None:
     assert np.nanmax(own.pressure) == s.partly_covered
     assert own.max_pressure == s.largest == np.nanmax(own.pressure[own.share >= 0.5])
     assert s.place[0] <= 0.5
-    assert s.percentile_95 <= s.largest and s.mean <= s.largest
+    assert max(s.percentile_95, s.mean) <= s.largest
     assert scene(solution).data["largest"] == {"pressure": own.max_pressure}
     summary = contact_summary(own)
     assert summary["max_pressure_partly_covered"] == s.partly_covered
@@ -335,8 +335,9 @@ def test_files_and_the_end_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixtur
         rows = list(reader)
     head = ["step", "factor", "converged", "contact", "force_x", "force_y", "force_z"]
     head += ["max_pressure", "area", "max_penetration", "active"]
-    assert reader.fieldnames is not None and reader.fieldnames[: len(head)] == head
+    assert (reader.fieldnames or [])[: len(head)] == head
     assert float(rows[-1]["centre_z"]) == pytest.approx(10.0)
     assert float(rows[-1]["contact_moment_x"]) == pytest.approx(own.resultant.moment[0], rel=1e-9)
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "centre of pressure" in page and "(2, 2, 10)" in page
+    assert "centre of pressure" in page
+    assert "(2, 2, 10)" in page

@@ -76,9 +76,9 @@ def pressure_statistics(
     """Largest, mean and 95th percentile of the pressure over the loaded area.
 
     pressure: (n_facets, 9) at the facets' own nodes, NaN where padded; load, area: (n_facets, 9) normal force and loaded
-    area that each of them stands for; share: (n_facets, 9) covered share of their supports, NaN where padded; nothing: largest
-    pressure that is taken for none. The mean is the force over the area, at most the largest. The percentile is that of
-    the pressures at nodes, each at the middle of its area in their order, linear between them.
+    area that each of them stands for; share: (n_facets, 9) covered share of their supports, NaN where padded; nothing:
+    largest pressure that is taken for none. The mean is the force over the area, at most the largest. The percentile is
+    that of the pressures at nodes, each at the middle of its area in their order, linear between them.
     """
     counted = supported(surface, share)
     partly = (share > 0.0) & ~counted

@@ -12,11 +12,6 @@ from abut.state import ContactResult
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
-    "max_pressure",
-    "area",
-    "max_penetration",
-    "active",
-)  # after the force; the columns of ``more_columns`` come last
 
 
 def contact_summary(contact: ContactResult) -> dict[str, Any]:
