@@ -323,6 +323,8 @@ def test_files_and_the_end_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixtur
     (own,) = abut.solve(load_job(job).model).contacts
     assert all(f"  {line}\n" in said for line in lines(own))
     assert f"mean {own.statistics.mean:.6g}" in said
+    tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")
+    assert all(f"  {line}\n" in tour for line in lines(own))
     (folder,) = (path.parent for path in tmp_path.rglob("summary.json"))
     (entry,) = json.loads((folder / "summary.json").read_text())["steps"][-1]["contacts"]
     assert entry["mean_pressure"] == pytest.approx(own.statistics.mean, rel=1e-9)
