@@ -301,7 +301,39 @@ def test_wrench_in_space() -> None:
         assert result.centre - shift == pytest.approx(resultant(x, f).centre, abs=1e-12)
     plane = resultant(x, f * [0.0, 0.0, 1.0])
     assert plane.centre == pytest.approx([4.0 / 4.5, 1.5 / 4.5, 0.0], abs=1e-12)
-    assert np.isnan(resultant(x[:2], np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])).centre).all()
+    assert np.isnan(resultant(x[:2], np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1e-14 - 1.0]])).centre).all()
+
+
+def test_centre_on_a_curve() -> None:
+    """Along the line of action it is as high as the mean of the nodes, by their forces; nodes without any do not count."""
+    x = np.array([[-1.0, 1.0], [1.0, 1.0], [0.0, 0.0], [0.0, 9.0]])
+    f = np.array([[0.5, 1.0], [-0.5, 1.0], [0.0, 2.0], [0.0, 0.0]])
+    assert resultant(x, f).centre == pytest.approx([0.0, 0.5], abs=1e-12)
+    assert np.isnan(resultant(x, f, nothing=True).centre).all()
+
+
+def test_what_unloading_leaves_is_nothing() -> None:
+    """Pressed, then moved apart by less than rounding: pressures below a millionth of those before are none."""
+    lower, upper = make.rectangle([0, 1], [0, 1], cells=[3, 2]), make.rectangle([0, 1], [1, 2], cells=[2, 2])
+    soft = abut.LinearElastic(1000.0, 0.0)
+    released = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 1e-9)))
+    model = abut.Model(
+        make.join({"lower": lower, "upper": upper}),
+        [abut.Solid("lower", soft), abut.Solid("upper", soft)],
+        [
+            abut.Support("lower.bottom", x=0, y=0),
+            abut.Support("upper.top", x=0, y=-0.01, amplitude=released),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        plane="strain",
+        solve=abut.SolveOptions(steps=2),
+    )
+    pressed, left = (step.contacts[0] for step in abut.solve(model).steps)
+    assert pressed.statistics.mean == pytest.approx(5.0, rel=1e-9)
+    assert 0.0 < left.max_pressure < 1e-8
+    assert np.isnan(left.statistics.mean)
+    assert np.isnan(left.statistics.place).all()
+    assert np.isnan(left.resultant.centre).all()
 
 
 def test_quantile() -> None:
