@@ -11,7 +11,7 @@ import numpy as np
 from abut import checks
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.io.grids import CONTACTOR, TARGET, Grid, contact_grid, point_fields, vectors
+from abut.io.grids import CONTACTOR, TARGET, Grid, contact_grid, largest_pressure, point_fields, vectors
 from abut.mesh.mesh import Mesh
 from abut.state import Solution, Step
 
@@ -149,7 +149,7 @@ def _deformed(grid: Any, scale: float) -> Any:
 def _largest(data: Any, what: str, step: Step) -> float:
     """The upper end of the colours; of pressures that of nodes which the target covers well enough."""
     if what == "pressure":
-        return max((contact.max_pressure for contact in step.contacts), default=0.0)
+        return largest_pressure([step])
     grids = [sides["contactor"] for sides in data["contacts"]] if what in ON_CONTACTS else list(data["bodies"])
     largest = 0.0
     for grid in grids:

@@ -170,9 +170,7 @@ def _contact(
     nothing = NOTHING * max(reference, beside)  # what is left after unloading
     load, loaded = (nodal_parts(coupling, at, field) for field in (normal, loaded_part(pair, pressure, active, normal)))
     statistics = pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing)
-    amount = resultant(
-        mesh.points[ids], own[ids], mesh.axisymmetric, bool(np.abs(values).max(initial=0.0) <= nothing)
-    )
+    amount = resultant(mesh.points[ids], own[ids], mesh.axisymmetric, bool(np.abs(values).max(initial=0.0) <= nothing))
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,

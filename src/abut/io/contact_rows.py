@@ -32,10 +32,10 @@ def contact_summary(contact: ContactResult) -> dict[str, Any]:
         "max_pressure_partly_covered": number(pressure.partly_covered),
         "mean_pressure": number(pressure.mean),
         "pressure_percentile_95": number(pressure.percentile_95),
-        "loaded_area": pressure.area,
+        "loaded_area": number(pressure.area),
         "centre_of_pressure": vector(contact.resultant.centre),
-        "moment": contact.resultant.moment.tolist(),
-        "target_forces": {body: force.tolist() for body, force in contact.body_forces.items()},
+        "moment": vector(contact.resultant.moment),
+        "target_forces": {body: vector(force) for body, force in contact.body_forces.items()},
     }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,6 +73,12 @@ def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (C
         {k: np.concatenate([d[k] for d in data]) for k in data[0]},
         {k: np.concatenate([c[k] for c in cells]) for k in cells[0]},
     )
+
+
+def largest_pressure(steps: Sequence[Step]) -> float:
+    """Of all contacts over some steps, at nodes that count; 0 where nothing is pressed: the end of the scale of colours."""
+    found = [c.max_pressure for step in steps for c in step.contacts]
+    return max((value for value in found if 0.0 < value < math.inf), default=0.0)
 
 
 def vectors(values: NDArray[np.float64]) -> NDArray[np.float64]:

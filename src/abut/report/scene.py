@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.io.grids import point_fields, vectors
+from abut.io.grids import largest_pressure, point_fields, vectors
 from abut.mesh.mesh import Mesh
 from abut.report.skins import Patch, Skin, patch, skin
 from abut.state import ContactResult, Solution, Step
@@ -65,7 +65,7 @@ def scene(solution: Solution, budget: int = BUDGET) -> Scene:
         "bodies": [_body(mesh, name, s) for name, s in skins.items()],
         "contacts": [_side(mesh, contacts[c], role, p) for (c, role), p in zip(sides, patches)],
         "steps": [_fields(step, list(skins.values()), sides, patches) for step in steps],
-        "largest": {"pressure": max((c.max_pressure for step in steps for c in step.contacts), default=0.0)},
+        "largest": {"pressure": largest_pressure(steps)},
     }
     return Scene(data, tuple(reduced))
 
