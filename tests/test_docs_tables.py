@@ -53,22 +53,29 @@ def test_summary_follows_from_the_rows(dim: int) -> None:
         *((cell, "P2", "matching", 8) for cell in ("quad8", "quad9", "tri6")),
         *((cell, pressure, "matching", 2) for cell in constants.SOLID for pressure in ("P0", "P1", "nodes, one pass")),
         *((cell, "P2", "half", 2) for cell in ("hex20", "hex27", "tet10")),
+        *((cell, "dual-P1", "three quarters", 16) for cell in ("quad8", "tri6")),
+        ("hex20", "dual-P1", "half", 4),
     ],
 )
 def test_inf_sup_constants(cell: str, pressure: str, target: str, n: int) -> None:
-    level = inf_sup(constants.model(cell, pressure, n, int(n * constants.TARGETS[target]))).levels[0]
+    level = constants.measure(cell, pressure, [(n, int(n * constants.TARGETS[target]))]).levels[0]
     printed = BETAS[cell, pressure, target][str(n)]
     assert agrees(printed, level.trace), (printed, level.trace)
 
 
 @pytest.mark.parametrize(
     ("cell", "pressure", "target"),
-    [("quad4", "P0", "matching"), ("quad4", "P1", "half"), ("quad4", "nodes, two passes", "half")],
+    [
+        ("quad4", "P0", "matching"),
+        ("quad4", "P1", "half"),
+        ("quad8", "dual-P1", "half"),
+        ("quad4", "nodes, two passes", "half"),
+    ],
 )
 def test_inf_sup_rows(cell: str, pressure: str, target: str) -> None:
     """Whole rows, with the verdict."""
-    models = [constants.model(cell, pressure, n, m) for n, m in constants.sizes(cell, target)]
-    computed = dict(zip(constants.header(2), constants.row(cell, pressure, target, inf_sup(models))))
+    result = constants.measure(cell, pressure, constants.sizes(cell, target))
+    computed = dict(zip(constants.header(2), constants.row(cell, pressure, target, result)))
     assert computed == BETAS[cell, pressure, target]
 
 

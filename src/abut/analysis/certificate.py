@@ -9,7 +9,7 @@ from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.resolution import resolution
 from abut.discretization.pairs import Pair
-from abut.interface.geometry import full_moments
+from abut.interface.geometry import full_moments, split_at_creases
 from abut.interface.recover import at_points
 from abut.state import Check
 
@@ -69,8 +69,9 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
-        pressure = at_points(pair.contactor, nodal)
-        support = np.ones(len(pressure)) if share is None else at_points(pair.contactor, share)
+        smooth, _ = split_at_creases(pair.contactor)
+        pressure = at_points(smooth, nodal)
+        support = np.ones(len(pressure)) if share is None else at_points(smooth, share)
         alternating = oscillation(pair, values, pressure, support, largest) * largest / matters
         add("oscillation", alternating, OSCILLATION,
             "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip

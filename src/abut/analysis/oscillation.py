@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS
 from abut.discretization.pairs import Pair
-from abut.interface.geometry import by_kind
+from abut.interface.geometry import by_kind, split_at_creases
+from abut.mesh.surface import Surface
 
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
@@ -22,14 +23,17 @@ def oscillation(
     values: (9 n_facets,) facet-wise coefficients of the multiplier; pressure: (n_points,) as reported; share: (n_points,)
     covered share of each point's support; largest: of the pressure.
     Of discontinuous spaces, whose average may hide what alternates, also that of the facets' means and jumps."""
-    nodes = Graph.of_nodes(pair)
+    surface, _ = split_at_creases(pair.contactor)
+    nodes = Graph.of_nodes(surface)
     worst = _alternating(nodes, pressure, _excluded(nodes, share), largest)
     if not pair.space.continuous:
-        facets = Graph.of_facets(pair)
+        facets = Graph.of_facets(surface)
         total = pair.coupling.weight.reshape(-1, 9).sum(axis=1)
         load = (pair.coupling.weight * values).reshape(-1, 9).sum(axis=1)
         mean = np.where(total > 0.0, load / np.where(total > 0.0, total, 1.0), 0.0)
-        worst = max(worst, _alternating(facets, mean, total <= 0.0, largest), _jumps(pair, values, pressure, largest))
+        worst = max(
+            worst, _alternating(facets, mean, total <= 0.0, largest), _jumps(pair, surface, values, pressure, largest)
+        )
     return worst
 
 
@@ -55,9 +59,9 @@ class Graph:
         return np.asarray(self.matrix @ flags.astype(float) > 0.0)
 
     @staticmethod
-    def of_nodes(pair: Pair) -> Graph:
+    def of_nodes(surface: Surface) -> Graph:
         """Corner points along facet edges; the rim belongs to one facet only."""
-        surface, n = pair.contactor, len(pair.contactor.points)
+        n = len(surface.points)
         ends = []
         for kind, facets in by_kind(surface):
             corners, nodes = CELLS[kind].corners, surface.nodes[facets].astype(np.int64)
@@ -72,9 +76,8 @@ class Graph:
         return Graph(edges, n, rim)
 
     @staticmethod
-    def of_facets(pair: Pair) -> Graph:
+    def of_facets(surface: Surface) -> Graph:
         """Facets that share an edge (2D: a point)."""
-        surface = pair.contactor
         facet, local = np.nonzero(surface.nodes >= 0)
         shape = (len(surface), len(surface.points))
         has = sp.csr_matrix((np.ones(len(facet)), (facet, surface.nodes[facet, local])), shape=shape)
@@ -115,11 +118,12 @@ def _alternating(graph: Graph, pressure: NDArray[np.float64], excluded: NDArray[
     return max(ripple, alone, missing)
 
 
-def _jumps(pair: Pair, values: NDArray[np.float64], pressure: NDArray[np.float64], largest: float) -> float:
+def _jumps(
+    pair: Pair, surface: Surface, values: NDArray[np.float64], pressure: NDArray[np.float64], largest: float
+) -> float:
     """Largest distance of a facet's own value at a corner from the reported one, where all facets there are closed."""
     if pair.space.name == "P0":
         return 0.0
-    surface = pair.contactor
     facet, local, node = [], [], []
     for kind, facets in by_kind(surface):
         n = CELLS[kind].corners

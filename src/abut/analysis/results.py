@@ -165,8 +165,8 @@ def _contact(
     covered = coupling.segments > 0
     raw = facet_node_values(pair.contactor, degree, normal)
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
-    nodal = raw if at is None else at_facet_nodes(pair.contactor, _reported(pair, at, normal, bool(active.all())))
-    share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(pair.contactor, at.share)
+    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(pair, at, normal, bool(active.all())))
+    share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     nothing = NOTHING * max(reference, beside)  # what is left after unloading
     load, loaded = (nodal_parts(coupling, at, field) for field in (normal, loaded_part(pair, pressure, active, normal)))
     statistics = pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing)
@@ -201,12 +201,12 @@ def _contact(
 
 
 def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: bool) -> NDArray[np.float64]:
-    """The pressure at the contactor's points, (n_points,): averages of the facet-wise coefficients ``values``, theory (P10);
-    sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
+    """The pressure at the points of ``at.surface``, (n_points,): averages of the facet-wise coefficients ``values``, theory
+    (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
     average = at.of(values)
     if not (pair.tied or (closed and pair.space.continuous and pair.space.ordinary)):
         return average
-    sharp = at.sharpened(average, pair.contactor.points)
+    sharp = at.sharpened(average, at.surface.points)
     return average if not pair.tied and sharp.min() < 0.0 else sharp
 
 

@@ -14,7 +14,7 @@ from abut.discretization.supports import Supports
 from abut.errors import InputError
 from abut.interface.clearance import of_corners, partly_adjusted
 from abut.interface.coupling import Couple, Coupling, couple, default_reach, surface_degree
-from abut.interface.geometry import facet_sizes, full_moments, nodal_normals
+from abut.interface.geometry import facet_sizes, full_moments, nodal_normals, split_at_creases
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import (
     DUAL,
@@ -33,6 +33,7 @@ HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which 
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
+SAME_DIRECTION = 0.3  # sine of the angle between normals at a crease below which their sides have one pressure
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
@@ -192,7 +193,7 @@ def _couple(
         )  # fmt: skip
         coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
         coupling = of_corners(contactor, coupling) if of_dual else coupling
-        space = pressure_space(name, contactor, coupling) if coupling.segments.any() else None
+        space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():
         raise InputError(
             f"contact '{contact.name}': no facet of '{contact.contactor}' faces '{contact.target}' within reach; check the "
@@ -258,7 +259,9 @@ def _tied(
     weight = np.concatenate(weights)
     transfer = sp.hstack([t for t, _ in spaces]).tocsr()
     component_of = np.concatenate([np.full(t.shape[1], a) for t, a in spaces])
-    vector_space = PressureSpace(space.name, space.degree, transfer, transfer, weight, component_of, space.removed)
+    vector_space = PressureSpace(
+        space.name, space.degree, transfer, transfer, weight, component_of, component_of, space.removed
+    )
     return Pair(
         contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
         prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
@@ -268,18 +271,45 @@ def _tied(
 
 def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
     """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
-    theory (P7) falls from 0.8 to 0.03."""
+    theory (P7) falls from 0.8 to 0.03. Those of the sides of a crease whose normals supports leave one direction for become
+    one."""
     sits = np.flatnonzero(space.node >= 0)
     if not len(sits):
         return space
-    normals = nodal_normals(contactor)
-    at = np.zeros_like(contactor.points)
-    used = contactor.nodes >= 0
-    at[contactor.nodes[used]] = normals[used]
-    share = np.zeros(len(space))
-    share[sits] = held.held_share(space.node[sits], at[space.node[sits]])
-    keep = share < HELD
-    return reduce(space, coupling, keep) if keep.any() else space
+    split, _ = split_at_creases(contactor)
+    at = np.zeros_like(split.points)
+    used = split.nodes >= 0
+    at[split.nodes[used]] = nodal_normals(contactor)[used]
+    normals = at[space.side[sits]]
+    keep = np.ones(len(space), dtype=bool)
+    keep[sits] = held.held_share(space.node[sits], normals) < HELD
+    if not keep.any():
+        return space
+    nodes, count = np.unique(space.node[sits[keep[sits]]], return_counts=True)
+    several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
+    onto = np.full(len(space), -1)
+    if len(several):
+        first = _repeated(space.node[several], held.can_move(space.node[several], at[space.side[several]]))
+        onto[several[first >= 0]] = several[first[first >= 0]]
+    return reduce(space, coupling, keep & (onto < 0), onto=onto)
+
+
+def _repeated(nodes: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Of directions (n, dim) at nodes (n,), the first one at the same node where they add nothing to those before them,
+    else -1."""
+    result = np.full(len(nodes), -1)
+    before: dict[int, list[NDArray[np.float64]]] = {}
+    first: dict[int, int] = {}
+    for i, (node, direction) in enumerate(zip(nodes.tolist(), directions)):
+        basis = before.setdefault(node, [])
+        rest = direction - sum(((direction @ other) * other for other in basis), np.zeros(len(direction)))
+        size = float(np.linalg.norm(rest))
+        if basis and size < SAME_DIRECTION:
+            result[i] = first[node]
+            continue
+        first.setdefault(node, i)
+        basis.append(rest / max(size, 1e-300))
+    return result
 
 
 def _row_norms(matrix: Any) -> NDArray[np.float64]:

@@ -94,20 +94,20 @@ class Supports:
 
     def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """How much of a direction (n, dim unit vectors) is held at each of n points: 1 fully, 0 free."""
-        n, dim = directions.shape
+        return np.asarray(1.0 - (self.can_move(points, directions) ** 2).sum(axis=1))
+
+    def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
+        dim = directions.shape[1]
         rows = (dim * points[:, None] + np.arange(dim)).ravel()
-        if self.orthonormal:
-            pick = sp.csr_matrix(
-                (directions.ravel(), (np.repeat(np.arange(n), dim), rows)), shape=(n, self.free.shape[0])
-            )
-            moved = pick @ self.free
-            return np.asarray(1.0 - moved.multiply(moved).sum(axis=1)).ravel()
         own = [self.free[rows[a::dim]] for a in range(dim)]
         gram = np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in own] for p in own]).transpose(2, 0, 1)
+        if self.orthonormal:
+            return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
-        can_move = size > STUCK * np.maximum(size[:, -1:], 1e-300)
+        moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
         along = np.einsum("nda,nd->na", axes, directions)
-        return np.asarray(1.0 - np.where(can_move & (size[:, -1:] > 0.0), along**2, 0.0).sum(axis=1))
+        return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
 
 
 def supports(model: Model) -> Supports:

@@ -103,7 +103,9 @@ def _restricted(contactor: Surface, coupling: Coupling) -> Coupling:
         m, n = own.shape
         blocks[kind] = np.zeros((m, m))
         blocks[kind][:, :n] = own
-        mass[facets[:, None, None], np.arange(n)[:, None], np.arange(n)] = own.T @ coupling.mass[facets][:, :m, :m] @ own
+        mass[facets[:, None, None], np.arange(n)[:, None], np.arange(n)] = (
+            own.T @ coupling.mass[facets][:, :m, :m] @ own
+        )
     corners = block_diagonal(contactor, blocks)
     points = coupling.points
     return replace(

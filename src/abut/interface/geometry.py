@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
@@ -96,6 +101,17 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
         )
     unit = vector / length
     total = np.zeros_like(unit)
+    for here, other in _without_crease(node.astype(np.int64), unit):
+        np.add.at(total, here, vector[other])
+    result = np.zeros_like(own)
+    result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
+    return result
+
+
+def _without_crease(
+    node: NDArray[np.int64], unit: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Pairs of facets' nodes at the same point with no crease between them; node: (n,) points, unit: (n, dim) normals."""
     order = np.argsort(node, kind="stable")
     counts = np.bincount(node)
     counts = counts[counts > 0]
@@ -108,10 +124,34 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
         here = order[has]
         other = order[(np.arange(len(order)) - position)[has] + (position[has] + shift) % size[has]]
         near = np.einsum("ij,ij->i", unit[here], unit[other]) > CREASE
-        np.add.at(total, here[near], vector[other[near]])
-    result = np.zeros_like(own)
-    result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
-    return result
+        yield here[near], other[near]
+
+
+def split_at_creases(surface: Surface) -> tuple[Surface, NDArray[np.int64]]:
+    """The surface with its points doubled along creases, one for each smooth side, and (n_points,) the point that each of
+    its points was: theory (P13). Points keep their numbers, further ones come at the end."""
+    own = area_vectors(surface)
+    facet, local = np.nonzero(surface.nodes >= 0)
+    node = surface.nodes[facet, local].astype(np.int64)
+    unit = own[facet, local] / np.maximum(np.linalg.norm(own[facet, local], axis=1, keepdims=True), 1e-300)
+    pairs = list(_without_crease(node, unit))
+    links = np.concatenate([np.zeros((2, 0), dtype=np.int64), *(np.stack(pair) for pair in pairs)], axis=1)
+    graph = sp.csr_matrix((np.ones(links.shape[1]), (links[0], links[1])), shape=(len(node), len(node)))
+    _, side = connected_components(graph, directed=False)
+    _, first, number = np.unique(side, return_index=True, return_inverse=True)
+    at = node[first]  # point of each side
+    by_point = np.argsort(at, kind="stable")
+    further = np.zeros(len(at), dtype=bool)
+    further[by_point[1:]] = at[by_point[1:]] == at[by_point[:-1]]
+    owner = np.arange(len(surface.points))
+    if not further.any():
+        return surface, owner
+    point = at.copy()
+    point[further] = len(owner) + np.arange(int(further.sum()))
+    nodes = surface.nodes.copy()
+    nodes[facet, local] = point[number.ravel()]
+    owner = np.concatenate([owner, at[further]])
+    return replace(surface, points=surface.points[owner], nodes=nodes), owner
 
 
 def pressure_kind(kind: str, degree: int) -> str:

@@ -16,9 +16,9 @@ from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
 from abut.cells import CELLS
+from abut.interface.bases import non_negative
 from abut.interface.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.interface.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
-from abut.interface.bases import non_negative
 from abut.interface.pressure import PressureSpace, facet_functions
 from abut.mesh.surface import Surface
 
@@ -67,7 +67,7 @@ def node_to_segment(
         covered=full_moments(contactor, 0)[:, 0] * share, segments=nodes_seen.astype(np.int32),
     )  # fmt: skip
     transfer, at = gather[:, seen].tocsr(), ids[seen].astype(np.int64)
-    space = PressureSpace("nodal", degree, transfer, transfer, area[seen], at, len(ids) - len(seen), False)
+    space = PressureSpace("nodal", degree, transfer, transfer, area[seen], at, at, len(ids) - len(seen), False)
     return coupling, space
 
 

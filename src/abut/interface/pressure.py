@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.interface.bases import dual, non_negative
 from abut.interface.coupling import Coupling, surface_degree
-from abut.interface.geometry import by_kind, full_moments, function_count
+from abut.interface.geometry import by_kind, full_moments, function_count, split_at_creases
 from abut.mesh.surface import Surface
 
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
@@ -37,6 +37,8 @@ class PressureSpace:
     plain:    (9 n_facets, n) the same with the ordinary functions in place of the dual ones; else ``transfer``.
     weight:   (n,) int of each basis function over the covered part, > 0.
     node:     (n,) point at which the function sits, -1 for functions that belong to a facet alone.
+    side:     (n,) the same on the contactor split at its creases (``split_at_creases``): a point on a crease has a function
+              for each smooth side.
     removed:  how many multipliers were removed or made to follow a neighbour.
     merges:   multipliers that go make a neighbour follow; else they vanish.
     """
@@ -47,6 +49,7 @@ class PressureSpace:
     plain: Any
     weight: NDArray[np.float64]
     node: NDArray[np.int64]
+    side: NDArray[np.int64]
     removed: int = 0
     merges: bool = True
 
@@ -86,28 +89,30 @@ def resolve(name: str, contactor: Surface, free_edge: bool = True) -> tuple[str,
     return name, degree
 
 
-def pressure_space(name: str, contactor: Surface, coupling: Coupling) -> PressureSpace:
+def pressure_space(name: str, contactor: Surface, coupling: Coupling, tied: bool = False) -> PressureSpace:
     """Build the space ``name`` on the covered part of the contactor.
 
     name: as from ``resolve``; coupling: of that contactor, with the degree from ``resolve``. Multipliers with hardly any
     of their support covered follow a neighbour, theory (P5), (P6); those with none vanish. "dual-P1" begins as "dual":
-    ``with_plain_facets``.
+    ``with_plain_facets``. Continuous spaces end at creases, where the pressure jumps with the normal, theory (P13); not
+    those of ties, which have as many components there as the point has displacements.
     """
-    row, node = facet_functions(contactor, coupling.degree)
+    split, owner = (contactor, np.arange(len(contactor.points))) if tied else split_at_creases(contactor)
+    row, side = facet_functions(split, coupling.degree)
     rows = 9 * len(contactor)
     if name == "P0":
         ids, column = np.full(len(contactor), -1), row // 9
     elif name.endswith("discontinuous"):
         ids, column = np.full(len(row), -1), np.arange(len(row))
     else:
-        ids, column = np.unique(node, return_inverse=True)
+        ids, column = np.unique(side, return_inverse=True)
     gather = sp.csr_matrix((np.ones(len(row)), (row, column.ravel())), shape=(rows, len(ids)))
     plain = (non_negative(contactor) @ gather).tocsr() if coupling.degree == 2 else gather
     is_dual = name in (DUAL, DUAL_P1)
     transfer = (dual(contactor, coupling) @ gather).tocsr() if is_dual else plain
-    space = PressureSpace(
-        name, coupling.degree, transfer, plain, transfer.T @ coupling.weight, ids.astype(np.int64)
-    )
+    ids = ids.astype(np.int64)
+    node = np.where(ids >= 0, owner[ids], -1)
+    space = PressureSpace(name, coupling.degree, transfer, plain, transfer.T @ coupling.weight, node, ids)
     share = covered_share(space, contactor, coupling)
     return reduce(space, coupling, keep=share >= (WEAK_DUAL if is_dual else WEAK_SUPPORT), exists=share > NO_SUPPORT)
 
@@ -158,12 +163,17 @@ def with_plain_facets(
 
 
 def reduce(
-    space: PressureSpace, coupling: Coupling, keep: NDArray[np.bool_], exists: NDArray[np.bool_] | None = None
+    space: PressureSpace,
+    coupling: Coupling,
+    keep: NDArray[np.bool_],
+    exists: NDArray[np.bool_] | None = None,
+    onto: NDArray[np.int64] | None = None,
 ) -> PressureSpace:
     """Take multipliers out. One that shares a facet with a kept one follows the best supported of these (so that a
     constant pressure stays in the space), theory (P6); the others vanish.
 
-    keep: (n,) bool; exists: (n,) bool, which of those that go may follow a neighbour (left out: as ``space.merges``).
+    keep: (n,) bool; exists: (n,) bool, which of those that go may follow a neighbour (left out: as ``space.merges``);
+    onto: (n,) a kept multiplier to follow instead of a neighbour, -1 for none.
     """
     n = len(space)
     if keep.all():
@@ -180,7 +190,10 @@ def reduce(
     by_facet = facets.T @ pattern
     neighbours = (by_facet.T @ by_facet).tocsr()
     rows, columns = [*kept], [*position[kept]]
-    for k in np.flatnonzero(~keep & exists):
+    named = np.full(n, -1) if onto is None else np.where(keep, -1, onto)
+    rows += np.flatnonzero(named >= 0).tolist()
+    columns += position[named[named >= 0]].tolist()
+    for k in np.flatnonzero(~keep & exists & (named < 0)):
         near = neighbours.indices[neighbours.indptr[k] : neighbours.indptr[k + 1]]
         near = near[keep[near]]
         if len(near):
@@ -195,6 +208,7 @@ def reduce(
         plain=plain,
         weight=transfer.T @ coupling.weight,
         node=space.node[kept],
+        side=space.side[kept],
         removed=space.removed + n - len(kept),
     )
 

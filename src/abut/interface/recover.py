@@ -18,6 +18,7 @@ from abut.interface.geometry import (
     function_count,
     node_coordinates,
     pressure_kind,
+    split_at_creases,
 )
 from abut.mesh.surface import Surface
 
@@ -32,12 +33,14 @@ SINGULAR = 1e-14  # of the metric's trace
 class Averages:
     """Averages of facet-wise fields over the corner functions N_i of the contactor, theory (P10).
 
+    surface: the contactor, split at its creases: a point on one has an average for each smooth side, theory (P13);
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
     the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
     contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose average each one shows, itself but
     on the axis of linear cells.
     """
 
+    surface: Surface
     corners: NDArray[np.int64]
     moments: NDArray[np.float64]
     mass: NDArray[np.float64]
@@ -89,6 +92,7 @@ def _divided(values: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArra
 
 def averages(contactor: Surface, coupling: Coupling) -> Averages:
     """What it takes to average fields on a contactor; coupling: of degree 1 or 2."""
+    contactor, _ = split_at_creases(contactor)
     corners = np.full(contactor.nodes.shape, -1, dtype=np.int64)
     moments, mass = np.zeros_like(coupling.mass), np.zeros_like(coupling.mass)
     for kind, facets in by_kind(contactor):
@@ -103,7 +107,9 @@ def averages(contactor: Surface, coupling: Coupling) -> Averages:
         for values in (moments.sum(axis=2), full_moments(contactor, 1))
     )
     share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
-    return Averages(corners, moments, mass, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor))
+    return Averages(
+        contactor, corners, moments, mass, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor)
+    )
 
 
 def _shared(contactor: Surface) -> NDArray[np.int64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,11 +12,12 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut.discretization.pairs import Pair, pairs
-from abut.discretization.supports import supports
+from abut.discretization.pairs import Pair, pairs, with_plain_functions
+from abut.discretization.supports import Supports, supports
 from abut.errors import InputError, nearest
 from abut.interface.coupling import surface_degree
 from abut.interface.geometry import full_moments
+from abut.interface.pressure import DUAL_P1
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.solvers import direct
@@ -30,10 +31,13 @@ FALLING = 0.2  # beta ~ h^p with p above this falls with the mesh
 WEAK = 0.23  # half of what the weakest stable pair has
 STABLE_PAIRS = "stable pairs have 0.46 to 1.25"
 
+Closed = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # of points (n, dim)
+
 
 @dataclass(frozen=True)
 class InfSupLevel:
-    """One mesh: number of multipliers, typical facet size h (length), the inf-sup constant in both pressure norms
+    """One mesh: ``space``, what was measured; number of multipliers, typical facet size h (length), the inf-sup constant in
+    both pressure norms
     (``trace``: H^-1/2; ``mesh``: h M), and how many pressures no displacement feels (beta below 1e-6; among more
     multipliers than ``DENSE`` no more than two are looked for)."""
 
@@ -57,18 +61,20 @@ class InfSup:
     verdict: str
 
 
-def inf_sup(models: Model | Sequence[Model], contact: str | None = None) -> InfSup:
+def inf_sup(models: Model | Sequence[Model], contact: str | None = None, closed: Closed | None = None) -> InfSup:
     """Inf-sup constant of a contact of one model, or its trend over refinements (coarse to fine).
 
     beta^2 is the smallest eigenvalue of B S^-1 B^T q = beta^2 T q, with S the H1 matrix of all bodies on the displacements
     that supports leave free and T the pressure norm, theory (P7), (P8); the length in both norms is the contactor's (3D: the
-    root of its area), so that the unit of length does not matter. Raises InputError for models without contact,
+    root of its area), so that the unit of length does not matter. ``closed``: at which points contact is closed, so that
+    "dual-P1" takes the ordinary functions there; left out, it has dual functions everywhere. Raises InputError for models
+    without contact,
     with a tied pair, or where supports hold everything.
     """
     sequence = [models] if isinstance(models, Model) else list(models)
     if not sequence:
         raise InputError("inf-sup: no model given")
-    levels = tuple(_level(model, contact) for model in sequence)
+    levels = tuple(_level(model, contact, closed) for model in sequence)
     rate = None
     last = levels[-1]
     if len(levels) > 1 and min(level.trace for level in levels[-2:]) > SPURIOUS:
@@ -83,7 +89,7 @@ def inf_sup(models: Model | Sequence[Model], contact: str | None = None) -> InfS
     return InfSup(levels, rate, True, f"stable: beta = {last.trace:.3f} ({STABLE_PAIRS})")
 
 
-def _level(model: Model, contact: str | None) -> InfSupLevel:
+def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLevel:
     names = [c.name for c in model.contacts]
     if not names:
         raise InputError("inf-sup: the model has no contact; add one ([[contacts]])")
@@ -98,6 +104,7 @@ def _level(model: Model, contact: str | None) -> InfSupLevel:
     own = [p for p in pairs(replace(model, contacts=[wanted]), held) if len(p)]
     if not own:
         raise InputError(f"inf-sup: no pressure of contact '{wanted.name}' moves anything; let its bodies deform")
+    own = [_where_closed(p, model, held, closed) for p in own]
     length = _length(own[0].contactor)
     scalar = h1_matrix(model.mesh, length)
     full = held.free.T @ sp.kron(scalar, sp.eye(model.dim), format="csr") @ held.free
@@ -109,13 +116,31 @@ def _level(model: Model, contact: str | None) -> InfSupLevel:
         by_mesh, by_trace = _smallest_values(full, operator, mesh, trace)
     return InfSupLevel(
         contact=wanted.name,
-        space=own[0].space.name,
+        space=_measured(own[0]),
         multipliers=operator.shape[0],
         size=own[0].size,
         trace=_root(by_trace),
         mesh=_root(by_mesh),
         spurious=int((by_mesh < SPURIOUS**2).sum()),
     )
+
+
+def _where_closed(own: Pair, model: Model, held: Supports, closed: Closed | None) -> Pair:
+    if closed is None or own.space.name != DUAL_P1:
+        return own
+    return with_plain_functions(model, own, held, closed(own.contactor.points[own.space.node]))
+
+
+def _measured(own: Pair) -> str:
+    """The space in words: of "dual-P1" the facets decide which functions there are."""
+    name = own.space.name
+    if name != DUAL_P1:
+        return name
+    kept = abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, 9).max(axis=1) == 0.0
+    plain = int((kept & (own.coupling.segments > 0)).sum())
+    if not plain:
+        return f"{name}, dual functions everywhere"
+    return f"{name}, ordinary functions on {plain} of {int((own.coupling.segments > 0).sum())} facets"
 
 
 def _length(surface: Surface) -> float:
