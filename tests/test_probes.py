@@ -204,7 +204,10 @@ def test_jumps_are_read_as_means() -> None:
     assert line.values["pressure"] == pytest.approx(exact, rel=1e-12)
     at = dict(zip(own.points[:, 0].round(6), own.values["pressure"]))
     node = round(0.5 + 1 / 3, 6)
-    assert at[node] == pytest.approx(np.interp(node, x.ravel()[order], contact.pressure[:, :2].ravel()[order]), rel=1e-12)
+    assert at[node] == pytest.approx(
+        np.interp(node, x.ravel()[order], contact.pressure[:, :2].ravel()[order]),
+        rel=1e-5,  # the key is rounded
+    )
     gap = contact.gap.copy()
     gap[np.argsort(x.mean(axis=1))[0]] = np.nan
     step = replace(solution.steps[-1], contacts=(replace(contact, gap=gap),))

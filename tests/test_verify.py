@@ -262,7 +262,7 @@ def test_patch_of_a_job_without_contacts(tmp_path: Path, capsys: pytest.CaptureF
 def test_infsup_of_a_job(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = command(capsys, "infsup", BLOCKS, "--levels", 2)
     assert status == 0
-    assert out.startswith("contact 'blocks', pressure P1")
+    assert out.startswith("contact 'blocks', pressure dual-P1")
     multipliers = [int(row.split()[0]) for row in out.splitlines() if row.split()[0].isdigit()]
     assert multipliers == [36, 121]  # nodes of 5 x 5 and 10 x 10 facets
     assert out.splitlines()[-1].startswith("  stable: beta = ")

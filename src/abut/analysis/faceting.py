@@ -11,6 +11,7 @@ from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.discretization.pairs import Pair
 from abut.discretization.supports import Supports
+from abut.errors import InputError
 from abut.interface.coupling import Sights
 from abut.interface.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
@@ -43,7 +44,10 @@ def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64
     height = np.zeros(len(facet))
     if not linear.any():
         return height
-    normals = nodal_normals(surface)
+    try:
+        normals = nodal_normals(surface)
+    except InputError:  # a target may have points without a normal: how it bulges there nobody knows
+        return height
     corners = range(int((surface.nodes[linear] >= 0).sum(axis=1).max()))
     nodes = np.maximum(surface.nodes[facet], 0)
     rim = _rim(surface) if surface.dim == 2 else np.zeros(len(surface.points), dtype=bool)

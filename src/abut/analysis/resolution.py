@@ -17,7 +17,8 @@ def resolution(pair: Pair, pressure: NDArray[np.float64], share: NDArray[np.floa
     """One over the number of facets from the edge of contact to its innermost node; 0 where contact has no free edge.
 
     pressure: (n_points,) at the corners, of the contactor split at its creases; share: (n_points,) covered share of their
-    supports; largest: of the pressure. An edge is free where nodes stay open though target lies opposite most of what is theirs: the rim of a body is no edge that facets must find."""
+    supports; largest: of the pressure. An edge is free where nodes stay open though target lies opposite most of what is
+    theirs: the rim of a body is no edge that facets must find."""
     graph = Graph.of_nodes(split_at_creases(pair.contactor)[0])
     closed = (graph.degree > 0) & (pressure > CLOSED * largest)
     reached = (graph.degree > 0) & ~closed & (share > MOSTLY)

@@ -201,8 +201,8 @@ def _contact(
 
 
 def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: bool) -> NDArray[np.float64]:
-    """The pressure at the points of ``at.surface``, (n_points,): averages of the facet-wise coefficients ``values``, theory
-    (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
+    """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients (``values``), by
+    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
     average = at.of(values)
     if not (pair.tied or (closed and pair.space.continuous and pair.space.ordinary)):
         return average

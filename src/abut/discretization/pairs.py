@@ -188,8 +188,9 @@ def _couple(
         name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
         of_dual = name in (DUAL, DUAL_P1)
         cut = partial(
-            couple, contactor, target, surface_degree(contactor) if of_dual else degree, rule=contact.integration.rule, points=contact.integration.points,
-            componentwise=tied, keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
+            couple, contactor, target, surface_degree(contactor) if of_dual else degree,
+            rule=contact.integration.rule, points=contact.integration.points, componentwise=tied,
+            keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
         )  # fmt: skip
         coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
         coupling = of_corners(contactor, coupling) if of_dual else coupling

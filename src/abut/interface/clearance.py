@@ -24,8 +24,8 @@ STEP = 1e-3  # of the facet's size: gaps of neighbouring target facets that diff
 def partly_adjusted(
     contactor: Surface, target: Surface, closed: Coupling, adjust: float, reach: float, without: Callable[[], Coupling]
 ) -> Coupling:
-    """``closed``, in which gaps and overlaps up to ``adjust`` are none, mended on facets that have larger ones too: there the
-    contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
+    """``closed``, in which gaps and overlaps up to ``adjust`` are none, mended on facets that have larger ones too: there
+    the contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
 
     adjust, reach: lengths; closed: with sights; without: the same coupling with nothing adjusted."""
     if not adjust or closed.sights is None:
@@ -76,9 +76,9 @@ def _on_to_target(
 def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
     """The coupling of the corners' functions, degree 1, with the weighted gap of a fit to the gap's values at the corners.
 
-    On each facet the gap is fitted by the functions of ``coupling``, of degree 1 or 2, in the mean; its values at the corners
-    take the gap's place. Of a gap with a step the fit undershoots, by up to a third of the step, and is kept within the gaps
-    that are there; slivers keep the gap as it is."""
+    On each facet the gap is fitted by the functions of ``coupling``, of degree 1 or 2, in the mean; its values at the
+    corners take the gap's place. Of a gap with a step the fit undershoots, by up to a third of the step, and is kept
+    within the gaps that are there; slivers keep the gap as it is."""
     n_rows = coupling.contactor_part.shape[0]
     result = coupling if coupling.degree == 1 else _restricted(contactor, coupling)
     if coupling.sights is None or not len(coupling.sights.gap):

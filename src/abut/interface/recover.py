@@ -35,9 +35,9 @@ class Averages:
 
     surface: the contactor, split at its creases: a point on one has an average for each smooth side, theory (P13);
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
-    the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the same over int N_i on the whole
-    contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose average each one shows, itself but
-    on the axis of linear cells.
+    the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the
+    same over int N_i on the whole contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose
+    average each one shows, itself but on the axis of linear cells.
     """
 
     surface: Surface
@@ -174,8 +174,8 @@ def carry_to_target(
     """Pressure at the target's nodes, (n_target_facets, 9): read off the contactor at the foot of each node; zero where
     no contactor facet lies opposite, NaN where padded.
 
-    values: (9 n_contactor_facets,) coefficients of the corners' functions; pairs: (9 n_contactor_facets, n_points or dim n_points) sparse ``target_part`` of the coupling: it knows which
-    contactor facets see which target nodes.
+    values: (9 n_contactor_facets,) coefficients of the corners' functions; pairs: (9 n_contactor_facets, n_points or
+    dim n_points) sparse ``target_part`` of the coupling: it knows which contactor facets see which target nodes.
     """
     width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
     entries = pairs.tocoo()

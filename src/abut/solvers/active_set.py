@@ -109,7 +109,11 @@ def solve_step(
             continue
         if aim == "this set":
             break
-        if system.predict is not None and not share and (count - len(earlier) <= EARLY or changed.sum() > FEW * active.sum()):
+        if (
+            system.predict is not None
+            and not share
+            and (count - len(earlier) <= EARLY or changed.sum() > FEW * active.sum())
+        ):
             guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 wanted = guess

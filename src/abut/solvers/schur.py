@@ -154,7 +154,9 @@ def _forward(part: Interface) -> Apply:
 
     def apply(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
         spread = part.coupled @ pressure
-        return np.asarray(part.compliance * (part.coupled @ sum(w * solve(spread) for w, solve in zip(weights, solves))))
+        return np.asarray(
+            part.compliance * (part.coupled @ sum(w * solve(spread) for w, solve in zip(weights, solves)))
+        )
 
     return apply
 
