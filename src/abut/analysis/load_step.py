@@ -46,30 +46,26 @@ def load_step(
     system, solver: with dual functions wherever the space has them. What is closed all over at the outset may stay so:
     that is tried first. Else dual functions tell where contact is closed, and there the ordinary ones take their place."""
     limit, none = model.solve.max_iterations, np.zeros(len(begin.active), dtype=bool)
-    spaces = [p for p in system.pairs if p.space.name == DUAL_P1]
-    search = any(surface_degree(p.contactor) == 2 for p in spaces)
+    search = any(p.space.name == DUAL_P1 and surface_degree(p.contactor) == 2 for p in system.pairs)
+    smooth = any(p.smooth for p in system.pairs)
     earlier: tuple[Iteration, ...] = ()
-    inner = with_plain(model, held, system, begin.active) if begin.active.all() else system
+    inner = with_plain(model, held, system, begin.active) if begin.active.all() and not smooth else system
     if inner is not system:
         renewed = solver.renew(inner)
         outcome = solve_step(renewed.system, begin, stage, limit, observe, aim="this set")
         if outcome.converged:
             return Reached(outcome, renewed, inner, begin.active)
-        earlier, opened = outcome.iterations, outcome.cycling
-        begin = replace(outcome.unknowns, active=begin.active & ~opened)
-    outcome = solve_step(solver.system, begin, stage, limit, observe, earlier, "set" if search else "solution")
-    inside = outcome.unknowns.active
-    inner = with_plain(model, held, system, inside) if spaces and outcome.converged else system
-    if inner is system:
-        done = not (search and outcome.converged) or (solver.system.exact and not any(p.smooth for p in system.pairs))
-        if not done:
-            outcome = solve_step(
-                solver.system, outcome.unknowns, stage, limit, observe, outcome.iterations, settled=True
-            )
-        return Reached(outcome, solver, system, none)
-    renewed = solver.renew(inner)
-    outcome = solve_step(renewed.system, outcome.unknowns, stage, limit, observe, outcome.iterations, settled=True)
-    return Reached(outcome, renewed, inner, inside)
+        earlier = outcome.iterations
+        begin = replace(outcome.unknowns, active=begin.active & ~outcome.cycling)
+    found = solve_step(solver.system, begin, stage, limit, observe, earlier, "set" if search else "solution")
+    inside = found.unknowns.active
+    inner = with_plain(model, held, system, inside) if found.converged else system
+    if inner is not system:
+        solver = solver.renew(inner)
+    elif not (found.converged and search) or (solver.system.exact and not smooth):
+        return Reached(found, solver, system, none)
+    outcome = solve_step(solver.system, found.unknowns, stage, limit, observe, found.iterations, settled=True)
+    return Reached(outcome, solver, inner, none if inner is system else inside)
 
 
 def with_plain(model: Model, held: Supports, system: System, inside: NDArray[np.bool_]) -> System:
