@@ -67,7 +67,10 @@ def non_negative(contactor: Surface) -> Any:
 
 def sound_facets(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Facets (n,) whose mass matrices (n, k, k) can be inverted safely: a sliver has no well-determined dual basis."""
-    return np.array([m.any() and np.linalg.cond(m) < SLIVER for m in mass], dtype=bool)
+    if not len(mass):
+        return np.zeros(0, dtype=bool)
+    values = np.linalg.eigvalsh(mass)
+    return np.asarray((values[:, 0] > 0.0) & (values[:, -1] < SLIVER * values[:, 0]))
 
 
 def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Any:

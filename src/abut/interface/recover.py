@@ -63,9 +63,10 @@ class Averages:
     def sharpened(self, average: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Averages (n_points,) of a field on all of the contactor at points x (n_points, dim), without what averaging takes
         from a linear field: theory (P12). Of the same resultant, since what one point gains another loses."""
-        rows, n = np.maximum(self.corners, 0), len(average)
-        at = _divided(self._sum(np.einsum("fij,fjd->fid", self.mass, x[rows])), self.weight)
-        used = (self.mass != 0.0).astype(float)
+        k, n = int((self.corners >= 0).any(axis=0).sum()), len(average)
+        rows, mass = np.maximum(self.corners[:, :k], 0), self.mass[:, :k, :k]
+        at = _divided(self._sum(np.matmul(mass, x[rows])), self.weight)
+        used = (mass != 0.0).astype(float)
         apart, rise = at[rows][:, None] - at[rows][:, :, None], average[rows][:, None] - average[rows][:, :, None]
         close = used / np.maximum((apart**2).sum(axis=-1), 1e-300)
         metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))
@@ -73,15 +74,18 @@ class Averages:
             np.einsum("fij,fija,fij->fia", close, apart, rise)
         ).reshape(n, -1, 1)
         g, away = slope[rows, :, 0], x[rows][:, :, None] - x[rows][:, None]
-        gain = 0.5 * np.einsum("fij,fijd,fijd->fi", self.mass, away, g[:, :, None] + g[:, None])
+        gain = 0.5 * np.einsum("fij,fijd,fijd->fi", mass, away, g[:, :, None] + g[:, None])
         return np.asarray(average + _divided(self._sum(gain), self.weight))
 
     def _sum(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Values at the corners of facets (n_facets, 9, ...) added up at the points."""
-        total = np.zeros((len(self.weight), *values.shape[2:]))
-        used = self.corners >= 0
-        np.add.at(total, self.corners[used], values[used])
-        return total
+        """Values at the corners of facets (n_facets, up to 9, ...) added up at the points."""
+        corners = self.corners[:, : values.shape[1]]
+        used = corners >= 0
+        at, parts = corners[used], values[used].reshape(int(used.sum()), -1)
+        total = np.zeros((len(self.weight), parts.shape[1]))
+        for component, own in enumerate(parts.T):
+            total[:, component] = np.bincount(at, own, len(self.weight))
+        return total.reshape(len(self.weight), *values.shape[2:])
 
 
 def _divided(values: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -88,7 +88,9 @@ def compliance(moved: NDArray[np.float64], inverse: Apply) -> NDArray[np.float64
 
 def pressure_scale(system: System) -> float:
     """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
-    largest = np.asarray(abs(system.operator).max(axis=1).todense()).ravel()
+    operator = system.operator
+    rows = np.flatnonzero(np.diff(operator.indptr))
+    largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
     return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -94,11 +95,14 @@ def predictor(parts: Sequence[Interface], moved: NDArray[np.float64]) -> Predict
 
     moved: (n, m) change of the weighted gaps by rigid motions that supports leave free (C), which the pressures keep in
     balance. The function takes gap g0, pressure p0, a first active set and the rows that are never open."""
-    apply_parts = [(part.rows, _forward(part)) for part in parts]
+
+    @cache  # not before it is needed: what is closed all over has no next active set
+    def factorised() -> list[tuple[NDArray[np.int64], Apply]]:
+        return [(part.rows, _forward(part)) for part in parts]
 
     def forward(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
         gap = np.zeros_like(pressure)
-        for rows, apply in apply_parts:
+        for rows, apply in factorised():
             gap[rows] = apply(pressure[rows])
         return gap
 
