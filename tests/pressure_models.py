@@ -253,6 +253,13 @@ def stepped(n: int, **contact: object) -> abut.Model:
     )
 
 
+def along(model: abut.Model) -> tuple[Array, Array]:
+    """Corners' first coordinates in order, and the reported pressure there."""
+    x, p = at_corners(abut.solve(model).contacts[0])
+    order = np.argsort(x[:, 0])
+    return x[order, 0], p[order]
+
+
 def approach(solution: abut.Solution, top: str) -> float:
     """How far a surface has come down, in the mean over its nodes."""
     return -float(solution.displacement[solution.model.mesh.nodes_of(top), -1].mean())

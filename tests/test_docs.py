@@ -125,9 +125,15 @@ def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.Capture
 
 
 def test_the_checkerboard_of_the_tour() -> None:
-    """P0 on linear cells: what the tour shows, facet by facet."""
+    """P0 on linear cells: what the tour shows, facet by facet, what it says of the average, and the line that fails."""
     model = load_job(ROOT / "examples" / "two-blocks" / "job.toml").model
-    result = abut.solve(replace(model, contacts=[replace(model.contacts[0], pressure="P0")])).contacts[0]
+    solution = abut.solve(replace(model, contacts=[replace(model.contacts[0], pressure="P0")]))
+    result = solution.contacts[0]
     x = np.array([result.contactor.points[own[own >= 0]].mean(axis=0) for own in result.contactor.nodes])
-    rows = result.pressure[np.lexsort((x[:, 0], x[:, 1])), 0].reshape(5, 5)
-    assert "\n".join(" ".join(f"{p:3.0f}" for p in row) for row in rows) in (ROOT / "docs" / "tour.md").read_text()
+    rows = result.multiplier[np.lexsort((x[:, 0], x[:, 1])), 0].reshape(5, 5)
+    tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")
+    assert "\n".join(" ".join(f"{p:3.0f}" for p in row) for row in rows) in tour
+    shown = result.pressure[result.contactor.nodes >= 0]
+    assert f"{shown.max():.0f} in the corners of the block, {shown.min():.0f} in its middle" in tour
+    (failed,) = (check for check in solution.certificate if not check.passed)
+    assert f"FAIL   {failed.value:.2e}   {failed.limit:.2e}  blocks: {failed.name}" in tour

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ sys.path.insert(0, str(ROOT / "docs" / "make"))
 
 import inf_sup as constants  # noqa: E402
 import methods  # noqa: E402
+import pressure  # noqa: E402
 from abut.mesh.make import join, rectangle  # noqa: E402
 from abut.verify import inf_sup  # noqa: E402
 from page import agrees, read_table  # noqa: E402
@@ -140,3 +142,31 @@ def test_integration_without_segments() -> None:
             assert methods.facet_row(*facets) == row
         else:
             assert methods.facet_row(*facets, points=(2,)) == [*row[:4], row[-1]]
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "row"),
+    [
+        ("line", ("quad4", "6", "default"), lambda: pressure.line_row("quad4", 6, "default")),
+        ("line", ("quad8", "6", "default"), lambda: pressure.line_row("quad8", 6, "default")),
+        ("line", ("quad8", "6", "P2"), lambda: pressure.line_row("quad8", 6, "P2")),
+        ("ball", ("tet4", "block", "default"), lambda: pressure.ball_row("tet4", "block", "default")),
+        ("axis", ("tri3", "10", "default"), lambda: pressure.axis_row("tri3", 10, "default")),
+        ("square", ("default",), lambda: pressure.square_row("default")),
+        ("flat", ("quad4", "block", "default"), lambda: pressure.flat_row("quad4", "block", "default")),
+        ("bent", ("hex8",), lambda: pressure.bent_row("hex8")),
+        ("bent", ("quad8",), lambda: pressure.bent_row("quad8")),
+        ("rim", ("error over change",), pressure.rim_row),
+    ],
+)
+def test_reported_pressure(table: str, key: tuple[str, ...], row: Callable[[], list[str]]) -> None:
+    rows = [list(r.values()) for r in read_table(pressure.PAGE, table)]
+    (printed,) = (r for r in rows if tuple(r[: len(key)]) == key)
+    for text, value in zip(printed, row(), strict=True):
+        number = value.removesuffix(" %")
+        same = text == value
+        assert same or agrees(text, float(number)), (table, key, text, value)
+
+
+def test_rates_are_those_of_the_benchmarks() -> None:
+    assert [list(r.values()) for r in read_table(pressure.PAGE, "rates")] == pressure.rate_rows()

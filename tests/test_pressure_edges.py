@@ -17,6 +17,7 @@ from abut.interface.recover import averages
 from abut.job import load_job
 from certificate_models import line as unlike
 from pressure_models import (
+    along,
     approach,
     at_corners,
     bent,
@@ -94,8 +95,7 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
 def test_bias_at_a_rim(n: int) -> None:
     """Contact that is closed at the contactor's rim and opens elsewhere: the average there lags behind by a third of the
     pressure's change over a facet, first order; the next nodes do not. (Closed all over, that is put right.)"""
-    fine, own = (at_corners(abut.solve(opened(m)).contacts[0]) for m in (48, n))
-    (x, p), (at, found) = ((a[np.argsort(a[:, 0]), 0], b[np.argsort(a[:, 0])]) for a, b in (fine, own))
+    (x, p), (at, found) = along(opened(48)), along(opened(n))
     p[-1] = np.polyval(np.polyfit(x[-5:-1], p[-5:-1], 3), x[-1])  # the fine mesh has the bias, too
     error = found - np.interp(at, x, p)
     change = p[-1] - np.interp(at[-2], x, p)
@@ -129,8 +129,7 @@ def test_stiff_and_fine_contactor_fails_with_advice(cells: tuple[int, int], youn
 def test_isolated_loaded_nodes_fail() -> None:
     """Every fourth node carries everything, none of their neighbours does: what a difference of neighbours alone misses."""
     solution = abut.solve(unlike("quad4", (16, 4), (1e6, 1e3)))
-    x, p = at_corners(solution.contacts[0])
-    p = p[np.argsort(x[:, 0])]
+    _, p = along(solution.model)
     loaded = p > 0.1 * p.max()
     assert loaded.sum() >= 3
     assert not (loaded[1:] & loaded[:-1]).any()
