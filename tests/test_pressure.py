@@ -44,6 +44,13 @@ def test_hertz_line(cell: str, n: int, limit: float, contactor: str) -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+@pytest.mark.parametrize(("first", "last", "limit"), [(5, 12, 0.019), (13, 17, 0.015), (18, 24, 0.005)])
+def test_hertz_line_wherever_the_edge_lies(first: int, last: int, limit: float) -> None:
+    """quad8, every mesh of a range: the edge is at another place of its facet in each, which counts as much as the mesh."""
+    for n in range(first, last + 1):
+        assert errors(abut.solve(line("quad8", n)), LINE, LINE_PEAK)[0] <= limit
+
+
 @pytest.mark.parametrize("contactor", SIDES)
 @pytest.mark.parametrize(
     ("cell", "sizes"),

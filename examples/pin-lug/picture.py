@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
@@ -26,7 +27,10 @@ def main(out: Path) -> None:
         plot.add_mesh(body, color=colour, opacity=opacity)
         plot.add_mesh(body.extract_feature_edges(35), color="#444444", line_width=2)
     bar = {"title": "contact pressure [MPa]", "vertical": True, "position_x": 0.86, "position_y": 0.2, "height": 0.6}
-    plot.add_mesh(hole, lighting=False, scalars="pressure", cmap="inferno", scalar_bar_args={**bar, "color": "black"})
+    summary = json.loads((RESULTS / "summary.json").read_text(encoding="utf-8"))
+    largest = summary["steps"][-1]["contacts"][0]["max_pressure"]  # of nodes that are covered by half at least
+    colours = {"cmap": "inferno", "clim": [0.0, largest]}
+    plot.add_mesh(hole, lighting=False, scalars="pressure", scalar_bar_args={**bar, "color": "black"}, **colours)
     plot.camera_position = [(-22, -50, 34), (6, 6, 3), (0, 0, 1)]
     plot.camera.view_angle = 32
     plot.background_color = "white"
