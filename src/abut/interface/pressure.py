@@ -118,7 +118,7 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling, tied: bool
 
 
 def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) -> NDArray[np.float64]:
-    """Theory (P5), (n,): by the ordinary functions, since dual ones know nothing of the part that is not covered."""
+    """Of theory (P5), (n,): by the ordinary functions, since dual ones know nothing of the part that is not covered."""
     full = space.plain.T @ full_moments(contactor, coupling.degree).ravel()
     return np.asarray(space.plain.T @ coupling.weight / np.maximum(full, 1e-300))
 
