@@ -26,6 +26,7 @@ from abut.interface.pressure import (
     resolve,
     with_plain_facets,
 )
+from abut.interface.rim import ends_on_target
 from abut.mesh.surface import Surface
 from abut.model import LAWS, Contact, Model
 
@@ -78,6 +79,7 @@ class Pair:
     stiffness: float
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
+    interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
 
     @property
@@ -128,7 +130,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
     contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
     tied = contact.kind == "tied"
-    coupling, space = _couple(contact, contactor, target, _reach(held, contactor, target), couple)
+    reach = _reach(held, contactor, target)
+    coupling, space = _couple(contact, contactor, target, reach, couple)
     sizes = facet_sizes(contactor)
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
@@ -151,17 +154,23 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
+        interior=_interior(contactor, target, coupling, reach) if space.name == DUAL_P1 else None,
     )  # fmt: skip
+
+
+def _interior(contactor: Surface, target: Surface, coupling: Coupling, reach: float) -> NDArray[np.bool_]:
+    """Facets (n_facets,) that are covered all over and at no edge of the contactor on the target."""
+    share = coupling.covered / full_moments(contactor, 0)[:, 0]
+    return np.asarray((np.abs(share - 1.0) < WHOLE) & ~ends_on_target(contactor, target, reach))
 
 
 def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
     """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
 
     active: (n,) bool, the multipliers in contact."""
-    if own.space.name != DUAL_P1:
+    if own.interior is None:
         return own
-    share = own.coupling.covered / full_moments(own.contactor, 0)[:, 0]
-    inner = inner_facets(own.space, own.contactor, np.abs(share - 1.0) < WHOLE, active)
+    inner = inner_facets(own.space, own.contactor, own.interior, active)
     if not inner.any():
         return own
     space = with_plain_facets(own.space, own.contactor, own.coupling, inner)
