@@ -93,13 +93,9 @@ def rests(solution: abut.Solution) -> float:
     return float(np.abs(down / -1e-3 - 1.0).max())
 
 
-def as_default(solution: abut.Solution) -> float:
-    """Beside the same model with the default pressure, on the inside of the contactor."""
-    x, p = reported(solution)
-    _, q = reported(abut.solve(two_blocks()))
-    low, high = x.min(axis=0), x.max(axis=0)
-    inside = ((x[:, :2] > 0.9 * low[:2] + 0.1 * high[:2]) & (x[:, :2] < 0.1 * low[:2] + 0.9 * high[:2])).all(axis=1)
-    return float(np.abs(p - q)[inside].max() / q[inside].max())
+def falsely_open(solution: abut.Solution) -> float:
+    """Facets of the tour's blocks that are open by themselves, though none is: infinitely wrong, however few."""
+    return inf if solution.contacts[0].active < solution.contacts[0].multipliers else 0.0
 
 
 def beside_fine_sleeve(solution: abut.Solution) -> float:
@@ -195,7 +191,7 @@ UNSOUND_RUNS = (
         ("facet moments",)),
     Run("node-to-segment, two-pass", lambda: column("quad8", "quad8", ((5, 3), (7, 3)), method="node-to-segment-two-pass"),
         outside, ("oscillation",)),
-    Run("P0 checkerboard of the tour", lambda: two_blocks("P0"), as_default, ("oscillation",)),
+    Run("P0 checkerboard of the tour", lambda: two_blocks("P0"), falsely_open, ("oscillation",)),
     Run("P1-discontinuous, tet4", lambda: octant("tet4", 5, pressure="P1-discontinuous"), ball_truth(),
         ("oscillation", "complementarity")),
     Run("a layer behind counted as well", lambda: sheets(True), rests, ("covered twice",)),
