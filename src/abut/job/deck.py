@@ -103,6 +103,7 @@ def translate(deck: Deck) -> Translation:
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(groups.raw(), deck.path)
+    notes += mesh.notes
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
         _check_sides(mesh, contact, pair)
