@@ -30,7 +30,7 @@ FAULTY = {  # what the one line must say, and its cure; the exit status
     "sliding": ("body 'upper' can shift along x without resistance", "add a support, or a symmetry plane", 4),
     "tie-and-support": ("support on 'upper.bottom' and the tie hold the same nodes", "remove support on 'upper.bottom'", 4),
     "small-target": ("target 'lower.top' is too small", "add these facets to 'lower.top'", 0),
-    "inside-out": ("10 quad4 cells of 'upper' are inverted", "their nodes run the wrong way round: reverse them", 2),
+    "inside-out": ("4 quad4 cells of 'upper' are inverted", "their nodes run clockwise, those of other cells do not", 2),
     "metres-and-millimetres": ("one seems to be meshed in metres", "scale the coordinates of 'upper' by 1000", 2),
 }
 # fmt: on

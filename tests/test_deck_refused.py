@@ -9,6 +9,8 @@ from abut.cli import main
 from abut.errors import InputError
 from abut.io.abaqus.cards import key
 from abut.io.abaqus.known import NEEDED, PROCEDURES, QUIET, READ, REFUSED
+from abut.job import load_job
+from abut.mesh.mesh import Mesh
 from decks import BRICKS, HELD, PAIR, PUSH, load, step, write
 
 DECK = BRICKS + PAIR + HELD + PUSH
@@ -124,7 +126,9 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("*DLOAD\n2, P2, 10.", "*TEMPERATURE\nALL, 5.", "has no temperature to begin with"),
         ("*DLOAD\n2, P2, 10.", "*CLOAD\n77, 1, 1.", "node 77 does not exist"),
         ("*DLOAD\n2, P2, 10.", "*NODE\n77, 1., 1., 1.\n*CLOAD\n77, 1, 1.", "node 77 belongs to no element and no equation"),
-        ("BOTTOM, 1, 3", "77, 1, 3", "node 77 does not exist"),
+        ("ALL, 1, 2", "ALL, 1, 2\n77, 1, 3, 0.1", r"deck\.inp:\d+: \*BOUNDARY: node 77 belongs to no element and"),
+        ("*DLOAD", "*NODE\n77, 1., 1., 1.\n*BOUNDARY\n77, 3, 3, 0.1\n*DLOAD", r"\*BOUNDARY: node 77 belongs to no element"),
+        ("*DLOAD", "*BOUNDARY\n18, 5, 5, 0.1\n*DLOAD", r"\*BOUNDARY: node 18 cannot turn \(direction 5\)"),
         ("*STEP\n", "*INITIAL CONDITIONS, TYPE=STRESS\n1, 5.\n*STEP\n", "TYPE=STRESS is not supported"),
         ("*STEP\n", "*MPC\nBEAM, 1, 2\n*STEP\n", "MPC of type BEAM is not supported"),
         ("*STEP\n", "*EQUATION\n3\n1,1,1.,2,1,-1.\n*STEP\n", "3 terms announced, but 2 given"),
@@ -158,3 +162,91 @@ def test_every_card_stands_in_the_documents():
     text = (Path(__file__).parents[1] / "docs" / "decks.md").read_text(encoding="utf-8")
     for name in (*READ, *QUIET, *REFUSED):
         assert f"`*{name}`" in text, name
+
+
+REFERENCE = "*NODE, NSET=REF\n99, 0., 0., 3.\n"
+
+
+def test_a_reference_node_without_its_coupling_is_no_zero_result(tmp_path):
+    """What drives the body went with the coupling: the deck is refused, with the line, by displacement and by force."""
+    coupled = BRICKS + REFERENCE + "*SURFACE, NAME=PUSHED\n2, S2\n" + PAIR + HELD
+    coupled += "*COUPLING, REF NODE=99, SURFACE=PUSHED\n*KINEMATIC\n3\n"
+    for card, value in (("*BOUNDARY", "99, 3, 3, -0.1"), ("*BOUNDARY", "REF, 3, 3, -0.1"), ("*CLOAD", "99, 3, -5.")):
+        text = coupled + step(card, value)
+        line = text.splitlines().index(value) + 1
+        with pytest.raises(
+            InputError, match=rf"deck\.inp:{line}: \{card}: node 99 belongs to no element and no equation"
+        ):
+            load(tmp_path, text, "COUPLING", "KINEMATIC")
+
+
+def test_supports_that_hold_nothing_are_noted(tmp_path):
+    for node, what in ((99, "belongs to no element and no equation"), (77, "does not exist")):
+        text = DECK.replace("*STEP", f"{REFERENCE}*BOUNDARY\n{node}, 1, 3\n*STEP")
+        line = text.splitlines().index(f"{node}, 1, 3") + 1
+        job = load(tmp_path, text)
+        assert f"{tmp_path / 'deck.inp'}:{line}: *BOUNDARY: node {node} {what}: the line holds nothing" in job.notes
+        assert len(job.model.supports) == len(load(tmp_path, DECK).model.supports)
+    assert not any("holds nothing" in note for note in load(tmp_path, DECK).notes)
+
+
+def test_members_that_are_missing_are_left_out_with_a_note(tmp_path):
+    more = "*NSET, NSET=N\n15, 16, 77, 78\n*ELSET, ELSET=E\n2, 9\n*NSET, NSET=G, GENERATE\n15, 30\n"
+    job = load(tmp_path, DECK.replace("*STEP", f"{more}*STEP").replace("2, P2, 10.", "E, P2, 10."))
+    notes = [note.split(": ", 1)[1] for note in job.notes if "left out" in note]
+    assert notes == [
+        "*NSET: node 77 and 1 more of set 'N' does not exist: left out",
+        "*ELSET: element 9 of set 'E' does not exist: left out",
+    ]
+    assert len(job.model.loads) == 1
+
+
+def test_empty_surfaces_and_sets_are_faults_only_where_they_are_used(tmp_path):
+    empty = "*NSET, NSET=NONE\n*ELSET, ELSET=NOTHING\n*SURFACE, NAME=S0\n"
+    empty += "*SURFACE, NAME=S1, TYPE=NODE\nNONE,\n*SURFACE, NAME=S2\nNOTHING, S1\n"
+    text = DECK.replace("*SURFACE INTERACTION", f"{empty}*SURFACE INTERACTION")
+    assert "S0" not in load(tmp_path, text).model.mesh.surfaces
+    assert not {"S0", "S1", "S2"} & set(Mesh.read(tmp_path / "deck.inp").surfaces)
+    for own in ("S0", "S1", "S2"):
+        with pytest.raises(InputError, match=rf"\*SURFACE: surface '{own}' is empty"):
+            load(tmp_path, text.replace("SLAVE, MASTER\n", f"SLAVE, {own}\n"))
+    with pytest.raises(InputError, match=r"\*DSLOAD: surface 'S0' is empty"):
+        load(tmp_path, text.replace("*DLOAD\n2, P2, 10.", "*DSLOAD\nS0, P, 10."))
+    with pytest.raises(InputError, match="node set 'NONE' is empty"):
+        load(tmp_path, text.replace("BOTTOM, 1, 3", "NONE, 1, 3"))
+
+
+@pytest.mark.parametrize("card", ["*ELEMENT, TYPE=S4", "*PLASTIC", "*AMPLITUDE, NAME=A", "*FANCY"])
+def test_files_of_cards_that_are_refused_are_not_opened(card, tmp_path):
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, DECK.replace("*STEP", f"{card}, INPUT=none.inc\n*STEP"))
+    assert "none.inc" not in str(caught.value)
+    assert card.split(",")[0] in str(caught.value)
+
+
+def test_a_file_may_be_named_on_the_second_line_of_a_card(tmp_path):
+    rows = "1, 0., 0., 0.\n2, 1., 0., 0.\n"
+    (tmp_path / "nodes.inc").write_text(rows)
+    text = DECK.replace("1, 0,0,0\n2, 1,0,0\n", "").replace(
+        "*ELEMENT", "*NODE, NSET=ALL,\nINPUT=nodes.inc\n*ELEMENT", 1
+    )
+    assert load(tmp_path, text).model.mesh.n_cells == 2
+    with pytest.raises(InputError, match=r"included file .*none\.inc does not exist"):
+        load(tmp_path, text.replace("nodes.inc", "none.inc"))
+
+
+def test_messages_name_the_file_once_and_each_word_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = DECK.replace("*STEP", "*FRICTION\n0.1,\n*STEP, NLGEOM") + step("*CLOAD", "18, 1, 0.", card="*STATIC, NLGEOM")
+    write(tmp_path, text)
+    for name in ("deck.inp", "./deck.inp"):
+        with pytest.raises(InputError) as caught:
+            load_job(Path(name))
+        text = str(caught.value)
+        assert text.count("deck.inp") == 1
+        assert text.count("--ignore NLGEOM") == text.count("--ignore FRICTION") == 1
+        assert text.count("line ") == 2
+    write(tmp_path, DECK.replace("1000., 0.", "1000., 0.7"))
+    with pytest.raises(InputError) as caught:
+        load_job(Path("deck.inp"))
+    assert str(caught.value).count("deck.inp") == 1

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
 
 from abut.errors import InputError
 from abut.mesh.check import check_mesh
-from abut.mesh.make import box, cylinder, disc, half_disc, rectangle, sphere_octant
+from abut.mesh.make import box, cylinder, disc, half_disc, quarter_disc, rectangle, ring, sphere_octant
 from abut.mesh.mesh import Mesh
 from abut.solids.elements import body_load
 
@@ -127,3 +128,45 @@ def test_cells_at_the_contact_are_nearly_square(made: Callable[..., Mesh]) -> No
 def test_arguments_out_of_range(kind: Callable[..., Mesh], arguments: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
         kind(**arguments)
+
+
+FINE = (0.01, 0.1, 0.3, 0.5, 0.69, 0.707)
+GROWTHS = (1.05, 1.3, 3.0)
+
+
+@pytest.mark.parametrize("cell", [*PLANE, *SOLID])
+def test_no_generator_makes_cells_that_the_check_refuses(cell: str) -> None:
+    """Over a grid of settings; none is refused by the generator either, but rings of too few cells around."""
+    meshes: list[Mesh] = []
+    if cell in PLANE:
+        for made, count, growth, fine in product((disc, half_disc, quarter_disc), (1, 2, 5), GROWTHS, FINE):
+            meshes.append(made(fine=fine, cells=count, growth=growth, cell=cell))
+        for radii, angles, count in product(
+            ((0.01, 1), (0.5, 1), (0.99, 1)), ((10, 10.1), (0, 140), (-30, 320)), (3, 40)
+        ):
+            meshes.append(ring(radii, angles, cells=(2, count), cell=cell))
+        meshes.append(rectangle(y=(0, 1e-3), cells=(3, 2), cell=cell, fine={"x": (0.2, 0.3)}, growth=1.1))
+    else:
+        for count, growth, fine in product((1, 2, 5), GROWTHS, (0.1, 0.3, 0.5, 0.69, 0.707)):
+            if count / fine < 20 or growth > 1.05:
+                meshes.append(sphere_octant(fine=fine, cells=count, growth=growth, cell=cell))
+        meshes += [cylinder(z=(0, z), cells=(n, 2), cell=cell) for n in (1, 2, 3, 4, 7, 12) for z in (0.01, 3.0)]
+        for inner, wall, around in product((0.01, 0.5, 0.99), (1, 3), (4, 5, 17)):
+            meshes.append(cylinder(cells=(wall, around, 1), cell=cell, inner=inner))
+        meshes.append(box(z=(0, 1e-3), cells=(3, 2, 2), cell=cell, fine={"x": (0.2, 0.3)}, growth=1.1))
+    for mesh in meshes:
+        check_mesh(mesh)
+
+
+def test_nodes_inside_curved_cells_follow_their_edges() -> None:
+    """Without the one in the middle, a cell has the same shape: its node is where the eight others lead."""
+    nine, eight = (half_disc(cells=2, cell=cell) for cell in ("quad9", "quad8"))
+    assert volume(nine) == pytest.approx(volume(eight), rel=1e-14)
+    nodes = nine.blocks[0].nodes
+    led = nine.points[nodes[:, 4:8]].sum(axis=1) / 2 - nine.points[nodes[:, :4]].sum(axis=1) / 4
+    assert nine.points[nodes[:, 8]] == pytest.approx(led, abs=1e-15)
+
+
+def test_ring_of_too_few_cells() -> None:
+    with pytest.raises(InputError, match="one spans 180 degrees; give more around"):
+        ring(angles=(0, 180), cells=(1, 1))

@@ -1,4 +1,4 @@
-"""Makes the two meshes with mistakes in them, in Gmsh's format: a target surface that is too small, cells inside out."""
+"""Makes the two meshes with mistakes in them, in Gmsh's format: a target surface too small, some cells inside out."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def main() -> None:
 
 
 def write_gmsh(path: Path, mesh: Mesh, surfaces: dict[str, np.ndarray], reverse: tuple[str, ...]) -> None:
-    """Quadrilaterals and named edges as MSH 2.2; cells of the bodies ``reverse`` with their nodes the wrong way round."""
+    """Quadrilaterals and named edges as MSH 2.2; the first 4 cells of the bodies ``reverse`` with their nodes the wrong
+    way round."""
     names = [*((1, name) for name in surfaces), *((2, name) for name in mesh.bodies)]
     elements = []
     for tag, (dim, name) in enumerate(names, start=1):
@@ -33,7 +34,7 @@ def write_gmsh(path: Path, mesh: Mesh, surfaces: dict[str, np.ndarray], reverse:
             cells = mesh.facets(surfaces[name]).nodes[:, :2]
         else:
             cells = np.concatenate([nodes for _, nodes, _ in mesh.cells_of(name)])
-            cells = cells[:, ::-1] if name in reverse else cells
+            cells = np.concatenate([cells[:4, ::-1], cells[4:]]) if name in reverse else cells
         elements += [f"{1 if dim == 1 else 3} 2 {tag} {tag} {' '.join(str(n + 1) for n in cell)}" for cell in cells]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names))]
     lines += [f'{dim} {tag} "{name}"' for tag, (dim, name) in enumerate(names, start=1)]

@@ -77,7 +77,7 @@ class Outcome:
     @property
     def passed(self) -> bool:
         """The finest level is within tolerance, and the rate is the reference's where there is one."""
-        sound = bool(np.isfinite(self.values[-1])) and self.error <= self.reference.tolerance
+        sound = bool(np.isfinite(self.values[-1]) and self.error <= self.reference.tolerance)
         if self.rate is None or self.reference.rate is None:
             return sound
         return sound and self.rate > self.reference.rate - self.reference.rate_tolerance
@@ -94,7 +94,7 @@ def run(benchmark: Benchmark, levels: int | None = None) -> list[Outcome]:
     sizes = [benchmark.size(level) for level in range(count)]
     outcomes = []
     for quantity, reference in benchmark.references.items():
-        values = tuple(row[quantity] for row in measured)
+        values = tuple(float(row[quantity]) for row in measured)
         rate = _rate(sizes, _errors(values, reference))
         outcomes.append(Outcome(benchmark.name, quantity, values, reference, rate, seconds))
     return outcomes

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 from abut.cells import CELLS
 from abut.check.finding import Finding
 from abut.discretization.pairs import Pair
 from abut.discretization.supports import Supports
 from abut.model import Model
+from abut.parallel.volume import LARGE as PETSC_LARGE
 from abut.solvers.direct import available_memory
-from abut.solvers.linear import chosen
+from abut.solvers.linear import LARGE, chosen
 
 
 @dataclass(frozen=True)
@@ -42,21 +44,33 @@ LAWS = {  # by dimension, solver and degree of the cells
 def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
     """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
     n = int(held.free.shape[1])
-    solver = chosen(model.solve.linear, n, pairs, model.mesh, held.coupled)
+    petsc = model.solve.linear == "petsc"
+    sizes = PETSC_LARGE if petsc else LARGE
+    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, held.coupled, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     law = LAWS[model.dim, "direct" if model.dim == 2 else solver, degree]
     seconds, megabytes = law.time * n**law.time_power, law.base + law.memory * n**law.memory_power
     if model.solve.steps > 1 and solver == "amg":
         seconds *= model.solve.steps
     multipliers = sum(map(len, pairs))
+    name, alone = (f"petsc ({solver})", "on one process ") if petsc else (solver, "")
     findings = [
         Finding(
             "info",
             "solve",
-            f"{n} free displacements, {multipliers} multipliers; linear solver {solver}: about "
-            f"{_time(seconds)} and {_memory(megabytes)} (to a factor of two or three)",
+            f"{n} free displacements, {multipliers} multipliers; linear solver {name}: about "
+            f"{_time(seconds)} and {_memory(megabytes)} {alone}(to a factor of two or three)",
         )
     ]
+    if petsc and find_spec("petsc4py") is None:
+        findings.append(
+            Finding(
+                "warning",
+                "solve",
+                'linear = "petsc" needs petsc4py, which is not installed for this Python',
+                "install it (docs/mpi.md), or take the line out",
+            )
+        )
     available = available_memory()
     if available is not None and 1e6 * megabytes > available:
         cure = 'choose linear = "amg"' if solver == "direct" and model.dim == 3 else "make the mesh coarser"

@@ -37,8 +37,11 @@ def _convert(arguments: argparse.Namespace) -> int:
 
     source, target = arguments.source, arguments.target
     written = [target]
+    notes: list[str] = []
     if target.suffix.lower() == ".vtu":
-        write_mesh(target, Mesh.read(source))
+        mesh = Mesh.read(source)
+        write_mesh(target, mesh)
+        notes += mesh.notes
     elif target.suffix.lower() != ".toml":
         raise InputError(f"{target}: expected a job file (.toml) or a mesh (.vtu) to write")
     elif source.suffix.lower() != DECK:
@@ -46,9 +49,8 @@ def _convert(arguments: argparse.Namespace) -> int:
     else:
         job = load_job(source, ignore=arguments.ignore)
         written = write_job(target, job)
-        if not arguments.quiet:
-            for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
-                print(text)
+        notes += [*(f"ignored: {what}" for what in job.ignored), *job.notes]
     if not arguments.quiet:
+        print(*notes, sep="\n", end="\n" if notes else "")
         print(f"written: {', '.join(map(str, written))}")
     return DONE

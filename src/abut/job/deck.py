@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,7 +63,7 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
     try:
         return translate(deck)
     except InputError as error:
-        if str(error).startswith(str(path.parent)):
+        if str(error).startswith(str(path)) or re.match(r"\S.*?:\d+: \*", str(error)):  # its place is there already
             raise
         raise InputError(f"{path}: {error}") from None
 
@@ -85,6 +86,7 @@ def translate(deck: Deck) -> Translation:
     contacts = [_contact(deck, groups, pair, hard, notes) for pair in deck.pairs]
     rigid = rigid_bodies(deck, moving, plane)
     bound = bonds(deck, groups, plane)
+    notes += _idle(deck, groups)
     thickness = _thickness(deck, plane, notes)
     supports = _supports(bound, groups)
     equations = [
@@ -103,6 +105,7 @@ def translate(deck: Deck) -> Translation:
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(groups.raw(), deck.path)
+    notes += mesh.notes
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
         _check_sides(mesh, contact, pair)
@@ -122,6 +125,21 @@ def translate(deck: Deck) -> Translation:
         solve=_options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored)
+
+
+def _idle(deck: Deck, groups: Groups) -> list[str]:
+    """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
+    apart = {n for e in deck.equations for n, _, _ in e.terms} | {
+        n for r in deck.rigid for n in (r.reference, r.turning)
+    }
+    made = np.union1d(groups.used, np.array(sorted(apart), np.int64))
+    notes: dict[str, None] = {}
+    for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):
+        idle = np.setdiff1d(value.numbers, made)
+        if value.kind == "boundary" and len(idle) == len(value.numbers):
+            what = "belongs to no element and no equation" if np.isin(idle[0], deck.nodes) else "does not exist"
+            notes[f"{value.place}: *BOUNDARY: node {idle[0]} {what}: the line holds nothing"] = None
+    return list(notes)
 
 
 def _plane(deck: Deck) -> str | None:

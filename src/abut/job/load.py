@@ -102,7 +102,9 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) ->
         model, resolved = _model(file, path.parent, refine)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    return Job(model, path.parent / file.output.directory, path, text, resolved.notes, resolved.entries)
+    return Job(
+        model, path.parent / file.output.directory, path, text, (*model.mesh.notes, *resolved.notes), resolved.entries
+    )
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str]) -> Job:

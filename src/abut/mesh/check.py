@@ -11,6 +11,7 @@ from abut.errors import InputError
 from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
+from abut.mesh.turn import clockwise
 
 DEGENERATE = 1e-10  # smallest Jacobian determinant over the largest extent to the power of the dimension
 
@@ -123,11 +124,11 @@ def _check_cells(mesh: Mesh) -> None:
         bad = np.flatnonzero(~(smallest > DEGENERATE))
         if len(bad):
             inverted = bool((smallest[bad] < -DEGENERATE).all())
-            cure = (
-                "their nodes run the wrong way round: reverse them"
-                if inverted and len(bad) == len(nodes)
-                else "improve the mesh there (finer, or straight-sided near curved boundaries)"
-            )
+            cure = "improve the mesh there (finer, or straight-sided near curved boundaries)"
+            if inverted and len(bad) == len(nodes):
+                cure = "their nodes run the wrong way round: reverse them"
+            elif mesh.dim == 2 and clockwise(mesh)[first + bad].all():
+                cure = "their nodes run clockwise, those of other cells do not: reverse them"
             raise InputError(
                 f"mesh: {len(bad)} {block.kind} cells of {_names(bodies_at(mesh, first + bad))} are "
                 f"{'inverted' if inverted else 'inverted or degenerate'}: cells {_some(first + bad)}; {cure}"

@@ -32,6 +32,7 @@ class Mesh:
     surfaces:  name -> (n, 2) int64 rows (cell number, local facet number).
     node_sets: name -> (n,) int64 point numbers, sorted.
     axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
+    notes:     what was changed when the mesh was read, in words.
     """
 
     points: NDArray[np.float64]
@@ -40,6 +41,7 @@ class Mesh:
     surfaces: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     node_sets: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     axisymmetric: bool = False
+    notes: tuple[str, ...] = ()
 
     @staticmethod
     def read(path: str | Path) -> Mesh:

@@ -30,6 +30,27 @@ def _shared_middles(
     return first + inverse.reshape(groups.shape[:2]), points[flat[one]].mean(axis=1)
 
 
+def middles(points: NDArray[np.float64], nodes: NDArray[np.int32], kind: str, fixed: NDArray[np.int64]) -> None:
+    """Put the nodes inside faces and cells of quad9 and hex27, but those ``fixed``, where the curved edges around them lead
+    (Coons); between straight edges they are in the middle already. In the mean of the corners they can lie outside their
+    cell's own inside, next to a round side."""
+    if kind == "quad9":
+        points[nodes[:, 8]] = _coons(points, nodes[:, :4], nodes[:, 4:8])
+    if kind != "hex27":
+        return
+    free = np.ones(len(points), dtype=bool)
+    free[fixed] = False
+    for _, own in CELLS["hex27"].facets:
+        face = nodes[:, own][free[nodes[:, own[8]]]]
+        points[face[:, 8]] = _coons(points, face[:, :4], face[:, 4:8])
+    corners, edges, faces = (points[nodes[:, a:b]].sum(axis=1) for a, b in ((0, 8), (8, 20), (20, 26)))
+    points[nodes[:, 26]] = faces / 2 - edges / 4 + corners / 8
+
+
+def _coons(points: NDArray[np.float64], corners: NDArray[np.int32], edges: NDArray[np.int32]) -> NDArray[np.float64]:
+    return np.asarray(points[edges].sum(axis=1) / 2 - points[corners].sum(axis=1) / 4)
+
+
 def promote(
     points: NDArray[np.float64], cells: NDArray[np.int64], linear: str, kind: str
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

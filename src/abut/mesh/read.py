@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from abut.io.vtu import read_vtu
 from abut.mesh.check import check_mesh, inside
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
 from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.turn import turn_bodies
 
 READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 
@@ -36,7 +38,8 @@ def read_mesh(path: Path) -> Mesh:
 
 
 def build(raw: RawMesh, where: str = "mesh") -> Mesh:
-    """Make bodies, surfaces and node sets of the groups of a file; points that no cell uses are dropped."""
+    """Make bodies, surfaces and node sets of the groups of a file; points that no cell uses are dropped, and
+    plane bodies of clockwise cells turned round."""
     dims = {kind: CELLS[kind].dim for parts in raw.groups.values() for kind in parts if kind != "point"}
     top = max(dims.values(), default=0)
     if top < 2:
@@ -74,7 +77,7 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
                 "are not supported; for a solid give its volume a physical group, so that its cells are saved"
             )
         points = points[:, :2]
-    bare = Mesh(np.ascontiguousarray(points), blocks, members)
+    bare = turn_bodies(Mesh(np.ascontiguousarray(points), blocks, members))
     surfaces, node_sets = {}, {}
     for name, parts in raw.groups.items():
         if not name:
@@ -90,7 +93,7 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
                     f"{where}: no cell of a body uses the points of group '{name}'; take the group out, or give the body "
                     "there a physical group"
                 )
-    return Mesh(bare.points, blocks, members, surfaces, node_sets)
+    return replace(bare, surfaces=surfaces, node_sets=node_sets)
 
 
 def _blocks(

@@ -51,7 +51,7 @@ class InterfacePatch:
     @property
     def passed(self) -> bool:
         errors = [] if self.pressure is None or self.displacement is None else [self.pressure, self.displacement]
-        return max(errors, default=0.0) <= EXACT and max(self.force_balance, self.moment_balance) <= BALANCE
+        return bool(max(errors, default=0.0) <= EXACT and max(self.force_balance, self.moment_balance) <= BALANCE)
 
 
 def interface_patch(model: Model) -> tuple[InterfacePatch, ...]:

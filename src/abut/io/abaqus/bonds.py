@@ -46,7 +46,11 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     used = set(groups.used.tolist())
     apart = {r.reference for r in deck.rigid} | {r.turning for r in deck.rigid}
     axes = 2 if plane else 3
-    held = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if d <= 3 and n not in apart}
+    given = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if n not in apart}
+    for point, course in given.items():
+        if point[1] >= 3 and not zero(course):
+            raise _nothing(deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies do")
+    held = {point: course for point, course in given.items() if point[1] < 3}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
     named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
     local = _local_axes(deck, named)
@@ -234,13 +238,25 @@ def _without_virtual(
                 if other != point:
                     pushed[other] = combine([(1.0, pushed.get(other, NOTHING)), (-value / c, force)])
         del equations[having[0]]
-    for point, force in virtual.pushed.items():
-        if point not in bound and not zero(force):
-            place = next(v.place for s in deck.steps for v in s.values if v.kind == "force" and point[0] in v.numbers)
-            raise InputError(
-                f"{place}: *CLOAD: node {point[0]} belongs to no element and no equation; nothing carries its force"
-            )
+    for kind, own, what in (("force", virtual.pushed, "carries its force"), ("boundary", virtual.held, "follows it")):
+        for point, course in own.items():
+            if point not in bound and not zero(course):
+                raise _nothing(
+                    deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"
+                )
     return equations, pushed
+
+
+def _nothing(deck: Deck, kind: str, point: Point, why: str) -> InputError:
+    """The error of a value that would have no effect, with the card and line that give it."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    place = next(
+        v.place for v in every if v.kind == kind and point[0] in v.numbers and point[1] + 1 in v.directions and v.value
+    )
+    card = "*CLOAD" if kind == "force" else "*BOUNDARY"
+    return InputError(
+        f"{place}: {card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *EQUATION)"
+    )
 
 
 def _reduced_by(bond: Bond, known: Mapping[Point, Course]) -> Bond:

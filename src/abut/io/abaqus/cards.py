@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -118,8 +118,12 @@ def as_integer(text: str) -> int | None:
     return int(text) if text.isascii() and text.isdigit() and len(text) < 16 and int(text) > 0 else None
 
 
-def read_cards(path: Path) -> tuple[Card, ...]:
-    """All cards of a deck, includes in their place.
+Opens = Callable[[str, Mapping[str, str | None]], bool]
+
+
+def read_cards(path: Path, opens: Opens) -> tuple[Card, ...]:
+    """All cards of a deck, includes in their place. ``opens``: whether a card, by key and parameters, has its data read from
+    the file that INPUT names.
 
     Raises InputError, with file and line, for files that cannot be read and lines that are neither card nor data.
     """
@@ -134,7 +138,7 @@ def read_cards(path: Path) -> tuple[Card, ...]:
             cards.append(Card(head[0], head[1], head[2], tuple(data), head[3]))
         data = []
 
-    for text, place in _lines(path, ()):
+    for text, place in _lines(path, (), opens):
         if pending:  # the card goes on after a comma at the end of its line
             text = pending + text
             pending = ""
@@ -190,9 +194,9 @@ def _split(text: str) -> list[str]:
     return parts
 
 
-def _lines(path: Path, above: tuple[Path, ...]) -> Iterator[tuple[str, Place]]:
+def _lines(path: Path, above: tuple[Path, ...], opens: Opens) -> Iterator[tuple[str, Place]]:
     """Lines that say something, those of included files in their place."""
-    held = ""  # a card to include from may go on over several lines
+    held = card = ""  # a card to include from may go on over several lines, as any other
     for number, raw in enumerate(_text(path).splitlines(), start=1):
         text = raw.strip()
         place = Place(str(path), number)
@@ -205,22 +209,28 @@ def _lines(path: Path, above: tuple[Path, ...]) -> Iterator[tuple[str, Place]]:
                 held = ""
                 if name != "INCLUDE" or not parameters.get("INPUT"):
                     raise InputError(f"{place}: {title}: the file is missing; write *INCLUDE, INPUT=file")
-                yield from _included(path, str(parameters["INPUT"]), place, above)
+                yield from _included(path, str(parameters["INPUT"]), place, above, opens)
             continue
         yield text, place
-        if text.startswith("*") and "INPUT" in key(text) and not text.endswith(","):
-            file = _parse(text, place)[2].get("INPUT")
-            if file:
-                yield from _included(path, file, place, above)
+        if card or text.startswith("*"):
+            card += text
+        if card and not card.endswith(","):
+            if "INPUT" in key(card):
+                name, _, parameters = _parse(card, place)
+                if parameters.get("INPUT") and opens(name, parameters):
+                    yield from _included(path, str(parameters["INPUT"]), place, above, opens)
+            card = ""
 
 
-def _included(path: Path, file: str, place: Place, above: tuple[Path, ...]) -> Iterator[tuple[str, Place]]:
+def _included(
+    path: Path, file: str, place: Place, above: tuple[Path, ...], opens: Opens
+) -> Iterator[tuple[str, Place]]:
     inner = path.parent / file
     if inner in (*above, path) or len(above) >= DEEPEST:
         raise InputError(f"{place}: the file {file} includes itself; take the *INCLUDE out")
     if not inner.is_file():
         raise InputError(f"{place}: included file {inner} does not exist")
-    yield from _lines(inner, (*above, path))
+    yield from _lines(inner, (*above, path), opens)
 
 
 def _text(path: Path) -> str:

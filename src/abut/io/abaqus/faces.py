@@ -48,6 +48,8 @@ def surface_rows(deck: Deck, surface: Faces, free: FreeFaces) -> Rows:
     """Rows of a surface, each once. A surface of nodes becomes the free faces that its nodes make up.
 
     Raises InputError for nodes that make up no face."""
+    if surface.empty:
+        raise InputError(f"{surface.place}: *SURFACE: surface '{surface.name}' is empty; give it faces, or nodes")
     if surface.nodes is not None:
         return _of_nodes(deck, surface, surface.nodes, free)
     parts = [np.empty((0, 2), np.int64)]

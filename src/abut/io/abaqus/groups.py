@@ -158,6 +158,8 @@ def read_abaqus(path: Path) -> RawMesh:
         for name, own in parts if np.array_equal(np.sort(joined), np.sort(every)) else [("", every)]:
             groups.body(name, own)
     for name, surface in deck.surfaces.items():
+        if surface.empty:
+            continue
         try:
             groups.new_surface(groups.rows(name), name)
         except InputError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 from abut.errors import InputError, nearest
@@ -154,6 +154,12 @@ _PROCEDURES = {key(name) for name in PROCEDURES}
 STEP_PROCEDURES = _PROCEDURES | {"STATIC"}
 
 
+def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
+    """Whether the file that INPUT names is read: not for what is refused, whatever stands in it."""
+    supported = card != "ELEMENT" or key(parameters.get("TYPE") or "") in ELEMENTS
+    return supported and "INPUT" in _READ.get(card, ())
+
+
 @dataclass(frozen=True)
 class Sifted:
     """cards: those to read; quiet: titles of those without effect; ignored: what was left out because the user said so."""
@@ -226,8 +232,12 @@ def _refuse(found: list[_Refusal]) -> None:
     """One error for all that is refused, each with its place."""
     if not found:
         return
-    texts = [f"{r.card.place}: {r.card.title}: {r.reason}" for r in found]
-    options = " ".join(f"--ignore {_quoted(r.name)}" for r in found if r.name)
+    texts, file = [], ""
+    for r in found:
+        place = r.card.place
+        texts.append(f"{f'line {place.line}' if place.file == file else place}: {r.card.title}: {r.reason}")
+        file = place.file
+    options = " ".join(dict.fromkeys(f"--ignore {_quoted(r.name)}" for r in found if r.name))
     cure = (
         "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -65,12 +65,15 @@ class MeshCards:
         return nodes
 
 
-def mesh_cards(cards: Iterable[Card]) -> MeshCards:
-    """Read the mesh cards: nodes, elements, then sets and surfaces in their order. Raises InputError with place and cure."""
+def mesh_cards(cards: Iterable[Card], notes: list[str]) -> MeshCards:
+    """Read the mesh cards: nodes, elements, then sets and surfaces in their order; ``notes`` gets what was left out. Raises
+    InputError with place and cure."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
     node_sets, element_sets, surfaces = Names(), Names(), {}
     cards = tuple(cards)
+    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
+    virtual = frozenset(number for number in named if number is not None)
     for card in (c for c in cards if c.key == "NODE"):
         own = _nodes(card, nodes)
         if card.get("NSET"):
@@ -81,16 +84,16 @@ def mesh_cards(cards: Iterable[Card]) -> MeshCards:
             element_sets.add(card.need("ELSET"), own)
     for card in cards:
         if card.key == "NSET":
-            node_sets.add(card.need("NSET"), _set(card, "node", node_sets, element_sets, elements))
+            own = _set(card, "node", node_sets, element_sets, elements)
+            node_sets.add(card.need("NSET"), _present(card, "node", own, {*nodes, *virtual}, notes))
         elif card.key == "ELSET":
-            element_sets.add(card.need("ELSET"), _set(card, "element", element_sets, element_sets, elements))
+            own = _set(card, "element", element_sets, element_sets, elements)
+            element_sets.add(card.need("ELSET"), _present(card, "element", own, elements, notes))
         elif card.key == "SURFACE":
             surface = _surface(card, node_sets, element_sets, elements)
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
-    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
-    virtual = frozenset(number for number in named if number is not None)
     places = {key(card.need("TYPE")): card.place for card in reversed(cards) if card.key == "ELEMENT"}
     return MeshCards(ids, points, _blocks(elements, places), node_sets, element_sets, _named(surfaces), virtual)
 
@@ -180,13 +183,18 @@ def _set(
             parts.append(np.arange(first, last + 1, step, dtype=np.int64))
             continue
         parts += [own.resolve(line, i, what) for i, text in enumerate(line.fields) if text]
-    numbers = np.unique(np.concatenate(parts))
-    if what == "element":
-        for number in [n for n in numbers.tolist() if n not in elements][:1]:
-            if not card.has("GENERATE"):
-                raise card.error(f"element {number} of set '{card.need('ELSET')}' does not exist")
-        numbers = np.array([n for n in numbers.tolist() if n in elements], dtype=np.int64)
-    return numbers
+    return np.unique(np.concatenate(parts))
+
+
+def _present(card: Card, what: str, numbers: Numbers, known: Collection[int], notes: list[str]) -> Numbers:
+    """The members that exist. GENERATE may jump over gaps; others that are missing are noted, as CalculiX warns of them."""
+    there = np.array([number in known for number in numbers.tolist()], dtype=bool)
+    missing = numbers[~there]
+    if len(missing) and not card.has("GENERATE"):
+        name = card.need("NSET" if what == "node" else "ELSET")
+        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+        notes.append(f"{card.place}: {card.title}: {what} {missing[0]}{more} of set '{name}' does not exist: left out")
+    return numbers[there]
 
 
 def _surface(
@@ -195,12 +203,9 @@ def _surface(
     name, kind = card.need("NAME"), key(card.get("TYPE", "ELEMENT") or "")
     if kind not in ("ELEMENT", "NODE"):
         raise card.error(f"TYPE={kind}: only surfaces of element faces (ELEMENT) and of nodes (NODE) are read")
-    card.first("faces of elements, or nodes")
     if kind == "NODE":
-        nodes = np.unique(np.concatenate([node_sets.resolve(line, 0, "node") for line in card.lines]))
-        if not len(nodes):
-            raise card.error(f"surface '{name}' has no nodes; check its sets")
-        return Faces(name, card.place, (), nodes)
+        nodes = [np.empty(0, np.int64), *(node_sets.resolve(line, 0, "node") for line in card.lines)]
+        return Faces(name, card.place, (), np.unique(np.concatenate(nodes)))
     faces = []
     for line in card.lines:
         members = element_sets.resolve(line, 0, "element")

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from abut.io.abaqus.cards import Card, key, read_cards
-from abut.io.abaqus.known import NEEDED, sift
+from abut.io.abaqus.known import NEEDED, opens, sift
 from abut.io.abaqus.mesh_cards import MeshCards, mesh_cards
 from abut.io.abaqus.model_cards import (
     cyclic_symmetry,
@@ -30,9 +30,9 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
 
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
-    sifted = sift(_without_void_friction(read_cards(path), notes), ignore)
+    sifted = sift(_without_void_friction(read_cards(path, opens), notes), ignore)
     outside, groups = split_steps(sifted.cards)
-    mesh = mesh_cards(sifted.cards)
+    mesh = mesh_cards(sifted.cards, notes)
     known = amplitudes(sifted.cards)
     pair_list = pairs(sifted.cards, mesh)
     general = general_contact(sifted.cards)
@@ -70,9 +70,9 @@ def read_mesh_only(path: Path) -> Deck:
     """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
 
     Raises InputError as ``read_deck`` does, for these cards only."""
-    every = read_cards(path)
+    every = read_cards(path, opens)
     cards = sift([card for card in every if card.key in MESH or card.key in NEEDED]).cards
-    mesh = mesh_cards(cards)
+    mesh = mesh_cards(cards, [])
     inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
     return Deck(
         str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),

@@ -34,6 +34,10 @@ class Faces:
     faces: tuple[tuple[Numbers, int], ...] = ()
     nodes: Numbers | None = None
 
+    @property
+    def empty(self) -> bool:
+        return not any(len(own) for own, _ in self.faces) if self.nodes is None else not len(self.nodes)
+
 
 @dataclass(frozen=True)
 class Material:

@@ -118,7 +118,9 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
 
 
 def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
-    nodes = mesh.existing(line, 0)
+    nodes = mesh.node_sets.resolve(line, 0, "node")
+    if not len(nodes):
+        raise line.error(f"node set '{line.text(0)}' is empty")
     name = line.text(1).upper()
     if name in NAMED_SUPPORTS:
         return [Prescribed("boundary", nodes, NAMED_SUPPORTS[name], 0.0, amplitude, line.place)]
@@ -172,6 +174,8 @@ def _on_surface(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]
     surface = mesh.surfaces[name.upper()]
     if surface.nodes is not None or any(face == 0 for _, face in surface.faces):
         raise line.error(f"surface '{name}' must list faces of elements (S1, S2, ...) to carry a pressure")
+    if surface.empty:
+        raise line.error(f"surface '{name}' is empty")
     value = line.number(2, "pressure")
     return [Prescribed("pressure", ids, (face,), value, amplitude, line.place) for ids, face in surface.faces]
 

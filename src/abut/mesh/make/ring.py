@@ -12,6 +12,8 @@ from abut.errors import InputError
 from abut.mesh.make.block import axes, grid
 from abut.mesh.mesh import Mesh
 
+WIDEST = 150.0  # degrees; a cell with straight edges has no area left at 180
+
 
 def ring(
     radii: Sequence[float] = (1.0, 2.0),
@@ -26,7 +28,7 @@ def ring(
     with ``cells`` = (through the wall, around). All nodes lie on circles. Surfaces inner, outer, start, end.
 
     fine: zones like {x = [1, 1.1], y = [0, 10]} (x: radius, y: angle) that get the cells; outside they grow by ``growth``.
-    Raises InputError for radii that are not positive and increasing, or angles that do not increase.
+    Raises InputError for radii that are not positive and increasing, angles that do not increase, or too few cells around.
     """
     low, high = checks.array(radii, "ring: radii", shape=(2,))
     first, last = checks.array(angles, "ring: angles", shape=(2,))
@@ -34,7 +36,13 @@ def ring(
         raise InputError(f"ring: radii: expected 0 < inner < outer, got {list(radii)}")
     if not first < last < first + 360.0:
         raise InputError(f"ring: angles: expected start < end < start + 360 degrees, got {list(angles)}")
-    mesh = grid(axes((radii, angles), cells, fine, growth, "ring"), cell)
+    lines = axes((radii, angles), cells, fine, growth, "ring")
+    widest = np.diff(lines[1]).max()
+    if widest > WIDEST:
+        raise InputError(
+            f"ring: cells: one spans {widest:g} degrees; give more around, so that none spans over {WIDEST:g}"
+        )
+    mesh = grid(lines, cell)
     r, turn = mesh.points[:, 0], np.deg2rad(mesh.points[:, 1])
     points = np.column_stack([r * np.cos(turn), r * np.sin(turn)]) + checks.array(centre, "ring: centre", shape=(2,))
     names = {"inner": "left", "outer": "right", "start": "bottom", "end": "top"}

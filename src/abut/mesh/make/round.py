@@ -13,6 +13,9 @@ from abut.errors import InputError
 from abut.mesh.make.block import axis, grid
 from abut.mesh.make.grading import graded
 from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.promote import middles
+
+CROWDED = 0.3  # of the distances from the round sides of an octant: about the last fifth of the way to where they meet
 
 
 def disc(
@@ -60,6 +63,7 @@ def cylinder(
     points = mesh.points.copy()
     nodes = mesh.nodes_of("round")
     points[nodes, :2] *= radius / np.linalg.norm(points[nodes, :2], axis=1, keepdims=True)
+    middles(points, mesh.blocks[0].nodes, cell, nodes)
     return replace(mesh, points=points)
 
 
@@ -148,8 +152,14 @@ def _lines(
     if isinstance(cells, bool) or not isinstance(cells, int) or cells < 1:
         raise InputError(f"cells: expected a whole number >= 1, got {cells!r}")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
-    along = graded(np.sqrt(2.0) * fine / radius, cells, 1.0, growth)
-    return radius, along, -1.0 + graded(fine / (cells * radius), 1, 1.0, growth)
+    return radius, _graded(np.sqrt(2.0) * fine, cells, radius, growth), -1.0 + _graded(fine / cells, 1, radius, growth)
+
+
+def _graded(fine: float, cells: int, radius: float, growth: float) -> NDArray[np.float64]:
+    """Grid lines on [0, 1]; no thin cell at the end where little is left beyond ``fine``."""
+    if radius - fine < 0.5 * fine / cells:
+        return np.linspace(0.0, 1.0, cells + 1)
+    return graded(fine / radius, cells, 1.0, growth)
 
 
 def _axis(mesh: Mesh, radius: float) -> NDArray[np.int64]:
@@ -167,6 +177,7 @@ def _finish(mesh: Mesh, radius: float, centre: Sequence[float]) -> Mesh:
     points = mesh.points.copy()
     nodes = mesh.nodes_of("round")
     points[nodes] *= radius / np.linalg.norm(points[nodes], axis=1, keepdims=True)
+    middles(points, mesh.blocks[0].nodes, mesh.blocks[0].kind, nodes)
     return replace(mesh, points=points + checks.array(centre, "centre", shape=(mesh.dim,)))
 
 
@@ -185,21 +196,21 @@ def sphere_octant(
     """
     # Near the pole the map to the ball shortens lengths as that to the disc does.
     radius, side, up = _lines(radius, fine, cells, growth)
-    up = up + 1.0
-    mesh = grid([side, side, up], cell, lambda x: radius * _octant_map(x))
+    # Grid axes (y, x, -z): tetrahedra are cut along diagonals from the centre outward, so that none has all four corners
+    # on the sphere.
+    mesh = grid([side, side, -up[::-1]], cell, lambda x: radius * _octant_map(x[:, [1, 0, 2]]))
     surfaces = {
-        "round": np.concatenate([mesh.surfaces[n] for n in ("bottom", "right", "back")]),
-        "x0": mesh.surfaces["left"],
-        "y0": mesh.surfaces["front"],
-        "z0": mesh.surfaces["top"],
+        "round": np.concatenate([mesh.surfaces[n] for n in ("top", "back", "right")]),
+        "x0": mesh.surfaces["front"],
+        "y0": mesh.surfaces["left"],
+        "z0": mesh.surfaces["bottom"],
     }
     return _finish(replace(mesh, surfaces=surfaces), radius, centre)
 
 
 def _octant_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Cube [0, 1]^3 -> octant of the unit ball, the three sides away from the centre to the sphere."""
-    p = np.stack([x[:, 0], x[:, 1], 1.0 - x[:, 2]], axis=1)
-    u, v, w = p.T
+    """Cube [0, 1]^3 -> octant of the unit ball below its centre, the three sides away from the centre to the sphere."""
+    u, v, w = x.T
     ball = np.stack(
         [
             u * np.sqrt(np.maximum(1 - v**2 / 2 - w**2 / 2 + v**2 * w**2 / 3, 0)),
@@ -208,4 +219,11 @@ def _octant_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
         ],
         axis=1,
     )
+    # |p|^2 = 1 - a b c with a = 1 - u^2, ...: where the three round sides meet, points crowd under the sphere faster than it
+    # bends. There they are put deeper, so that small cells are still convex.
+    a, b, c = 1.0 - x.T**2
+    edges = 1.0 - (1.0 - a * b) * (1.0 - b * c) * (1.0 - c * a)
+    near = (edges < CROWDED) & (a * b * c > 0.0)
+    depth = a[near] * b[near] * c[near]
+    ball[near] *= np.sqrt((1.0 - depth * CROWDED / edges[near]) / (1.0 - depth))[:, None]
     return ball * np.array([1.0, 1.0, -1.0])
