@@ -126,8 +126,8 @@ def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
 
 @pytest.mark.parametrize("cells", [12, 20, 28])
 def test_at_the_pole_of_tetrahedra(cells: int) -> None:
-    """tet4 octant on a rigid plane: the pole, the corner of a single cell of constant strain there, lags behind: by 11.7, 10.4
-    and 10.2 % of the peak (22 to 12 % with the multiplier P1 itself)."""
+    """tet4 octant on a rigid plane: the pole, the corner of a single cell of constant strain there, lags behind: by
+    11.7, 10.4 and 10.2 % of the peak (22 to 12 % with the multiplier P1 itself)."""
     x, p = at_corners(abut.solve(octant("tet4", cells)).contacts[0])
     exact = ellipse(OCTANT, OCTANT_PEAK, 3)(x)
     assert np.abs(p - exact)[distance(x) < 0.9 * OCTANT].max() <= 0.12 * OCTANT_PEAK
