@@ -111,7 +111,9 @@ def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, co
     parts = interfaces(system.pairs)
     solver = Iterative(matrix, system.operator, parts, loose, pressure_scale(system), count)
     predict = predictor(parts, np.asarray(system.operator @ loose))
-    iterative = replace(system, step=solver.step, exact=False, accurate=ACCURATE, predict=predict)
+    iterative = replace(
+        system, step=solver.step, factorise=None, softens=False, exact=False, accurate=ACCURATE, predict=predict
+    )
     name = f"PETSc Krylov with {kind}"
     return Prepared(
         iterative, lambda outcome, _: outcome, lambda other: _iterative(matrix, other, loose, kind, count), name,
@@ -128,7 +130,8 @@ def prepare_direct(matrix: Distributed, system: System) -> Prepared:
         )
     solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
     return Prepared(
-        replace(system, step=solver.step), lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other),
+        replace(system, step=solver.step, factorise=None), lambda outcome, _: outcome,
+        lambda other: prepare_direct(matrix, other),
         f"PETSc direct ({name})", f"PETSc's direct solver {name}, {_processes(matrix.team)}",
     )  # fmt: skip
 

@@ -108,4 +108,4 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], 
     parts = interfaces(system.pairs)
     solver = Iterative(system.operator, hierarchy, parts, motions, scale, count)
     predict = predictor(parts, np.asarray(system.operator @ motions))
-    return replace(system, step=solver.step, exact=False, predict=predict)
+    return replace(system, step=solver.step, factorise=None, softens=False, exact=False, predict=predict)
