@@ -98,7 +98,9 @@ def softness(system: System, scale: Vector) -> float:
     n, root = len(scale), np.sqrt(scale)
     one = np.ones(n)
     push = np.asarray(system.operator.T @ one)
-    if sp.issparse(system.stiffness):
+    if system.respond is not None:
+        moved = system.operator @ system.respond(push, _springs(system))
+    elif sp.issparse(system.stiffness):
         moved = system.operator @ _held(system).solve(push)
     elif isinstance(system.stiffness, np.ndarray) and system.compliance is not None:
         held = system.stiffness + np.diag(_springs(system))
@@ -151,7 +153,7 @@ def iterate(programme: Programme, here: Interior) -> Interior:
 
     if programme.system.factorise is None:
         du, dp, dg = direction(CENTRING * mean * scale)
-        closing, opening = dp, dg
+        closing, opening = dp / (1.0 - CENTRING), dg / (1.0 - CENTRING)
     else:
         _, closing, opening = direction(np.zeros_like(p))
         length = min(1.0, _longest(p, closing, free), _longest(g, opening, free))

@@ -79,7 +79,7 @@ class System:
     (gap, pressure, active, tied) -> a guess at the final active set, where one is cheap. compliance, opening: where
     displacements have been eliminated, the gaps that come of them, by pressures (n, n) and by each history (n,
     n_histories). motions: (n_free, m) rigid motions that supports leave free. softens: whether ``step`` takes the rows of
-    theory (V18).
+    theory (V18); respond: (forces, springs) -> displacements, (n_free,) all, roughly, by iterative solvers.
     """
 
     stiffness: Any
@@ -92,6 +92,7 @@ class System:
     motions: NDArray[np.float64]
     factorise: Callable[[Rows], Solve] | None = None
     softens: bool = True
+    respond: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]] | None = None
     exact: bool = True
     accurate: float = ACCURATE
     predict: Predict | None = None

@@ -60,7 +60,7 @@ def search(
 
     clock = time.perf_counter()
     programme = Programme(system, stage.weights, scale, tied, softness(system, scale))
-    if system.compliance is None:  # it took a factorisation
+    if system.compliance is None:  # it took a solution
         log.add(_row(programme, state, stage, log.next, 0, clock))
     if log.full:
         return Outcome(state, tuple(log.done), False, ~tied, laws)
