@@ -58,7 +58,7 @@ def linearise_active(
 def linearise_interior(
     gap: NDArray[np.float64], shift: NDArray[np.float64], softness: NDArray[np.float64], active: NDArray[np.bool_]
 ) -> Linearisation:
-    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V21).
+    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V18).
 
     gap, shift: (n,) weighted gaps; softness: (n,) gap per pressure, positive, or zero where a gap is to close."""
     n = len(gap)

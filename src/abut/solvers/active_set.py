@@ -35,7 +35,7 @@ FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once 
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
-MANY = 8  # iterations from which on ...
+MANY = 8  # iterations from which on (and only then where sets are foreseen) ...
 SOON = (8.0, 4.0)  # ... so many more, at the pace of the last three, are too many: before, and from then on
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
@@ -113,7 +113,7 @@ def solve_step(
         stuck = np.array_equal(system.complete(wanted, gap) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
-        slow = repeated or hopeless(changes)
+        slow = repeated or (hopeless(changes) and (system.predict is None or len(changes) >= MANY))
         if slow:
             _check_balance(system, stage)
         if repeated and not stuck and not system.exact and finest > FINE:
