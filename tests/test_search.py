@@ -274,8 +274,10 @@ def test_easy_models_never_search(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_when_a_set_is_hopeless() -> None:
-    assert not active_set.hopeless([40, 14, 5])
-    assert not active_set.hopeless([66, 16, 13, 9, 7])
-    assert not active_set.hopeless([4, 3, 2, 2])
-    assert active_set.hopeless([4, 3, 2, 2, 2, 2])  # no fewer for three iterations
-    assert active_set.hopeless([16, 9, 8, 8])  # fewer, but at that pace nine more
+    assert not active_set.hopeless([40, 14, 5], 400)
+    assert not active_set.hopeless([80, 6, 6, 8, 6, 4], 57)  # so few are left that it may settle yet
+    assert not active_set.hopeless([80, 6, 6, 8, 6, 4, 4], 53)
+    assert active_set.hopeless([106, 3, 6, 15, 13], 90)  # few are left too, but ever more change
+    assert not active_set.hopeless([4, 3, 2, 2], 100)
+    assert active_set.hopeless([4, 3, 2, 2, 2, 2], 100)  # no fewer for three iterations
+    assert active_set.hopeless([16, 9, 8, 8], 400)  # fewer, but at that pace nine more

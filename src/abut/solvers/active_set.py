@@ -35,8 +35,12 @@ FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once 
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
-MANY = 8  # iterations from which on (and only then where sets are foreseen) ...
-SOON = (8.0, 4.0)  # ... so many more, at the pace of the last three, are too many: before, and from then on
+CROWD, CROWDED = (
+    16,
+    6,
+)  # so many times the changes, which do not grow, make up the active set: so long it may settle yet
+MANY = 8  # iterations before which sets that are foreseen may settle yet
+SOON = 8.0  # so many more iterations, at the pace of the last three, are too many
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
 
@@ -113,7 +117,7 @@ def solve_step(
         stuck = np.array_equal(system.complete(wanted, gap) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
-        slow = repeated or (hopeless(changes) and (system.predict is None or len(changes) >= MANY))
+        slow = repeated or (hopeless(changes, int(active.sum())) and (system.predict is None or len(changes) >= MANY))
         if slow:
             _check_balance(system, stage)
         if repeated and not stuck and not system.exact and finest > FINE:
@@ -136,12 +140,13 @@ def stalled(changes: Sequence[int]) -> bool:
     return len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
 
 
-def hopeless(changes: Sequence[int]) -> bool:
-    """Whether the set will take many more iterations, if any number is enough."""
-    if len(changes) <= PATIENCE:
+def hopeless(changes: Sequence[int], active: int) -> bool:
+    """Whether the set will take many more iterations, if any number is enough. active: multipliers in contact."""
+    settling = active <= CROWD * changes[-1] <= CROWD * min(changes)
+    if len(changes) <= (CROWDED if settling else PATIENCE):
         return False
     pace = np.log(changes[-1 - PATIENCE] / changes[-1]) / PATIENCE
-    return stalled(changes) or np.log(changes[-1]) > SOON[len(changes) >= MANY] * pace
+    return stalled(changes) or bool(np.log(changes[-1]) > SOON * pace)
 
 
 def _next_share(share: float, repeated: bool) -> float:
