@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import nnls
 
 from abut.discretization.pairs import Pair
 from abut.discretization.rigid import (
@@ -19,6 +20,8 @@ from abut.discretization.rigid import (
 )
 from abut.discretization.supports import Supports
 from abut.mesh.mesh import Mesh
+
+UNBALANCED = 1e-9  # force that no contact balances, over the sum of all, from which on it moves a body
 
 
 @dataclass(frozen=True)
@@ -53,10 +56,15 @@ class Holding:
             own |= clearance <= clearance.min() + 0.01
         return result if self._holds(result) else np.ones_like(active)
 
-    def freed(self, active: NDArray[np.bool_]) -> str:
-        """Which body an active set lets go, in words."""
-        motions = free_motions([self.supports, *self._rows(active)])
-        return describe(self.rigid, motions) if motions.shape[1] else "no body is let go"
+    def pulled_off(self, held: Supports, load: NDArray[np.float64], weights: NDArray[np.float64]) -> str:
+        """The motion, in words, that loads cause though contact pushes wherever it can; empty where there is none.
+
+        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.solvers.newton.System``."""
+        free = free_motions([self.supports])
+        force = load @ weights
+        moves = held.coordinates(self.rigid.modes @ free)
+        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()))
+        return "" if motion is None else describe(self.rigid, (free @ motion)[:, None])
 
     def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
@@ -64,6 +72,29 @@ class Holding:
 
     def _holds(self, active: NDArray[np.bool_]) -> bool:
         return free_motions([self.supports, *self._rows(active)]).shape[1] == 0
+
+
+def unbalanced(
+    pairs: Sequence[Pair], moves: NDArray[np.float64], work: NDArray[np.float64], size: float
+) -> NDArray[np.float64] | None:
+    """The motion (m,) that is left where no pressures that push (ties: nor pull) balance the loads, theory (V15); None
+    where some do.
+
+    moves: (n_free, m) rigid motions that supports leave free; work: (m,) of the loads on them; size: sum of all forces,
+    of which a work of ``UNBALANCED`` is none."""
+    if not len(work) or not np.abs(work).max() > UNBALANCED * size:
+        return None
+    push = [np.zeros((0, len(work)))]
+    for pair in pairs:  # with points the pressure is positive there, its coefficients need not be
+        moved = np.asarray((pair.operator if pair.points is None else pair.points.operator) @ moves)
+        push += [moved, -moved] if pair.tied else [moved]
+    forces = np.concatenate(push)
+    length = np.linalg.norm(forces, axis=1)
+    forces = forces[length > 0.0] / length[length > 0.0, None]
+    if not len(forces):
+        return work
+    pressure, missing = nnls(forces.T, -work)
+    return work + forces.T @ pressure if missing > UNBALANCED * size else None
 
 
 def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:

@@ -16,7 +16,7 @@ from abut.interface.coupling import surface_degree
 from abut.interface.pressure import DUAL_P1
 from abut.model import Model
 from abut.solvers.active_set import Outcome, Stage, System, Unknowns, solve_step
-from abut.solvers.blocks import newton_step
+from abut.solvers.blocks import factorise, newton_step
 from abut.solvers.linear import Prepared
 from abut.state import Iteration
 
@@ -64,7 +64,7 @@ def load_step(
         solver = solver.renew(inner)
     elif not (found.converged and search) or (solver.system.exact and not smooth):
         return Reached(found, solver, system, none)
-    outcome = solve_step(solver.system, found.unknowns, stage, limit, observe, found.iterations, settled=True)
+    outcome = solve_step(solver.system, found.unknowns, stage, limit, observe, found.iterations, settle=True)
     return Reached(outcome, solver, inner, none if inner is system else inside)
 
 
@@ -75,4 +75,7 @@ def with_plain(model: Model, held: Supports, system: System, inside: NDArray[np.
     if all(new is old for new, old in zip(pairs, system.pairs)):
         return system
     operator = sp.vstack([p.operator for p in pairs]).tocsr()
-    return replace(system, pairs=pairs, operator=operator, step=partial(newton_step, system.stiffness, operator))
+    return replace(
+        system, pairs=pairs, operator=operator, step=partial(newton_step, system.stiffness, operator),
+        factorise=partial(factorise, system.stiffness, operator),
+    )  # fmt: skip

@@ -21,7 +21,7 @@ from abut.discretization.supports import Supports, supports
 from abut.errors import InputError
 from abut.model import Model
 from abut.solvers.active_set import System
-from abut.solvers.blocks import newton_step
+from abut.solvers.blocks import factorise, newton_step
 from abut.state import Observer, Phase
 
 if TYPE_CHECKING:
@@ -75,8 +75,10 @@ def problem(
         pairs=every,
         operator=operator,
         complete=held_by.complete,
-        freed=held_by.freed,
+        pulled_off=partial(held_by.pulled_off, held, load),
         step=partial(newton_step, reduced, operator),
+        motions=held.coordinates(held_by.free),
+        factorise=partial(factorise, reduced, operator),
     )
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
-from abut.analysis.holding import Holding, holding
+from abut.analysis.holding import Holding, holding, unbalanced
 from abut.analysis.loads import loads
 from abut.analysis.regularisation import regularise
 from abut.check.finding import Finding, Motion, from_error
@@ -19,7 +18,6 @@ from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 from abut.model import Model
 
-UNBALANCED = 1e-6  # load that pressures cannot balance, over all loads
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
 
 
@@ -54,25 +52,11 @@ def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np
     """An error where no pressures that push balance the loads on the motions (n_modes, m) that supports leave free."""
     load = loads(model).at_ends(model)[-1]
     work = free.T @ (held_by.rigid.modes.T @ load)
-    if not len(work):
+    moves = held.coordinates(held_by.rigid.modes @ free)
+    motion = unbalanced(held_by.pairs, moves, work, float(np.abs(load).sum()))
+    if motion is None:
         return []
-    push = [np.zeros((0, len(work)))]
-    moves = held_by.rigid.modes @ free
-    for pair in held_by.pairs:
-        if pair.points is not None:  # there the pressure is positive at points, its coefficients need not be
-            push.append(np.asarray(pair.points.operator @ held.coordinates(moves)))
-            continue
-        moved = np.asarray(pair.rows @ moves)
-        push += [moved, -moved] if pair.tied else [moved]
-    forces = np.concatenate(push)
-    size = np.linalg.norm(forces, axis=1)
-    forces = forces[size > 0.0] / size[size > 0.0, None]
-    if not len(forces):
-        return []
-    pressure, missing = nnls(forces.T, -work)
-    if missing <= UNBALANCED * np.abs(load).sum():
-        return []
-    text = describe(held_by.rigid, (free @ (work + forces.T @ pressure))[:, None])
+    text = describe(held_by.rigid, (free @ motion)[:, None])
     return [
         Finding(
             "error",

@@ -55,6 +55,23 @@ def linearise_active(
     )
 
 
+def linearise_interior(
+    gap: NDArray[np.float64], shift: NDArray[np.float64], softness: NDArray[np.float64], active: NDArray[np.bool_]
+) -> Linearisation:
+    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V18).
+
+    gap, shift: (n,) weighted gaps; softness: (n,) gap per pressure, positive, or zero where a gap is to close."""
+    n = len(gap)
+    return Linearisation(
+        residual=shift - gap,
+        active=active,
+        by_gap=-sp.identity(n, format="csr"),
+        by_pressure=sp.diags(-softness, format="csr"),
+        at_points=False,
+        decoupled=np.zeros(n, dtype=bool),
+    )
+
+
 def constraint_function(
     gap: NDArray[np.float64], pressure: NDArray[np.float64], epsilon: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -19,7 +19,7 @@ from abut.solvers.blocks import saddle
 from abut.solvers.direct import SINGULAR
 from abut.solvers.iterative import Count, NotConverged, compliance, pressure_scale
 from abut.solvers.linear import Prepared
-from abut.solvers.schur import Interface, interfaces, predictor, schur_inverse
+from abut.solvers.schur import Interface, interfaces, predictor, schur, schur_inverse
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -110,8 +110,10 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
 def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, count: Count) -> Prepared:
     parts = interfaces(system.pairs)
     solver = Iterative(matrix, system.operator, parts, loose, pressure_scale(system), count)
-    predict = predictor(parts, np.asarray(system.operator @ loose))
-    iterative = replace(system, step=solver.step, exact=False, accurate=ACCURATE, predict=predict)
+    predict = predictor(schur(parts), np.asarray(system.operator @ loose))
+    iterative = replace(
+        system, step=solver.step, factorise=None, softens=False, exact=False, accurate=ACCURATE, predict=predict
+    )
     name = f"PETSc Krylov with {kind}"
     return Prepared(
         iterative, lambda outcome, _: outcome, lambda other: _iterative(matrix, other, loose, kind, count), name,
@@ -128,7 +130,8 @@ def prepare_direct(matrix: Distributed, system: System) -> Prepared:
         )
     solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
     return Prepared(
-        replace(system, step=solver.step), lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other),
+        replace(system, step=solver.step, factorise=None), lambda outcome, _: outcome,
+        lambda other: prepare_direct(matrix, other),
         f"PETSc direct ({name})", f"PETSc's direct solver {name}, {_processes(matrix.team)}",
     )  # fmt: skip
 

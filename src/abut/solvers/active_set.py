@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.solvers.constraint_function import finish_smooth
+from abut.solvers.exact import ROUGH, STRIDE, Aim, finer, settled, solve_set
 from abut.solvers.newton import (
     Laws,
     Outcome,
@@ -21,27 +20,27 @@ from abut.solvers.newton import (
     System,
     Unknowns,
     active_laws,
-    advance,
     internal_force,
     largest_force,
     largest_pressure,
-    next_active,
-    report,
     weight,
 )
+from abut.solvers.search import Log, search
 from abut.state import Iteration
 
 __all__ = ["Laws", "Outcome", "Rows", "Stage", "System", "Unknowns", "following", "solve_step", "start"]
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
-ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
-FINE = 1e-5  # the same once sets repeat
-Aim = Literal["solution", "set", "this set"]
-STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
-SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
+FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once sets repeat
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
+CROWD, CROWDED = (
+    16,
+    6,
+)  # so many times the changes, which do not grow, make up the active set: so long it may settle yet
+MANY = 8  # iterations before which sets that are foreseen may settle yet
+SOON = 8.0  # so many more iterations, at the pace of the last three, are too many
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
 
@@ -67,89 +66,102 @@ def solve_step(
     observe: Callable[[Iteration], None],
     earlier: Sequence[Iteration] = (),
     aim: Aim = "solution",
-    settled: bool = False,
+    settle: bool = False,
 ) -> Outcome:
     """Find the state at the end of a load step, from the state ``begin``.
 
     earlier: iterations of the same step before; aim: "set" where only the active set is wanted, of laws that have one, "this
-    set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settled: the set of ``begin`` is
+    set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
     state = begin
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    laws = partial(active_laws, weights=stage.weights)
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
-    done = list(earlier)
+    log = Log(list(earlier), observe, len(earlier) + limit)
     changes: list[int] = []
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
-    changed = np.zeros(len(state.active), dtype=bool)
     finest = ROUGH
-    accuracy = STRIDE if settled else ROUGH
-    if state.active.all() and not settled:
+    accuracy = STRIDE if settle else ROUGH
+    if state.active.all() and not settle:
         accuracy = 0.1 * system.accurate  # closed all over may well be the answer
-    for count in range(len(done) + 1, len(done) + limit + 1):
-        clock = time.perf_counter()
-        active = system.complete(state.active, system.gap(state, stage.weights)) | tied
-        state = replace(state, active=active)
-        solved = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
-        wanted, violation = next_active(system, solved, stage, tied)
-        changed = wanted != active
-        closure = _closure(system, solved, stage)
-        row = report(system, solved, stage, count, int(changed.sum()), violation, time.perf_counter() - clock)
-        row = replace(row, contact_residual=max(row.contact_residual, closure))
-        done.append(row)
-        observe(row)
+    while not log.full:
+        try:
+            solved = solve_set(system, state, stage, tied, log.next, accuracy)
+        except SingularModelError:
+            _check_balance(system, stage)
+            if not system.softens or tied.all() or aim == "this set":
+                raise
+            return search(system, begin, stage, limit, log, tied, aim)
+        log.add(solved.row)
+        state, wanted, changed = solved.state, solved.wanted, solved.changed
+        active = state.active
         history.append(active)
         if not changed.any():
-            error = max(row.residual, closure)
-            if aim == "set" and (system.exact or error <= SEARCHED):
-                return Outcome(solved, tuple(done), True, changed, partial(active_laws, weights=stage.weights))
-            if system.exact or error <= system.accurate:
-                return finish_smooth(system, solved, stage, limit, done, observe)
-            state, accuracy = solved, max(0.3 * (SEARCHED if aim == "set" else system.accurate) / error, STRIDE)
+            if settled(system, solved, aim):
+                if aim == "set":
+                    return Outcome(state, tuple(log.done), True, changed, laws)
+                return finish_smooth(system, state, stage, limit, log.done, observe)
+            accuracy = finer(system, solved, aim)
             continue
         if aim == "this set":
             break
-        if (
-            system.predict is not None
-            and not share
-            and (count - len(earlier) <= EARLY or changed.sum() > FEW * active.sum())
-        ):
-            guess = system.predict(system.gap(solved, stage.weights), solved.pressure, wanted, tied)
+        changes.append(int(changed.sum()))
+        gap = system.gap(state, stage.weights)
+        early = len(log.done) - len(earlier) <= EARLY
+        if system.predict is not None and not share and (early or changes[-1] > FEW * active.sum()):
+            guess = system.predict(gap, state.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 wanted = guess
         accuracy = finest
-        if np.array_equal(system.complete(wanted, system.gap(solved, stage.weights)) | tied, active):
-            raise SingularModelError(
-                f"{system.freed(wanted)}: the loads pull it off its contact; hold it by a support or turn the load round"
-            )
+        stuck = np.array_equal(system.complete(wanted, gap) | tied, active)
         seen.add(active.tobytes())
-        changes.append(int(changed.sum()))
-        stalled = len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
-        repeated = wanted.tobytes() in seen
-        if repeated and not system.exact and finest > FINE:
+        repeated = stuck or wanted.tobytes() in seen
+        slow = repeated or (hopeless(changes, int(active.sum())) and (system.predict is None or len(changes) >= MANY))
+        if slow:
+            _check_balance(system, stage)
+        if repeated and not stuck and not system.exact and finest > FINE:
             accuracy = finest = FINE  # sets may repeat because they were not solved well enough
             seen.clear()
-        elif repeated or stalled or share:
-            if repeated:
-                share = min(1.0, GROWTH * share) if share else FIRST_SHARE
-            else:
-                share = min(max(share, FIRST_SHARE), 1.0 / GROWTH)
-            strong = changed & (violation >= share * violation[changed].max())
+        elif slow and system.softens:
+            return search(system, begin, stage, limit, log, tied, aim)
+        elif repeated or stalled(changes) or share:
+            share = _next_share(share, repeated)
+            strong = changed & (solved.violation >= share * solved.violation[changed].max())
             wanted = np.where(strong, wanted, active)
-        state = replace(solved, active=wanted)
+        state = replace(state, active=wanted)
     recent = np.stack(history[-6:])
     cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | changed
-    return Outcome(
-        replace(solved, active=active), tuple(done), False, cycling, partial(active_laws, weights=stage.weights)
-    )
+    return Outcome(replace(state, active=active), tuple(log.done), False, cycling, laws)
 
 
-def _closure(system: System, state: Unknowns, stage: Stage) -> float:
-    """Largest weighted gap left where contact is closed, as a pressure over the largest pressure."""
-    if system.exact or not state.active.any():
-        return 0.0
-    gap = system.gap(state, stage.weights) / system.join([pair.scale for pair in system.pairs])
-    return float(np.abs(gap[state.active]).max() / largest_pressure(state, stage))
+def stalled(changes: Sequence[int]) -> bool:
+    """Whether for some iterations as many multipliers changed as ever before. changes: how many in each."""
+    return len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
+
+
+def hopeless(changes: Sequence[int], active: int) -> bool:
+    """Whether the set will take many more iterations, if any number is enough. active: multipliers in contact."""
+    settling = active <= CROWD * changes[-1] <= CROWD * min(changes)
+    if len(changes) <= (CROWDED if settling else PATIENCE):
+        return False
+    pace = np.log(changes[-1 - PATIENCE] / changes[-1]) / PATIENCE
+    return stalled(changes) or bool(np.log(changes[-1]) > SOON * pace)
+
+
+def _next_share(share: float, repeated: bool) -> float:
+    if repeated:
+        return min(1.0, GROWTH * share) if share else FIRST_SHARE
+    return min(max(share, FIRST_SHARE), 1.0 / GROWTH)
+
+
+def _check_balance(system: System, stage: Stage) -> None:
+    """Raises SingularModelError where no contact that only pushes balances the loads, and names what they move."""
+    motion = system.pulled_off(stage.weights)
+    if motion:
+        raise SingularModelError(
+            f"{motion}: the loads pull it off its contact; hold it by a support or turn the load round"
+        )
 
 
 def following(system: System, stage: Stage, outcome: Outcome, weights: NDArray[np.float64]) -> Stage:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.solvers import direct
-from abut.solvers.newton import Rows
+from abut.solvers.newton import Rows, Solve
 
 
 @dataclass(frozen=True)
@@ -37,15 +37,17 @@ class Saddle:
 def saddle(unit: float, operator: Any, rows: Rows, residual: NDArray[np.float64]) -> Saddle:
     """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked; residual:
     K u - B^T p - f."""
-    s = unit / _row_max(operator)
     known, fixed = rows.decoupled, rows.fixed
+    s = unit / _row_max(operator)
+    soft = np.where(known, 0.0, -rows.by_pressure.diagonal()) if rows.symmetric else np.zeros(len(s))
+    s = np.where(soft > 0.0, 1.0 / np.sqrt(s**-2 + soft / unit), s)
     rhs_u = -residual + operator.T @ fixed
     ones = sp.diags(np.where(known, -unit, 0.0))
     free = sp.diags((~known).astype(float))
     coupled = (sp.diags(s) @ free @ operator).tocsr()
     if rows.symmetric:
         rhs_p = np.where(known, 0.0, -rows.residual * s)
-        return Saddle(coupled, -coupled, ones, rhs_u, rhs_p, True, fixed, known, s)
+        return Saddle(coupled, -coupled, ones - sp.diags(soft * s * s), rhs_u, rhs_p, True, fixed, known, s)
     by_displacement, by_pressure = free @ rows.by_displacement, free @ rows.by_pressure @ free @ sp.diags(s)
     t = unit / np.maximum(_row_max(by_displacement), _row_max(by_pressure, 0.0))
     rhs_p = np.where(known, 0.0, t * (-rows.residual - rows.by_pressure @ fixed))
@@ -69,13 +71,33 @@ def newton_step(
     if len(pressure) == 0:
         return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
+    matrix = _whole(stiffness, s)
+    solution = direct.solve(matrix, np.concatenate([s.rhs_u, s.rhs_p]), symmetric=s.symmetric)
+    return solution[: len(residual)], s.pressure(solution[len(residual) :])
+
+
+def factorise(stiffness: Any, operator: Any, rows: Rows) -> Solve:
+    """The same for several right-hand sides (residual of equilibrium, residual of the law) with one factorisation; of
+    symmetric rows."""
+    unit, n = np.median(stiffness.diagonal()), stiffness.shape[0]
+    factors = direct.Factorization(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n))))
+
+    def solve(
+        residual: NDArray[np.float64], of_law: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        s = saddle(unit, operator, replace(rows, residual=of_law), residual)
+        solution = factors.solve(np.concatenate([s.rhs_u, s.rhs_p]))
+        return solution[:n], s.pressure(solution[n:])
+
+    return solve
+
+
+def _whole(stiffness: Any, s: Saddle) -> Any:
+    """The matrix, only its upper triangle where it is symmetric."""
     if s.symmetric:
         upper = sp.triu(stiffness, format="csr")
-        matrix = sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr")
-    else:
-        matrix = sp.bmat([[stiffness, -s.coupled.T], [s.lower, s.corner]], format="csr")
-    solution = direct.solve(store_diagonal(matrix), np.concatenate([s.rhs_u, s.rhs_p]), symmetric=s.symmetric)
-    return solution[: len(residual)], s.pressure(solution[len(residual) :])
+        return store_diagonal(sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr"))
+    return store_diagonal(sp.bmat([[stiffness, -s.coupled.T], [s.lower, s.corner]], format="csr"))
 
 
 def _row_max(matrix: Any, empty: float = 1.0) -> NDArray[np.float64]:

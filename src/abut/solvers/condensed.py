@@ -15,7 +15,7 @@ from abut.discretization.pairs import Pair
 from abut.errors import SingularModelError
 from abut.solvers import direct
 from abut.solvers.blocks import store_diagonal
-from abut.solvers.newton import Laws, Rows, System, Unknowns
+from abut.solvers.newton import Laws, Rows, Solve, System, Unknowns
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
@@ -96,6 +96,38 @@ class Flexibility:
         dp[free] = solved[:n]
         return du + self.response[:, free] @ solved[:n] + self.motions @ solved[n:], dp
 
+    def factorise(self, rows: Rows) -> Solve:
+        """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows
+        add is definite, and the rigid motions are a small Schur complement of it."""
+        n, m = len(rows.residual), self.motions.shape[1]
+        stiff = -(rows.by_displacement @ self.response + rows.by_pressure)
+        moved = self.operator @ self.motions
+        size = np.sqrt(np.maximum(np.diagonal(stiff), 1e-300))
+        try:
+            factor = scipy.linalg.cho_factor(stiff / size[:, None] / size, lower=True, check_finite=False)
+        except np.linalg.LinAlgError:  # rows that repeat each other
+            return lambda residual, of_law: self.step(replace(rows, residual=of_law), residual, np.zeros(n))
+
+        def inverse(gap: NDArray[np.float64]) -> NDArray[np.float64]:
+            scale = size if gap.ndim == 1 else size[:, None]
+            x = scipy.linalg.cho_solve(factor, gap / scale, check_finite=False) / scale
+            return np.asarray(x + scipy.linalg.cho_solve(factor, (gap - stiff @ x) / scale, check_finite=False) / scale)
+
+        by_motions = inverse(moved)
+        small = moved.T @ by_motions
+
+        def solve(
+            residual: NDArray[np.float64], of_law: NDArray[np.float64]
+        ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+            du = scipy.linalg.cho_solve(self.factor, -residual)
+            dp = inverse(of_law + rows.by_displacement @ du)
+            if m:
+                shift = np.linalg.lstsq(small, moved.T @ dp - self.motions.T @ residual, rcond=REPEATED)[0]
+                dp, du = dp - by_motions @ shift, du + self.motions @ shift
+            return du + self.response @ dp, dp
+
+        return solve
+
 
 def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
     """The system with all displacements eliminated but those that pairs with a law at the integration points look at, and
@@ -129,6 +161,8 @@ def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
         pairs=[_restricted(pair, kept) for pair in system.pairs],
         operator=operator,
         step=flexibility.step,
+        motions=motions[kept],
+        factorise=flexibility.factorise,
         compliance=compliance,
         opening=load[n:],
     )

@@ -19,6 +19,9 @@ from abut.errors import InputError, SingularModelError
 POSITIVE_DEFINITE, SYMMETRIC_INDEFINITE, UNSYMMETRIC = 2, -2, 11
 ACCURATE = 1e-10  # relative residual that a sound factorisation stays below
 SINGULAR = 1e-6  # relative residual above which the matrix is taken for singular
+# Of PARDISO: own settings (1); nested dissection (2); refinement steps (8); pivots perturbed below 10^-k (10), where
+# refinement makes good what a larger perturbation spoils; scaling and matching (11, 13); Bunch-Kaufman pivots, refined (21).
+SETTINGS = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
 
 
 @functools.lru_cache(maxsize=1)
@@ -96,6 +99,37 @@ def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.f
         return np.asarray(solver._call_pardiso(upper, np.asfortranarray(b)))
 
     return solve
+
+
+class Factorization:
+    """A symmetric matrix, given by its upper triangle (CSR, diagonal stored), factorised for several right-hand sides."""
+
+    def __init__(self, upper: Any) -> None:
+        self._matrix = upper
+        self._solver = None if _pardiso() is None else _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
+        if self._solver is None:
+            return
+        for key, value in SETTINGS.items():
+            self._solver.iparm[key - 1] = value
+        weakref.finalize(self, self._solver.free_memory, everything=True)
+        self._sound = True
+        try:
+            _analyse(self._solver, upper, np.zeros(upper.shape[0]))
+            self._solver.set_phase(22)
+            self._solver._call_pardiso(upper, np.zeros(upper.shape[0]))
+        except _pardiso().pardiso_wrapper.PyPardisoError:
+            self._sound = False
+
+    def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As ``solve``, which takes over where the factors are not accurate. Raises SingularModelError."""
+        size = np.abs(rhs).max(initial=0.0)
+        if self._solver is None or not self._sound or size == 0.0:
+            return solve(self._matrix, rhs, symmetric=True)
+        self._solver.set_phase(33)
+        x: NDArray[np.float64] = self._solver._call_pardiso(self._matrix, rhs / size)
+        if _residual(self._matrix, x, rhs / size, True) < ACCURATE:
+            return size * x
+        return solve(self._matrix, rhs, symmetric=True)
 
 
 def _analyse(solver: Any, matrix: Any, b: NDArray[np.float64]) -> None:
@@ -190,10 +224,7 @@ def _residual(matrix: Any, x: NDArray[np.float64], rhs: NDArray[np.float64], sym
 def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
     module = _pardiso()
     solver = module.PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
-    # Own settings (1); nested dissection (2); refinement steps (8); pivots perturbed below 10^-k (10), where refinement
-    # makes good what a larger perturbation spoils; scaling and matching (11, 13); Bunch-Kaufman pivots, refined (21).
-    settings = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
-    for key, value in settings.items():
+    for key, value in SETTINGS.items():
         solver.iparm[key - 1] = value
     try:
         _analyse(solver, matrix, rhs)

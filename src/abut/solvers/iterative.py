@@ -14,9 +14,19 @@ from abut.errors import InputError
 from abut.solvers.active_set import Rows, System
 from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur_inverse
+from abut.solvers.schur import (
+    Apply,
+    Interface,
+    interfaces,
+    predictor,
+    schur,
+    schur_diagonal,
+    schur_inverse,
+    soft_inverse,
+)
 
 RESTART, CYCLES = 100, 3
+RESPONSE = 0.03
 FAILED = "multigrid does not converge on this model"
 
 
@@ -33,7 +43,8 @@ class Count:
 
 @dataclass(frozen=True)
 class Iterative:
-    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
+    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see; scale: of pressures;
+    forward, diagonal: of S; unit: size of the stiffness' entries."""
 
     operator: Any
     hierarchy: Hierarchy
@@ -41,6 +52,9 @@ class Iterative:
     motions: NDArray[np.float64]
     scale: float
     count: Count
+    forward: Apply
+    diagonal: NDArray[np.float64]
+    unit: float
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
@@ -50,13 +64,16 @@ class Iterative:
         Raises NotConverged."""
         fixed, active = rows.fixed, ~rows.decoupled
         operator = self.operator[active]
-        n, s = len(residual), self.scale
-        inverse = schur_inverse(self.parts, active)
+        n = len(residual)
+        soft = -rows.by_pressure.diagonal()[active]
+        inverse, s = self._pressures(soft, active)
         coarse = self._rigid(operator, inverse)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
             u, q = x[:n], x[n:]
-            return np.concatenate([self.hierarchy.product(u) - operator.T @ (s * q), -s * (operator @ u)])
+            return np.concatenate(
+                [self.hierarchy.product(u) - operator.T @ (s * q), -s * (operator @ u + soft * s * q)]
+            )
 
         def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
             q = -inverse(x[n:] / s) / s
@@ -71,6 +88,26 @@ class Iterative:
         dp = fixed
         dp[active] = s * solution[n:]
         return solution[:n], dp
+
+    def respond(self, force: NDArray[np.float64], springs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacements by forces where ``springs`` (n_free,) hold what supports do not, to ``RESPONSE`` or as near as
+        it gets."""
+        motions = self.motions
+        small = np.linalg.pinv(motions.T @ (springs[:, None] * motions))
+        answer, iterations, _ = fgmres(
+            lambda u: self.hierarchy.product(u) + springs * u,
+            lambda r: self.hierarchy.cycle(r) + motions @ (small @ (motions.T @ r)),
+            force, RESPONSE, RESTART, 1,
+        )  # fmt: skip
+        self.count.iterations += iterations
+        return answer
+
+    def _pressures(self, soft: NDArray[np.float64], active: NDArray[np.bool_]) -> tuple[Apply, NDArray[np.float64]]:
+        """The preconditioner of the active pressures, and what they are divided by. soft: (n_active,) gap per pressure that
+        the rows add; with it residuals are measured in the root of energy."""
+        if not soft.any():
+            return schur_inverse(self.parts, active), np.full(len(soft), self.scale)
+        return soft_inverse(self.forward, self.diagonal, soft), np.sqrt(self.unit / (self.diagonal + soft))
 
     def _rigid(self, operator: Any, inverse: Apply) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
@@ -106,6 +143,10 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], 
         )
     scale = pressure_scale(system)
     parts = interfaces(system.pairs)
-    solver = Iterative(system.operator, hierarchy, parts, motions, scale, count)
-    predict = predictor(parts, np.asarray(system.operator @ motions))
-    return replace(system, step=solver.step, exact=False, predict=predict)
+    forward = schur(parts)
+    solver = Iterative(
+        system.operator, hierarchy, parts, motions, scale, count, forward, schur_diagonal(parts, system.operator.shape[0]),
+        float(np.median(system.stiffness.diagonal())),
+    )  # fmt: skip
+    predict = predictor(forward, np.asarray(system.operator @ motions))
+    return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)

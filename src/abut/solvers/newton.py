@@ -62,6 +62,7 @@ class Stage:
 Step = Callable[
     [Rows, NDArray[np.float64], NDArray[np.float64], float], tuple[NDArray[np.float64], NDArray[np.float64]]
 ]
+Solve = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
 Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
 
 
@@ -70,12 +71,15 @@ class System:
     """What stays the same over all iterations and steps.
 
     load: (n_free, n_histories) by each history of the model, theory (F9); operator: all pairs stacked, (n, n_free).
-    complete: adds to an active set that lets a body go the multipliers closest to contact; freed: says in words which
-    body it lets go. step: (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by
-    ``accuracy`` or, where ``exact``, to rounding; accurate: of equilibrium and of closed gaps, where it is not. predict:
+    complete: adds to an active set that lets a body go the multipliers closest to contact; pulled_off: the motion, in
+    words, that the loads at such weights cause though contact pushes wherever it can, empty where there is none. step:
+    (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by ``accuracy`` or, where
+    ``exact``, to rounding; factorise: the same in two, rows first, then (residual of equilibrium, of the rows) -> (du, dp)
+    as often as wanted, where the solver can; accurate: of equilibrium and of closed gaps, where it is not exact. predict:
     (gap, pressure, active, tied) -> a guess at the final active set, where one is cheap. compliance, opening: where
     displacements have been eliminated, the gaps that come of them, by pressures (n, n) and by each history (n,
-    n_histories).
+    n_histories). motions: (n_free, m) rigid motions that supports leave free. softens: whether ``step`` takes the rows of
+    theory (V18); respond: (forces, springs) -> displacements, (n_free,) all, roughly, by iterative solvers.
     """
 
     stiffness: Any
@@ -83,8 +87,12 @@ class System:
     pairs: Sequence[Pair]
     operator: Any
     complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
-    freed: Callable[[NDArray[np.bool_]], str]
+    pulled_off: Callable[[NDArray[np.float64]], str]
     step: Step
+    motions: NDArray[np.float64]
+    factorise: Callable[[Rows], Solve] | None = None
+    softens: bool = True
+    respond: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]] | None = None
     exact: bool = True
     accurate: float = ACCURATE
     predict: Predict | None = None

@@ -23,6 +23,7 @@ from abut.solvers.fractional import inverse_root
 
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
+SOFT_ACCURACY, SOFT_ITERATIONS = 0.1, 30
 PREDICTIONS = 15  # active sets tried on the interface alone
 Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -90,11 +91,8 @@ def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Appl
     return apply
 
 
-def predictor(parts: Sequence[Interface], moved: NDArray[np.float64]) -> Predict:
-    """A guess at the next active set: contact of half spaces, g = g0 + S (p - p0) + C a, solved on the interface alone.
-
-    moved: (n, m) change of the weighted gaps by rigid motions that supports leave free (C), which the pressures keep in
-    balance. The function takes gap g0, pressure p0, a first active set and the rows that are never open."""
+def schur(parts: Sequence[Interface]) -> Apply:
+    """S on all rows, (n,) pressures -> (n,) gaps."""
 
     @cache  # not before it is needed: what is closed all over has no next active set
     def factorised() -> list[tuple[NDArray[np.int64], Apply]]:
@@ -105,6 +103,39 @@ def predictor(parts: Sequence[Interface], moved: NDArray[np.float64]) -> Predict
         for rows, apply in factorised():
             gap[rows] = apply(pressure[rows])
         return gap
+
+    return forward
+
+
+def schur_diagonal(parts: Sequence[Interface], n: int) -> NDArray[np.float64]:
+    """The size of S's diagonal, (n,): M and L row by row."""
+    result = np.zeros(n)
+    for part in parts:
+        full, mass = part.full.diagonal(), part.mass.diagonal()
+        own = part.coupled.diagonal() ** 2 / mass
+        result[part.rows] = part.compliance * own * np.sqrt(mass / full)
+    return result
+
+
+def soft_inverse(forward: Apply, diagonal: NDArray[np.float64], softness: NDArray[np.float64]) -> Apply:
+    """The inverse of S + softness, (n,) -> (n,), by conjugate gradients to ``SOFT_ACCURACY``."""
+    n = len(softness)
+    whole = spla.LinearOperator((n, n), matvec=lambda p: forward(p) + softness * p, dtype=float)
+    jacobi = spla.LinearOperator((n, n), matvec=lambda g: g / (diagonal + softness), dtype=float)
+
+    def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
+        if not gap.any():
+            return np.zeros(n)
+        return np.asarray(spla.cg(whole, gap, rtol=SOFT_ACCURACY, maxiter=SOFT_ITERATIONS, M=jacobi)[0])
+
+    return apply
+
+
+def predictor(forward: Apply, moved: NDArray[np.float64]) -> Predict:
+    """A guess at the next active set: contact of half spaces, g = g0 + S (p - p0) + C a, solved on the interface alone.
+
+    forward: S; moved: (n, m) change of the weighted gaps by rigid motions that supports leave free (C), which the
+    pressures keep in balance. The function takes gap g0, pressure p0, a first active set, the rows that are never open."""
 
     def predict(
         gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], tied: NDArray[np.bool_]

@@ -1,0 +1,283 @@
+"""The search for the active set: always finds it, in a number of linear solutions that does not grow with the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import abut
+from abut.analysis.clock import Clock
+from abut.analysis.problem import Problem, problem
+from abut.conditions import weights
+from abut.discretization.rigid import near_null
+from abut.mesh import make
+from abut.solvers import active_set, condensed, direct
+from abut.solvers.active_set import Stage, solve_step, start
+from abut.solvers.linear import Prepared
+from abut.solvers.newton import Outcome
+from abut.solvers.search import Log, search
+from search_models import HARD, STEEL, ball, beam, pin
+
+quadprog = pytest.importorskip("quadprog")
+
+MOST = 20  # linear solutions in a load step
+LONG = 600
+
+
+def counts(model: abut.Model) -> list[int]:
+    """Linear solutions of each load step."""
+    solution = abut.solve(model)
+    assert solution.converged
+    assert all(check.passed for check in solution.certificate if check.name == "equilibrium")
+    return [len(step.iterations) for step in solution.steps]
+
+
+@pytest.mark.parametrize("path", ["condensed", "sparse"])
+@pytest.mark.parametrize("cell", ["quad4", "quad8"])
+def test_lifted_beam(cell: str, path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Peeling facet by facet took 26 to 260 solutions: now the mesh does not matter."""
+    if path == "sparse":
+        monkeypatch.setattr(condensed, "LARGEST", 0)
+    taken = [counts(beam(facets, cell))[0] for facets in ((50, 100, 200, 400) if path == "condensed" else (50, 200))]
+    assert max(taken) <= MOST
+    assert taken[-1] <= 1.3 * taken[0] + 3
+
+
+@pytest.mark.parametrize("steps", [1, 4])
+def test_ball_driven_by_force(steps: int) -> None:
+    taken = [counts(ball(cells, steps=steps)) for cells in (48, 96, 192)]
+    assert max(map(max, taken)) <= MOST
+    assert taken[-1][0] <= 1.3 * taken[0][0] + 3
+
+
+@pytest.mark.parametrize("cells", [12, 17, 24, 40])
+def test_loose_pin(cells: int) -> None:
+    """Nothing touches at the outset, and contact alone holds two of three bodies."""
+    for force in (0.05, 0.5, 5.0, 50.0):
+        for clearance in (0.002, 0.03):
+            assert max(counts(pin(cells, force, clearance))) <= MOST
+
+
+@pytest.mark.parametrize("kind", ["beam", "ball", "pin"])
+def test_multigrid(kind: str) -> None:
+    """Where linear systems are solved roughly: some more, and the same answer."""
+    model = {"beam": beam(100, "quad4"), "ball": ball(48), "pin": pin(24, 0.1)}[kind]
+    expected = abut.solve(model)
+    solution = abut.solve(replace(model, solve=abut.SolveOptions(linear="amg")))
+    assert "multigrid" in solution.solver
+    assert not any("direct solver" in note for note in solution.notes)
+    assert solution.converged
+    assert len(solution.steps[0].iterations) <= 30
+    for a, b in zip(solution.contacts, expected.contacts):
+        assert a.max_pressure == pytest.approx(b.max_pressure, rel=1e-6)
+        assert abs(a.active - b.active) <= 1
+
+
+def test_pulled_off_is_named_at_once() -> None:
+    """Beyond half its weight the force at its end turns the beam over: no pressure balances that."""
+    seen: list[abut.Iteration] = []
+    with pytest.raises(abut.SingularModelError, match=r"body 'beam' can .*: the loads pull it off its contact"):
+        abut.solve(beam(100, "quad4", lift=10.5), lambda told: seen.append(told))
+    assert len([row for row in seen if hasattr(row, "changed")]) <= MOST
+    assert counts(beam(100, "quad4", lift=9.9))[0] <= MOST
+
+
+def prepared(model: abut.Model) -> tuple[Problem, Prepared, Stage]:
+    """A model and its linear solver, at the end of its loads."""
+    own = problem(model, lambda _: None, lambda _: None, Clock())
+    loose = own.held.coordinates(own.held_by.free)
+    solver = own.volume.prepare("direct", own.system, own.held, near_null(model.mesh, own.held_by.rigid), loose)
+    return own, solver, Stage(1, weights(model.histories, 1.0))
+
+
+def searched(solver: Prepared, stage: Stage) -> Outcome:
+    """By interior points alone, from nothing."""
+    system = solver.system
+    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    outcome = search(system, start(system), stage, 50, Log([], lambda _: None, 50), tied, "solution")
+    assert outcome.converged
+    assert len(outcome.iterations) <= MOST
+    return solver.finish(outcome, stage.weights)
+
+
+def peeled(solver: Prepared, stage: Stage) -> Outcome:
+    """One active set after the other, however many it takes."""
+    system = replace(solver.system, softens=False)
+    outcome = solve_step(system, start(system), stage, LONG, lambda _: None)
+    assert outcome.converged
+    return solver.finish(outcome, stage.weights)
+
+
+def programme(own: Problem, stage: Stage) -> tuple[NDArray[np.float64], ...]:
+    """Compliance (n, n), gap without pressure (n,), resultants (n, m) and what they have to be (m,): the contact problem in
+    its pressures alone, by dense matrices."""
+    system = own.system
+    motions, stiffness = system.motions, system.stiffness.toarray()
+    basis = np.linalg.svd(motions, full_matrices=False)[0]
+    stiffness += np.median(np.diagonal(stiffness)) * basis @ basis.T  # holds them, and nothing else where loads balance
+    operator, load = system.operator.toarray(), system.load @ stage.weights
+    compliance = operator @ np.linalg.solve(stiffness, operator.T)
+    gap = system.gap(replace(start(system)), stage.weights) + operator @ np.linalg.solve(stiffness, load)
+    return 0.5 * (compliance + compliance.T), gap, operator @ motions, -motions.T @ load
+
+
+def exact(own: Problem, stage: Stage) -> NDArray[np.float64]:
+    """The pressures by quadprog, scaled to a compliance with a unit diagonal and resultants of unit size."""
+    compliance, gap, moved, load = programme(own, stage)
+    size = 1.0 / np.sqrt(np.diagonal(compliance))
+    moved = moved * size[:, None]
+    unit = np.linalg.norm(moved, axis=0)
+    conditions = np.column_stack([moved / unit, np.eye(len(gap))])
+    bounds = np.concatenate([load / unit, np.zeros(len(gap))])
+    answer = quadprog.solve_qp(compliance * size[:, None] * size, -gap * size, conditions, bounds, len(load))[0]
+    return answer * size
+
+
+def random_model(seed: int) -> abut.Model:
+    """A block of random roughness pressed askew onto another one: held above, or by contact and on one side alone."""
+    rng = np.random.default_rng(seed)
+    cell = ("quad4", "quad8", "tri6")[seed % 3]
+    lower = make.rectangle(x=[-1, 4], y=[-1, 0], cells=[int(rng.integers(8, 20)), 2], cell=cell)
+    upper = make.rectangle(x=[0, 3], y=[0, rng.uniform(0.2, 1.5)], cells=[int(rng.integers(6, 18)), 2], cell=cell)
+    mesh = make.join({"lower": lower, "upper": upper})
+    x, y = mesh.points.T
+    nodes = mesh.nodes_of("upper")
+    height = y[nodes].max()
+    rough = 10.0 ** rng.uniform(-4, -1) * np.interp(x[nodes], np.linspace(0, 3, 12), rng.uniform(0, 1, 12))
+    y = y.copy()
+    y[nodes] += rough * (height - y[nodes]) / height + 0.01  # its top stays even, so that it may turn
+    loads = [
+        abut.Pressure("upper.top", 10.0 ** rng.uniform(-2, 1)),
+        abut.Force("upper.right", (0.0, -(10.0 ** rng.uniform(-2, 0)))),
+    ]
+    held = [abut.Support("upper.left", x=0)] if seed % 2 else [abut.Support("upper.top", x=0)]
+    return abut.Model(
+        replace(mesh, points=np.column_stack([x, y])),
+        [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL if seed % 4 else HARD)],
+        [abut.Support("lower.bottom", x=0, y=0), *held],
+        loads,
+        [abut.Contact("upper.bottom", "lower.top")],
+        plane="strain",
+    )
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_random_problems_against_quadprog(seed: int) -> None:
+    own, solver, stage = prepared(random_model(seed))
+    outcome = searched(solver, stage)
+    expected = exact(own, stage)
+    assert np.abs(outcome.unknowns.pressure - expected).max() < 1e-7 * np.abs(expected).max()
+
+
+def touching(load: float, lift: float = 0.0) -> abut.Model:
+    """Two blocks side by side on a plate, held above; one is pressed down by ``load``, or both are lifted by ``lift``: else
+    the other one touches and nothing more."""
+    mesh = make.join(
+        {
+            "plate": make.rectangle(x=[0, 1], y=[-1, 0], cells=[8, 3], cell="quad4"),
+            "other plate": make.rectangle(x=[2, 3], y=[-1, 0], cells=[8, 3], cell="quad4"),
+            "pressed": make.rectangle(x=[0, 1], y=[0, 1], cells=[5, 3], cell="quad4"),
+            "idle": make.rectangle(x=[2, 3], y=[0, 1], cells=[6, 3], cell="quad4"),
+        }
+    )
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, STEEL) for body in mesh.bodies],
+        [
+            *(abut.Support(f"{body}.bottom", x=0, y=0) for body in ("plate", "other plate")),
+            abut.Support("pressed.top", x=0, y=-load + lift),
+            abut.Support("idle.top", x=0, y=lift),
+        ],
+        contacts=[abut.Contact("pressed.bottom", "plate.top"), abut.Contact("idle.bottom", "other plate.top")],
+        plane="strain",
+    )
+
+
+def test_rows_without_gap_and_without_pressure() -> None:
+    _, solver, stage = prepared(touching(0.01))
+    outcome = searched(solver, stage)
+    pressed, idle = solver.system.split(outcome.unknowns.pressure)
+    assert pressed.min() > 1.0
+    assert np.abs(idle).max() < 1e-6 * pressed.max()
+    expected = peeled(solver, stage)
+    assert np.abs(outcome.unknowns.pressure - expected.unknowns.pressure).max() < 1e-6 * pressed.max()
+
+
+def test_contact_that_opens_everywhere() -> None:
+    _, solver, stage = prepared(touching(0.0, lift=0.02))
+    outcome = searched(solver, stage)
+    assert not outcome.unknowns.active.any()
+    assert not outcome.unknowns.pressure.any()
+
+
+def tied_beam() -> abut.Model:
+    """The beam of ``beam`` in two layers that are tied."""
+    model = beam(40, "quad4")
+    upper = make.rectangle(x=[0, 20], y=[1, 1.5], cells=[30, 2], cell="quad4")
+    parts = dict.fromkeys(model.mesh.bodies, model.mesh)
+    assert set(parts) == {"beam", "floor"}
+    mesh = make.join(
+        {
+            "beam": make.rectangle(x=[0, 20], y=[0, 1], cells=[40, 4], cell="quad4"),
+            "layer": upper,
+            "floor": make.rectangle(x=[-1, 21], y=[-1, 0], cells=[22, 1], cell="quad4"),
+        }
+    )
+    return replace(
+        model,
+        mesh=mesh,
+        solids=[*model.solids, abut.Solid("layer", STEEL)],
+        supports=[model.supports[0], abut.Support("layer.left", x=0)],
+        contacts=[*model.contacts, abut.Contact("layer.bottom", "beam.top", kind="tied", name="glue")],
+        loads=[abut.Pressure("layer.top", 1.0), abut.Force("beam.right", (0.0, 8.0))],
+    )
+
+
+MODELS: dict[str, Callable[[], abut.Model]] = {
+    "beam": lambda: beam(60, "quad4"),
+    "quadratic beam": lambda: beam(40, "quad8"),
+    "ball": lambda: ball(32),
+    "tight pin": lambda: pin(16, 5.0, 0.0),
+    "pin": lambda: pin(16, 5.0),
+    "tied beam": tied_beam,
+    "touching": lambda: touching(0.01),
+    **{f"random {seed}": lambda seed=seed: random_model(seed) for seed in range(30, 36)},
+}
+
+
+@pytest.mark.parametrize("path", ["condensed", "sparse"])
+@pytest.mark.parametrize("name", MODELS)
+def test_same_answer_as_peeling(name: str, path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the active set is found one facet after the other, it is the same, and so are the pressures."""
+    if path == "sparse":
+        monkeypatch.setattr(condensed, "LARGEST", 0)
+    elif direct.solver_name() != "PARDISO":
+        pytest.skip("only PARDISO condenses")
+    _, solver, stage = prepared(MODELS[name]())
+    expected, outcome = peeled(solver, stage), searched(solver, stage)
+    if name != "touching":
+        assert (outcome.unknowns.active == expected.unknowns.active).all()
+    largest = np.abs(expected.unknowns.pressure).max()
+    tolerance = 1e-8 if "beam" in name else 1e-9  # long beams bend easily, which costs digits
+    assert np.abs(outcome.unknowns.pressure - expected.unknowns.pressure).max() < tolerance * largest
+
+
+def test_easy_models_never_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A set that settles soon is left to do so."""
+    monkeypatch.setattr(active_set, "search", lambda *_: pytest.fail("searched"))
+    for model in (pin(24, 5.0), touching(0.01), random_model(31)):
+        assert counts(model)[0] <= 8
+
+
+def test_when_a_set_is_hopeless() -> None:
+    assert not active_set.hopeless([40, 14, 5], 400)
+    assert not active_set.hopeless([80, 6, 6, 8, 6, 4], 57)  # so few are left that it may settle yet
+    assert not active_set.hopeless([80, 6, 6, 8, 6, 4, 4], 53)
+    assert active_set.hopeless([106, 3, 6, 15, 13], 90)  # few are left too, but ever more change
+    assert not active_set.hopeless([4, 3, 2, 2], 100)
+    assert active_set.hopeless([4, 3, 2, 2, 2, 2], 100)  # no fewer for three iterations
+    assert active_set.hopeless([16, 9, 8, 8], 400)  # fewer, but at that pace nine more
