@@ -102,7 +102,8 @@ def is_whole(results: Path) -> int:
     summary = json.loads((results / "summary.json").read_text())
     assert summary["status"] == "incomplete"
     done = len(summary["steps"])
-    assert listed(results) == [f"fields_{i:04d}.pvtu" for i in range(1, done + 1)]
+    names = [f"fields_{i:04d}.pvtu" for i in range(1, done + 2)]
+    assert listed(results) in (names[:-1], names)  # a process may be killed between fields.pvd and summary.json
     for name in listed(results):
         assert read(results / name).GetNumberOfCells() > 0
     return done
