@@ -103,7 +103,7 @@ def _search(
         if not len(one) or not len(other):
             return none
     coupling = couple(
-        _part(all_of.surface, one), _part(all_of.surface, other), 0, points=1, reach=far, keep_points=True
+        _part(all_of.surface, one), _part(all_of.surface, other), 0, points=1, reach=far, keep_points=True, hidden=True
     )
     at = coupling.points
     if at is None:

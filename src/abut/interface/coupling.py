@@ -117,6 +117,7 @@ def couple(
     keep_points: bool = False,
     sights: bool = False,
     adjust: float = 0.0,
+    hidden: bool = False,
     only: NDArray[np.bool_] | None = None,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
@@ -129,6 +130,8 @@ def couple(
     componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
             sights: keep corners and middles of the segments, which takes a tenth of the time.
     adjust: gaps and overlaps up to this size count as zero, length.
+    hidden: count also what lies behind something nearer; else each point of the contactor sees the nearest target only,
+            theory (S12).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.interface.parts``.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
@@ -153,7 +156,7 @@ def couple(
         target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
         degree, not componentwise, keep_points, sights, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
-        no_gap(contactor, target, adjust),
+        no_gap(contactor, target, adjust), hidden,
     )  # fmt: skip
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
