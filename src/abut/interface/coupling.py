@@ -7,7 +7,7 @@ pressure spaces of ``abut.interface.pressure`` are combinations of these rows. "
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -146,7 +146,7 @@ def couple(
     tables = rule_tables(rule)
     normals = nodal_normals(contactor)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
-    part = contactor if only is None else _some(contactor, facets)
+    part = contactor if only is None else contactor.part(facets)
     order_c, split_c = _plan(part, tables, points)
     order_t, split_t = _plan(target, tables, points)
     if points == "auto":
@@ -179,16 +179,6 @@ def couple(
 
 
 Couple = Callable[..., Coupling]  # ``couple``, or what has it done by others
-
-
-def _some(surface: Surface, facets: NDArray[np.int64]) -> Surface:
-    return replace(
-        surface,
-        kinds=np.ascontiguousarray(surface.kinds[facets]),
-        nodes=np.ascontiguousarray(surface.nodes[facets]),
-        cells=surface.cells[facets],
-        local=surface.local[facets],
-    )
 
 
 def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:
