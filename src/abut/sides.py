@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError, nearest
 from abut.interface.coupling import couple, default_reach
-from abut.interface.geometry import CREASE, area_vectors, straight
+from abut.interface.geometry import CREASE, area_vectors, full_moments, straight
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -20,6 +20,7 @@ from abut.mesh.surface import Surface
 Names = str | Sequence[str]  # of surfaces or bodies
 Rows = NDArray[np.int64]  # (n, 2): cell, local facet
 Sides = tuple[Surface, Surface]  # contactor, target
+SLIVER = 1e-9  # of a facet's area: less is rounding where edges of both sides coincide
 ON_AXIS = 1e-9  # of the largest radius: facets at smaller ones have no area
 
 
@@ -121,7 +122,8 @@ def _met(
     reach = default_reach(contactor, target) + 2.0 * moved
     at = couple(contactor, every, 0, points=1, reach=reach, keep_points=True).points
     assert at is not None
-    seen = at.target_facet < len(other)
+    area = full_moments(contactor, 0)[:, 0][at.facet]
+    seen = (at.target_facet < len(other)) & (at.weight > SLIVER * area)
     met = np.zeros(len(own), dtype=bool), np.zeros(len(other), dtype=bool)
     met[0][at.facet[seen]] = True
     met[1][at.target_facet[seen]] = True
