@@ -116,10 +116,12 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
             result.append(pair(model, back, held, couple, (sides[1], sides[0])))
-    result = [
-        own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
-        for own, keep in zip(result, one_each([_shared(own) for own in result]))
-    ]
+    if len(result) > 1 or any(own.contactor.parts is not None for own in result):
+        kept = one_each([_shared(own) for own in result])
+        result = [
+            own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
+            for own, keep in zip(result, kept)
+        ]
     tied_together = bool(model.equations or model.rigid)
     return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
 
