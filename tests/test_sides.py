@@ -278,6 +278,29 @@ def test_bodies_meet_through_nothing() -> None:
     assert len(contactor) == len(tops)
 
 
+@pytest.mark.parametrize("over", [0.0, 0.2, 1.5])
+@pytest.mark.parametrize("around", [24, 48])
+def test_bodies_pressed_into_each_other(over: float, around: int) -> None:
+    """Bore and shaft meet all over, and nothing else does, however deep the overlap: ends of the shaft, and chords of the
+    one that cut into the other, see nothing."""
+    hub = cylinder(20.0, (0, 10), (2, around, 3), "hex8", inner=10.0 - over)
+    mesh = join({"hub": hub, "shaft": cylinder(10.0, (0, 15), (2, 24, 3), "hex20", inner=5.0)})
+    for names in (("hub", "shaft"), ("shaft", "hub"), ("hub.inner", "shaft")):
+        built = abut.Model(mesh, [abut.Solid(b, STEEL) for b in mesh.bodies], contacts=[abut.Contact(*names)])
+        for name, surface in zip(names, built.sides(built.contacts[0])):
+            expected = mesh.surfaces["hub.inner" if name.startswith("hub") else "shaft.round"]
+            assert {*zip(surface.cells, surface.local)} == {*map(tuple, expected)}
+
+
+def test_a_body_that_comes_from_afar() -> None:
+    """Prescribed motion counts as reach."""
+    mesh = join({"punch": rectangle((0.3, 0.7), (1.5, 2), (4, 4)), "block": rectangle((0, 1), (0, 1), (10, 8))})
+    held = [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0, y=-0.55)]
+    solids, contact = [abut.Solid(b, STEEL) for b in mesh.bodies], abut.Contact("punch", "block")
+    solution = abut.solve(abut.Model(mesh, solids, held, contacts=[contact], plane="strain"))
+    assert solution.contacts[0].force[1] > 1.0
+
+
 WRONG = {
     "unknown": (["low.topp", "up"], "roller", "contacts[0].contactor: no surface or body named 'low.topp'"),
     "near ones": ("low.topp", "roller", "did you mean 'low.top'?"),
@@ -314,10 +337,13 @@ def test_the_same_facets_pressed_by_two_contacts(turned: bool) -> None:
 def test_a_job_with_lists_and_bodies(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Run and checked; results hold both sides, and the job file written from the model gives it again."""
     text = EXAMPLE.read_text() + "\n[solve]\nsteps = 2\n"
+    text += '[[probes]]\nname = "under"\non = "lid.bottom"\nof = ["pressure"]\n'
     (tmp_path / "job.toml").write_text(text)
     assert main(["run", str(tmp_path / "job.toml")]) == 0
     results = tmp_path / "results"
-    assert {"contact_lid_0002.vtu", "contact_base_0002.vtu", "report.html"} <= {p.name for p in results.iterdir()}
+    assert {"contact_lid_0002.vtu", "contact_base_0002.vtu", "probe_under.csv", "report.html"} <= {
+        p.name for p in results.iterdir()
+    }
     assert "force on the bodies of the target: inner" in capsys.readouterr().out
     assert "inner" in (results / "report.html").read_text()
     assert main(["check", str(tmp_path / "job.toml")]) == 0
