@@ -24,6 +24,7 @@ from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
+from abut.interface.planes import evened
 from abut.interface.recover import Averages, at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
 from abut.mesh.mesh import Mesh
 from abut.model import METHODS, Model
@@ -202,12 +203,14 @@ def _contact(
 
 def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: bool) -> NDArray[np.float64]:
     """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients (``values``), by
-    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
+    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
+    planes of symmetry mended, theory (P14)."""
     average = at.of(values)
-    if not (pair.tied or (closed and pair.space.continuous and pair.space.ordinary)):
-        return average
-    sharp = at.sharpened(average, at.surface.points)
-    return average if not pair.tied and sharp.min() < 0.0 else sharp
+    if pair.tied or (closed and pair.space.continuous and pair.space.ordinary):
+        sharp = at.sharpened(average, at.surface.points)
+        if pair.tied or sharp.min() >= 0.0:
+            return sharp
+    return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
 
 
 def _traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
