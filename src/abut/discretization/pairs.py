@@ -32,7 +32,9 @@ from abut.mesh.surface import Surface
 from abut.model import LAWS, Contact, Model
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
-SQUARE = 0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
+SQUARE = (
+    0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
+)
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
@@ -160,7 +162,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=_planes(contactor, border, beyond, held) if contactor.dim == 3 else None,
+        planes=_planes(contactor, border, beyond, held),
     )  # fmt: skip
 
 
@@ -170,9 +172,11 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~ends_on_target(contactor, border, beyond))
 
 
-def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], held: Supports) -> Planes:
-    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim and free its normal, and the
-    target ends there too."""
+def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], held: Supports) -> Planes | None:
+    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
+    target ends there too. None in 2D."""
+    if contactor.dim == 2:
+        return None
     mirrored = ~beyond
     out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
     for own in border.ends.T:
