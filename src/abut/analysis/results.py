@@ -116,6 +116,7 @@ def step_result(
             (float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, pressures)), default=0.0
         ),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
+        rounding=_rounding(system, unknowns.displacement),
         strained=_strained(system, displacement, internal),
     )
 
@@ -124,6 +125,11 @@ def _strained(system: System, displacement: NDArray[np.float64], internal: NDArr
     """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
     stiffest = float(system.stiffness.diagonal().max(initial=0.0))
     return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
+
+
+def _rounding(system: System, free: NDArray[np.float64]) -> float:
+    """Force that free displacements (n_free,) in double precision leave open: eps sum K_ii |u_i|."""
+    return float(np.finfo(float).eps * (system.stiffness.diagonal() @ np.abs(free)))
 
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
