@@ -311,7 +311,11 @@ class Solution:
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
         for step in self.steps:
             balance = Check(
-                "", "model balance", step.balance_error, step.balance_limit, "loads plus reactions, over the forces' size"
+                "",
+                "model balance",
+                step.balance_error,
+                step.balance_limit,
+                "loads plus reactions, over the forces' size",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             model = [balance, response, strain]
