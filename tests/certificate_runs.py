@@ -134,6 +134,7 @@ SOUND_RUNS = (
     Run("Hertz octant wedge6", lambda: octant("wedge6", 5), ball_truth()),
     Run("Hertz octant tet4", lambda: octant("tet4", 6), ball_truth()),
     Run("Hertz octant tet4 fine", lambda: octant("tet4", 8), ball_truth()),
+    Run("Hertz octant tet4 finer", lambda: octant("tet4", 16), ball_truth()),
     Run("press fit quad8, 12 on 9", lambda: fit((12, 9)), even(FIT)),
     Run("press fit quad4, matching", lambda: fit((24, 24), "quad4"), even(FIT)),
     Run("press fit quad4, 24 on 26", lambda: fit((24, 26), "quad4", 0.05), even(fit_pressure(0.05))),

@@ -13,6 +13,7 @@ from abut.cells import BY_CODE
 from abut.mesh.make import box, half_disc, join, quarter_disc, rectangle, sphere_octant
 from abut.mesh.make.block import grid
 from abut.state import ContactResult
+from best_fit import fits
 from certificate_models import mirrored
 
 Array = NDArray[np.float64]
@@ -90,7 +91,7 @@ def line(
 
 
 # A quarter of a ball of radius 1 pressed by 0.0026 on a block, both of width 0.5; contact to a radius of about 0.05.
-YOUNG, NU, WIDTH, FINE, PRESSED = 2e5, 0.3, 0.5, 0.08, 0.0026
+YOUNG, NU, WIDTH, FINE, PRESSED, BALL = 2e5, 0.3, 0.5, 0.08, 0.0026, 0.05
 
 
 def _lines(n: int, fine: float, outside: int) -> Array:
@@ -103,8 +104,8 @@ def _lines(n: int, fine: float, outside: int) -> Array:
     return np.concatenate([np.linspace(0.0, fine, n + 1), fine + np.cumsum(steps)])
 
 
-def quarter_ball(cell: str, m: int, contactor: str = "ball", **contact: object) -> abut.Model:
-    """m: cells of the ball over FINE; the block's are 1/0.8 as large."""
+def quarter_ball(cell: str, m: int, contactor: str = "ball", pressed: float = PRESSED, **contact: object) -> abut.Model:
+    """m: cells of the ball over FINE; the block's are 1/0.8 as large. pressed: how far the ball's top comes down."""
     m0 = round(0.8 * m)
     out, out0 = round(0.75 * m), round(0.75 * m0)
 
@@ -121,7 +122,7 @@ def quarter_ball(cell: str, m: int, contactor: str = "ball", **contact: object) 
     return abut.Model(
         mesh,
         [abut.Solid(body, abut.LinearElastic(YOUNG, NU)) for body in mesh.bodies],
-        [*held, abut.Support("block.bottom", z=0.0), abut.Support("ball.top", z=-PRESSED)],
+        [*held, abut.Support("block.bottom", z=0.0), abut.Support("ball.top", z=-pressed)],
         contacts=[abut.Contact(*sides, **contact)],
     )
 
@@ -131,6 +132,20 @@ def quarter_ball_truth(solution: abut.Solution) -> tuple[float, float]:
     modulus, force = YOUNG / (2.0 * (1.0 - NU**2)), 4.0 * abs(float(solution.contacts[0].force[2]))
     radius = float(np.cbrt(0.75 * force / modulus))
     return radius, 1.5 * force / (np.pi * radius**2)
+
+
+def quarter_ball_in_the_mean(cell: str, m: int, contactor: str, places: int = 4) -> tuple[float, float, float, float]:
+    """Facets of the contactor over the radius of contact, and relative L2 errors: of the reported pressure, of averages of
+    the exact one and of its best fit (``fits``). Root mean squares over edges of contact at several places of a facet."""
+    size = FINE / (m if contactor == "ball" else round(0.8 * m))
+    found = []
+    for shift in (np.arange(places) + 0.5) / places - 0.5:
+        solution = abut.solve(quarter_ball(cell, m, contactor, PRESSED * (1.0 + shift * size / BALL) ** 2))
+        where = quarter_ball_truth(solution)
+        exact = ellipse(*where, 3)
+        found.append((errors(solution, *where)[2], *fits(solution.contacts[0].contactor, exact)))
+    reported, averages, best = np.sqrt(np.mean(np.square(found), axis=0))
+    return BALL / size, float(reported), float(averages), float(best)
 
 
 # Balls of radius 8, the upper one five times as stiff, axisymmetric; a ball on a rigid plane.

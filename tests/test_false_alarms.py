@@ -203,6 +203,28 @@ def test_tied_bodies_that_are_heated_and_free() -> None:
     assert failed(replace(solution, steps=(wrong,))) == {"model balance"}
 
 
+def test_a_stiff_part_on_a_soft_one_under_a_force() -> None:
+    """10 000 times as stiff, and moved by what the soft one gives way: its nodal forces are differences of much larger ones,
+    which double precision leaves at 1e-9 of the load. A load 1e-7 off still shows."""
+    punch, block = rectangle((-1, 1), (0, 1), (16, 16)), rectangle((-20, 20), (-20, 0), (64, 32))
+    model = abut.Model(
+        join({"punch": punch, "block": block}),
+        [abut.Solid("punch", abut.LinearElastic(1e7, 0.3)), abut.Solid("block", abut.LinearElastic(1e3, 0.3))],
+        [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
+        [abut.Force("punch.top", (0.0, -1.0))],
+        [abut.Contact("punch.bottom", "block.top")],
+        plane="strain",
+    )
+    solution = abut.solve(model)
+    assert "model balance" not in failed(solution)
+    (step,) = solution.steps
+    wrong = replace(step, load=step.load * (1.0 + 2e-7))
+    assert "model balance" in failed(replace(solution, steps=(wrong,)))
+    assert "model balance" in failed(replace(solution, steps=(replace(wrong, rounding=0.0), step)))
+    worse = replace(step, load=step.load * 1.0001, rounding=1e6)  # however much rounding may be
+    assert "model balance" in failed(replace(solution, steps=(worse,)))
+
+
 def blocks(down: float, gap: float = 0.0) -> abut.Model:
     mesh = join({"lower": rectangle((0, 1), (0, 1), (3, 3)), "upper": rectangle((0, 1), (1 + gap, 2 + gap), (2, 2))})
     supports = [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=down)]

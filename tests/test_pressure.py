@@ -23,6 +23,7 @@ from pressure_models import (
     line,
     octant,
     quarter_ball,
+    quarter_ball_in_the_mean,
     quarter_ball_truth,
 )
 
@@ -82,10 +83,7 @@ def test_hertz_line_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: st
     ],
 )
 def test_quarter_ball_on_a_block(cell: str, m: int, inside: float, rms: float, contactor: str) -> None:
-    """Either side as contactor. Nodes of the symmetry planes average over facets on one side: they miss a third of the
-    pressure's change over a facet. On tet10, whose facets are large, with the block as contactor that is 9.3 %."""
-    if (cell, contactor) == ("tet10", "block"):
-        inside = 0.10
+    """Either side as contactor."""
     default, dual = (abut.solve(quarter_ball(cell, m, contactor, pressure=space)) for space in ("auto", "dual"))
     found = errors(default, *quarter_ball_truth(default))
     assert found[0] <= inside
@@ -94,21 +92,24 @@ def test_quarter_ball_on_a_block(cell: str, m: int, inside: float, rms: float, c
     assert all(check.passed for check in default.certificate)
 
 
+@pytest.mark.parametrize("contactor", BODIES)
 @pytest.mark.parametrize(
     ("cell", "sizes"),
     [
-        ("hex8", (5, 7, 10)),
+        ("hex8", (4, 7)),
         *(pytest.param(c, n, marks=SLOW)
-          for c, n in (("hex8", (7, 10, 13)), ("tet4", (7, 10, 13)), ("hex20", (4, 5, 7)), ("tet10", (4, 5, 7)))),
+          for c, n in (("hex8", (5, 7, 10)), ("tet4", (5, 7, 10)), ("hex20", (4, 5, 7)), ("tet10", (4, 5, 7)))),
     ],
 )  # fmt: skip
-def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...]) -> None:
-    """L2 error like h, but for the place of the edge, as on the line: 0.8 at least."""
-    means = []
-    for m in sizes:
-        solution = abut.solve(quarter_ball(cell, m))
-        means.append(errors(solution, *quarter_ball_truth(solution))[2])
-    assert -np.polyfit(np.log(sizes), np.log(means), 1)[0] >= 0.8
+def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: str) -> None:
+    """L2 error like h: falling as the best fit to the exact pressure does on the same meshes, which is like h but for what a
+    few meshes say of it, and smaller than that of averages of the exact pressure on every mesh."""
+    found = np.array([quarter_ball_in_the_mean(cell, m, contactor) for m in sizes])
+    fine, reported, averages, best = found.T
+    rates = [-np.polyfit(np.log(fine), np.log(error), 1)[0] for error in (reported, best)]
+    assert rates[1] == pytest.approx(1.0, abs=0.15)  # two facets over the radius on the coarsest
+    assert rates[0] >= rates[1] - 0.1
+    assert (reported < averages).all()
 
 
 @pytest.mark.parametrize("contactor", ["lower", "upper"])
@@ -124,10 +125,10 @@ def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
     assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.03
 
 
-@pytest.mark.parametrize("cells", [12, 20, 28])
+@pytest.mark.parametrize("cells", [12, 16, 20, 28])
 def test_at_the_pole_of_tetrahedra(cells: int) -> None:
-    """tet4 octant on a rigid plane: the pole, the corner of a single cell of constant strain there, lags behind: by
-    11.7, 10.4 and 10.2 % of the peak (22 to 12 % with the multiplier P1 itself)."""
+    """tet4 octant on a rigid plane, growing fast outside the contact, which costs 3 to 4 %: nodes on the planes of symmetry
+    take 5 to 7 % more force than those beside them, the pole more still, which is shared across the planes."""
     x, p = at_corners(abut.solve(octant("tet4", cells)).contacts[0])
     exact = ellipse(OCTANT, OCTANT_PEAK, 3)(x)
-    assert np.abs(p - exact)[distance(x) < 0.9 * OCTANT].max() <= 0.12 * OCTANT_PEAK
+    assert np.abs(p - exact)[distance(x) < 0.9 * OCTANT].max() <= 0.08 * OCTANT_PEAK

@@ -89,6 +89,27 @@ def ball_row(cell: str, contactor: str, space: str) -> list[str]:
     return [cell, contactor, space, *map(percent, found), str(models.iterations(solution))]
 
 
+MEAN_SIZES = {"hex8": (5, 7, 10, 13), "tet4": (5, 7, 10, 13), "hex20": (4, 5, 7, 9), "tet10": (4, 5, 7)}
+MEAN_HEADER = ["cells", "contactor", "facets over a", "reported", "averages of the exact one", "best fit",
+               "reported: exponent", "averages: exponent", "best fit: exponent"]  # fmt: skip
+
+
+def mean_row(cell: str, contactor: str) -> list[str]:
+    """Errors on the finest mesh, exponents from all."""
+    fine, *errors = np.transpose([models.quarter_ball_in_the_mean(cell, m, contactor) for m in MEAN_SIZES[cell]])
+    rates = (-np.polyfit(np.log(fine), np.log(own), 1)[0] for own in errors)
+    sizes = f"{fine[0]:.1f} to {fine[-1]:.1f}"
+    return [cell, contactor, sizes, *(percent(own[-1]) for own in errors), *(f"{rate:.2f}" for rate in rates)]
+
+
+POLE_SIZES = (12, 16, 20, 24, 28)
+
+
+def pole_row() -> list[str]:
+    found = (abut.solve(models.octant("tet4", n)) for n in POLE_SIZES)
+    return ["error", *(percent(models.errors(s, models.OCTANT, models.OCTANT_PEAK)[0]) for s in found)]
+
+
 AXIS_HEADER = ["cells", "facets over 1.3 a", "pressure", "on the axis", "reported"]
 
 
@@ -208,6 +229,9 @@ def main() -> None:
     write_table(PAGE, "places", PLACES_HEADER, rows)
     rows = [ball_row(cell, side, s) for cell in SOLID_CELLS for side in ("ball", "block") for s in spaces(cell)]
     write_table(PAGE, "ball", BALL_HEADER, rows)
+    rows = [mean_row(cell, side) for cell in MEAN_SIZES for side in ("ball", "block")]
+    write_table(PAGE, "mean", MEAN_HEADER, rows)
+    write_table(PAGE, "pole", ["cells over 1.1", *map(str, POLE_SIZES)], [pole_row()])
     rows = [axis_row(c, n, s) for c in ("tri3", "quad4", "tri6", "quad8") for n in (10, 24) for s in ("P1", AUTO)]
     write_table(PAGE, "axis", AXIS_HEADER, rows)
     write_table(PAGE, "square", ["pressure", *map(str, PARTS)], [square_row(space) for space in ("P1", "dual", AUTO)])

@@ -15,6 +15,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 
 BALANCE = 1e-9  # limit of the model's balance of forces
+ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 RESPONSE = 0.5  # nothing between 0 and 1
 REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
@@ -207,6 +208,7 @@ class Step:
     strain: float = (
         0.0  # largest contact pressure over the stiffness of the two bodies, about that over Young's modulus
     )
+    rounding: float = 0.0  # force that displacements in double precision cannot tell from none, over the whole model
     strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
@@ -219,6 +221,12 @@ class Step:
         if not (self.strained or self.load.any()):  # bodies that move without touching: rounding over rounding
             return 0.0
         return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.reference_force)
+
+    @property
+    def balance_limit(self) -> float:
+        """Of ``balance_error``: what rounding of the displacements alone may leave, theory (V14), at least and at most fixed
+        shares of the reference force."""
+        return min(max(BALANCE, self.rounding / self.reference_force), ROUNDED)
 
     @property
     def regularisation(self) -> float | None:
@@ -303,7 +311,11 @@ class Solution:
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
         for step in self.steps:
             balance = Check(
-                "", "model balance", step.balance_error, BALANCE, "loads plus reactions, over the forces' size"
+                "",
+                "model balance",
+                step.balance_error,
+                step.balance_limit,
+                "loads plus reactions, over the forces' size",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             model = [balance, response, strain]
@@ -312,7 +324,7 @@ class Solution:
                                    "force that holds motions without resistance, over the forces' size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
-                if check.last or key not in worst or not (isnan(worst[key].value) or check.value <= worst[key].value):
+                if check.last or key not in worst or _worse(check, worst[key]):
                     worst[key] = check
         return tuple(worst.values())
 
@@ -332,6 +344,11 @@ class Solution:
         import abut
 
         return abut.plot(self, what, **options)
+
+
+def _worse(check: Check, other: Check) -> bool:
+    """Whether a line is further beyond its limit than one of another step; what is no number is worst."""
+    return not isnan(other.value) and not check.value / check.limit <= other.value / other.limit
 
 
 def _driven(model: Model) -> bool:

@@ -24,6 +24,7 @@ from abut.discretization.bodies import RigidBody
 from abut.discretization.pairs import Pair, offsets
 from abut.discretization.supports import Supports
 from abut.interface.geometry import full_moments, nodal_normals
+from abut.interface.planes import evened
 from abut.interface.recover import Averages, at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
 from abut.mesh.mesh import Mesh
 from abut.model import METHODS, Model
@@ -117,6 +118,7 @@ def step_result(
             (float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, pressures)), default=0.0
         ),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
+        rounding=_rounding(system, unknowns.displacement),
         strained=_strained(system, displacement, internal),
     )
 
@@ -125,6 +127,11 @@ def _strained(system: System, displacement: NDArray[np.float64], internal: NDArr
     """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
     stiffest = float(system.stiffness.diagonal().max(initial=0.0))
     return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
+
+
+def _rounding(system: System, free: NDArray[np.float64]) -> float:
+    """Force that free displacements (n_free,) in double precision leave open: eps sum K_ii |u_i|."""
+    return float(np.finfo(float).eps * (system.stiffness.diagonal() @ np.abs(free)))
 
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
@@ -207,12 +214,14 @@ def _contact(
 
 def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: bool) -> NDArray[np.float64]:
     """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients (``values``), by
-    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12)."""
+    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
+    planes of symmetry mended, theory (P14)."""
     average = at.of(values)
-    if not (pair.tied or (closed and pair.space.continuous and pair.space.ordinary)):
-        return average
-    sharp = at.sharpened(average, at.surface.points)
-    return average if not pair.tied and sharp.min() < 0.0 else sharp
+    if pair.tied or (closed and pair.space.continuous and pair.space.ordinary):
+        sharp = at.sharpened(average, at.surface.points)
+        if pair.tied or sharp.min() >= 0.0:
+            return sharp
+    return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
 
 
 def _traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from abut.interface.coupling import Couple, Coupling, couple, default_reach, sur
 from abut.interface.geometry import CREASE, beside_others, facet_sizes, full_moments, side_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.opposite import by_target
+from abut.interface.planes import Planes, planes
 from abut.interface.pressure import (
     DUAL,
     DUAL_P1,
@@ -27,13 +28,16 @@ from abut.interface.pressure import (
     resolve,
     with_plain_facets,
 )
-from abut.interface.rim import ends_on_target
+from abut.interface.rim import Rim, ends_on_target, goes_on, rim
 from abut.interface.shared import Functions, functions, one_each
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.sides import Sides, words
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
+SQUARE = (
+    0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
+)
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
@@ -83,6 +87,7 @@ class Pair:
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
     interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
+    planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
 
     @property
@@ -165,6 +170,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         rows = (space.transfer.T @ coupling.operator).tocsr()
         free = (rows @ held.free).tocsr()
     constant, varying = offsets(model, contact)
+    border = rim(contactor)
+    beyond = goes_on(contactor, border, target, reach)
     return Pair(
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
@@ -172,16 +179,30 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         scale=space.weight / stiffness, size=size, stiffness=stiffness,
         compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
-        interior=_interior(contactor, target, coupling, reach) if space.name == DUAL_P1 else None,
+        interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
+        planes=_planes(contactor, border, beyond, held),
     )  # fmt: skip
 
 
-def _interior(contactor: Surface, target: Surface, coupling: Coupling, reach: float) -> NDArray[np.bool_]:
+def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets (n_facets,) that are covered all over, at no edge of the contactor on the target and of no target beside
     another."""
     share = coupling.covered / full_moments(contactor, 0)[:, 0]
-    edge = ends_on_target(contactor, target, reach) | beside_others(contactor)
+    edge = ends_on_target(contactor, border, beyond) | beside_others(contactor)
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
+
+
+def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], held: Supports) -> Planes | None:
+    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
+    target ends there too. None in 2D."""
+    if contactor.dim == 2:
+        return None
+    mirrored = ~beyond
+    out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
+    for own in border.ends.T:
+        mirrored &= held.held_share(own, out) > SQUARE
+        mirrored &= held.held_share(own, border.normal) < HELD
+    return planes(contactor, border, mirrored)
 
 
 def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:

@@ -14,7 +14,7 @@ from abut.mesh.surface import Surface
 
 
 def by_target(contactor: Surface, target: Surface, coupling: Coupling) -> Surface:
-    """The contactor with its facets told apart by the piece of the target that covers most of each, theory (P14); as it is
+    """The contactor with its facets told apart by the piece of the target that covers most of each, theory (P15); as it is
     where there is one piece only. Facets that face none go with their neighbours. Both lie over one array of points."""
     if not coupling.segments.any():
         return contactor

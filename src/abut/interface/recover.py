@@ -63,19 +63,29 @@ class Averages:
     def sharpened(self, average: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Averages (n_points,) of a field on all of the contactor at points x (n_points, dim), without what averaging takes
         from a linear field: theory (P12). Of the same resultant, since what one point gains another loses."""
-        k, n = int((self.corners >= 0).any(axis=0).sum()), len(average)
-        rows, mass = np.maximum(self.corners[:, :k], 0), self.mass[:, :k, :k]
-        at = _divided(self._sum(np.matmul(mass, x[rows])), self.weight)
+        rows, mass = self._masses()
+        slope, used = np.zeros_like(x), np.unique(self.corners[self.corners >= 0])
+        slope[used] = self.slopes(average, used)
+        g, away = slope[rows], x[rows][:, :, None] - x[rows][:, None]
+        gain = 0.5 * np.einsum("fij,fijd,fijd->fi", mass, away, g[:, :, None] + g[:, None])
+        return np.asarray(average + _divided(self._sum(gain), self.weight))
+
+    def slopes(self, average: NDArray[np.float64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Slope at some points (n,), (n, dim), fitted to the averages (n_points,) there and at their neighbours, each taken
+        at the point X_i of theory (P12) where it holds."""
+        rows, mass = self._masses()
+        at = _divided(self._sum(np.matmul(mass, self.surface.points[rows])), self.weight)
         used = (mass != 0.0).astype(float)
         apart, rise = at[rows][:, None] - at[rows][:, :, None], average[rows][:, None] - average[rows][:, :, None]
         close = used / np.maximum((apart**2).sum(axis=-1), 1e-300)
-        metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))
-        slope = np.linalg.pinv(metric, rcond=FLAT_STAR, hermitian=True) @ self._sum(
-            np.einsum("fij,fija,fij->fia", close, apart, rise)
-        ).reshape(n, -1, 1)
-        g, away = slope[rows, :, 0], x[rows][:, :, None] - x[rows][:, None]
-        gain = 0.5 * np.einsum("fij,fijd,fijd->fi", mass, away, g[:, :, None] + g[:, None])
-        return np.asarray(average + _divided(self._sum(gain), self.weight))
+        metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))[points]
+        rate = self._sum(np.einsum("fij,fija,fij->fia", close, apart, rise)).reshape(len(average), -1, 1)[points]
+        return np.asarray((np.linalg.pinv(metric, rcond=FLAT_STAR, hermitian=True) @ rate)[..., 0])
+
+    def _masses(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Points of the facets' corners (n_facets, k), 0 where padded, and ``mass`` of them, (n_facets, k, k)."""
+        k = int((self.corners >= 0).any(axis=0).sum())
+        return np.maximum(self.corners[:, :k], 0), self.mass[:, :k, :k]
 
     def _sum(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Values at the corners of facets (n_facets, up to 9, ...) added up at the points."""

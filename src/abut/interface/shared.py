@@ -63,7 +63,7 @@ def functions(space: PressureSpace, contactor: Surface, coupling: Coupling) -> F
 
 
 def one_each(contacts: Sequence[Functions | None]) -> list[NDArray[np.bool_] | None]:
-    """Which functions of each contact stay, (n,) bool, None for all; theory (P15). Those that go follow a neighbour.
+    """Which functions of each contact stay, (n,) bool, None for all; theory (P16). Those that go follow a neighbour.
 
     Of two at one point with one normal, whose targets lie side by side, the one of more weight stays, of equals the first.
     Where targets lie one behind the other both stay: at most one of them closes."""
