@@ -3,6 +3,7 @@
 #include "accumulator.hpp"
 #include "contactor.hpp"
 #include "parallel.hpp"
+#include "sight.hpp"
 #include "tree.hpp"
 #include <numbers>
 
@@ -198,16 +199,6 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
 
 void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, const Rule &rule, double reach,
                   std::vector<Piece> &pieces, Accumulator &sums) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (int i = 0; i < t.nodes; ++i) {
-    const double h = c.plane.height(t.x[i]);
-    low = std::min(low, h), high = std::max(high, h);
-  }
-  double thickness = 0; // of the contactor facet itself about its mean plane
-  for (int i = 0; i < c.facet.nodes; ++i)
-    thickness = std::max(thickness, std::abs(c.plane.height(c.facet.x[i])));
-  if (low - thickness > 2 * reach || high + thickness < -2 * reach)
-    return;
   pieces.clear();
   flatten(
       t, subdivide, true,
@@ -265,7 +256,9 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
         }
       }
       swept.inflate(1e-9 * swept.diagonal(dim), dim);
-      tree.query(swept, found);
+      const Sight sight(c, options.reach);
+      tree.query(swept, found, [&](const Box &box) { return sight.may_see(box); });
+      std::erase_if(found, [&](int t) { return !sight.may_see(targets[t]); });
       if (found.empty())
         continue;
       sums.begin(f, c);
