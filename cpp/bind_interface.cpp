@@ -36,7 +36,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                bool sights, bool axisymmetric, double reach, double rounding) {
+                                bool sights, bool axisymmetric, double reach, double rounding, bool hidden) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   const SurfaceView target = view(points_t, kinds_t, nodes_t);
   contactor.normals = normals.data();
@@ -46,7 +46,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
-               {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding});
+               {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding, hidden});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -95,7 +95,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"),
+        nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
         "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
 }
 

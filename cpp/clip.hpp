@@ -33,9 +33,10 @@ struct Curve {
   }
 };
 
-constexpr int MAX_CLIP = 16; // vertices of a clipped polygon: a quadrilateral cut by four lines has at most eight
+constexpr int MAX_CLIP = 24; // vertices of a clipped polygon: a quadrilateral cut by four lines has at most eight
+constexpr int STRAIGHT = -1; // side of an edge that belongs to no piece: a straight cut
 
-// A vertex and the edge that leaves it: `side` 0 subject, 1 clip; `edge` its number there.
+// A vertex and the edge that leaves it: `side` the piece that the edge belongs to, `edge` its number there.
 struct Vertex {
   Point2 p;
   int side, edge;
@@ -64,27 +65,31 @@ inline bool convex(const Point2 *p, int n) {
   return true;
 }
 
-// Part of `subject` on the left of every edge of the counter-clockwise convex polygon `clip` (Sutherland-Hodgman, with
-// the origin of each edge kept).
-inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count) {
-  Polygon current = subject;
-  for (int j = 0; j < count && current.size > 2; ++j) {
-    const Point2 a = clip[j], edge = clip[(j + 1) % count] - a;
-    Polygon next;
-    for (int i = 0; i < current.size; ++i) {
-      const Vertex &p = current.v[i], &q = current.v[(i + 1) % current.size];
-      const double dp = cross2(edge, p.p - a), dq = cross2(edge, q.p - a);
-      if (dp >= 0)
-        next.push(p);
-      if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
-        const Point2 at = p.p + (dp / (dp - dq)) * (q.p - p.p);
-        next.push(dp > 0 ? Vertex{at, 1, j} : Vertex{at, p.side, p.edge});
-      } else if (dp == 0 && dq < 0) {
-        next.v[next.size - 1].side = 1, next.v[next.size - 1].edge = j;
-      }
+// Part of a convex polygon on the left of the line from a to b; the edge along it is `edge` of `side`
+// (Sutherland-Hodgman, with the origin of each edge kept).
+inline Polygon clip_line(const Polygon &polygon, Point2 a, Point2 b, int side, int edge) {
+  const Point2 along = b - a;
+  Polygon next;
+  for (int i = 0; i < polygon.size; ++i) {
+    const Vertex &p = polygon.v[i], &q = polygon.v[(i + 1) % polygon.size];
+    const double dp = cross2(along, p.p - a), dq = cross2(along, q.p - a);
+    if (dp >= 0)
+      next.push(p);
+    if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
+      const Point2 at = p.p + (dp / (dp - dq)) * (q.p - p.p);
+      next.push(dp > 0 ? Vertex{at, side, edge} : Vertex{at, p.side, p.edge});
+    } else if (dp == 0 && dq < 0) {
+      next.v[next.size - 1].side = side, next.v[next.size - 1].edge = edge;
     }
-    current = next;
   }
+  return next;
+}
+
+// Part of `subject` on the left of every edge of the counter-clockwise convex polygon `clip`, which is piece `side`.
+inline Polygon clip_convex(const Polygon &subject, const Point2 *clip, int count, int side) {
+  Polygon current = subject;
+  for (int j = 0; j < count && current.size > 2; ++j)
+    current = clip_line(current, clip[j], clip[(j + 1) % count], side, j);
   return current;
 }
 
@@ -116,16 +121,18 @@ struct Rule {
   const double *t, *wt, *r, *wr;
 };
 
-// Calls visit(point, weight) for a rule on every cone from an apex to an edge. Straight polygons are fanned from their
-// first vertex, curved ones from the mean of the vertices. The cones are theory (S9), the rule theory (Q1). A vertex
-// that is not on its curve (see `polish`) is linked to it by a straight edge: only a closed boundary has an area that
-// does not depend on the apex, and neighbours share links.
-template <class Visit>
-void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curves)[2], const Rule &rule, Visit visit) {
+// Calls visit(point, weight) for a rule on every cone from an apex to an edge; `curve_of` gives the curve of the edge
+// that leaves a vertex, none for a straight cut. Straight polygons are fanned from their first vertex, curved ones from
+// the mean of the vertices. The cones are theory (S9), the rule theory (Q1). A vertex that is not on its curve (see
+// `polish`) is linked to it by a straight edge: only a closed boundary has an area that does not depend on the apex,
+// and neighbours share links.
+template <class CurveOf, class Visit>
+void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rule, Visit visit) {
   bool straight = true;
   Point2 mean{0, 0};
   for (int i = 0; i < polygon.size; ++i) {
-    straight = straight && curves[polygon.v[i].side][polygon.v[i].edge].straight;
+    const Curve *curve = curve_of(polygon.v[i]);
+    straight = straight && (!curve || curve->straight);
     mean = mean + (1.0 / polygon.size) * polygon.v[i].p;
   }
   const Point2 apex = straight ? polygon.v[0].p : mean;
@@ -142,11 +149,12 @@ void integrate_polygon(const Polygon &polygon, const std::array<Curve, 4> (&curv
   };
   for (int i = straight ? 1 : 0; i < polygon.size - (straight ? 1 : 0); ++i) {
     const Point2 p = polygon.v[i].p, q = polygon.v[(i + 1) % polygon.size].p;
-    const Curve &curve = curves[polygon.v[i].side][polygon.v[i].edge];
-    if (curve.straight) {
+    const Curve *own = curve_of(polygon.v[i]);
+    if (!own || own->straight) {
       line(p, q);
       continue;
     }
+    const Curve &curve = *own;
     const double t0 = curve.parameter(p), t1 = curve.parameter(q);
     const Point2 first = curve.at(t0), last = curve.at(t1);
     const double off = 1e-24 * dot2(curve.b - curve.a, curve.b - curve.a);

@@ -18,8 +18,8 @@ double moment_error(const Facet<double> &f, const Contactor3 &own, const Rule &r
     Polygon polygon;
     for (int i = 0; i < piece.size; ++i)
       polygon.push({piece.p[i], 0, i});
-    const std::array<Curve, 4> curves[2] = {piece.curve, piece.curve};
-    integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
+    const auto curve_of = [&](const Vertex &v) { return &piece.curve[v.edge]; };
+    integrate_polygon(polygon, curve_of, rule, [&](Point2 p, double weight) {
       if (!own.locate(p, xi))
         return;
       double x[3], tangent[2][3], n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], normal[3];

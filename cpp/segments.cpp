@@ -2,8 +2,9 @@
 #include "segments.hpp"
 #include "accumulator.hpp"
 #include "contactor.hpp"
+#include "hidden.hpp"
+#include "horizon.hpp"
 #include "parallel.hpp"
-#include "sight.hpp"
 #include "tree.hpp"
 #include <numbers>
 
@@ -69,15 +70,14 @@ double sees(const Facet<double> &c, const double *v) {
   return xi;
 }
 
-void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rule, double reach, bool axisymmetric,
-                 Accumulator &sums) {
-  const double begin = sees(c, t.x[1]), end = sees(c, t.x[0]); // the target runs the other way
-  if (end - begin < 1e-14)
-    return;
-  bool counted = false;
+// What a contactor line sees of a target facet from one of its points.
+struct Sight2 {
+  const Facet<double> &c;
   double eta[2] = {0, 0}, x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], gap = 0;
   double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
-  auto look = [&](double xi) { // the point seen from x: theory (S2)
+
+  explicit Sight2(const Facet<double> &own) : c(own) {}
+  bool look(const Facet<double> &t, double xi) { // the point seen from x: theory (S2)
     c.at(&xi, x, tangent, n);
     const double along[2] = {-n[1], n[0]};
     if (!project(t, x, along, along, eta))
@@ -86,69 +86,99 @@ void couple_line(const Facet<double> &c, const Facet<double> &t, const Rule &rul
     gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
     c.values(&xi, nc, d), t.values(eta, nt, d);
     return true;
-  };
-  auto see = [&] {
-    const double normal[2] = {-n[0], -n[1]};
-    sums.see(nc, nt, gap, normal);
-  };
-  // The middle decides whether the two face each other within reach.
-  const double middle = 0.5 * (begin + end);
-  if (!look(middle) || std::abs(gap) > reach || target_tangent[0][1] * n[0] - target_tangent[0][0] * n[1] >= 0)
+  }
+};
+
+void cut_line(const Facet<double> &c, const Facet<double> &t, int number, double reach, std::vector<Segment> &out) {
+  Segment own;
+  own.target = number;
+  own.begin = sees(c, t.x[1]), own.end = sees(c, t.x[0]); // the target runs the other way
+  if (own.end - own.begin < 1e-14)
     return;
+  // The middle decides whether the two face each other within reach.
+  Sight2 at(c);
+  if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach ||
+      at.target_tangent[0][1] * at.n[0] - at.target_tangent[0][0] * at.n[1] >= 0)
+    return;
+  own.eta[0] = at.eta[0];
+  out.push_back(own);
+}
+
+void find_hidden(const Facet<double> &c, const std::vector<Facet<double>> &targets, const std::int32_t *nodes,
+                 std::vector<Segment> &segments) {
+  find_hidden<double>(
+      segments, nodes,
+      [](const Segment &a, const Segment &b, double &middle) {
+        const double begin = std::max(a.begin, b.begin), end = std::min(a.end, b.end);
+        middle = 0.5 * (begin + end);
+        return end - begin > TOUCHING;
+      },
+      [&](const Segment &own, double middle) {
+        Sight2 at(c);
+        at.eta[0] = own.eta[0];
+        return at.look(targets[own.target], middle) ? std::abs(at.gap) : HUGE_VAL;
+      });
+}
+
+void integrate_line(const Facet<double> &c, const Facet<double> &t, double begin, double end, double start,
+                    const Rule &rule, bool axisymmetric, Accumulator &sums) {
+  bool counted = false;
+  Sight2 at(c);
+  at.eta[0] = start;
   if (sums.wants_sights()) {
-    const double start = eta[0]; // the integration begins at the same place with sights and without
-    see();
-    for (const double xi : {begin, end})
-      if (look(xi))
-        see();
-    eta[0] = start;
+    for (const double xi : {0.5 * (begin + end), begin, end})
+      if (at.look(t, xi)) {
+        const double normal[2] = {-at.n[0], -at.n[1]};
+        sums.see(at.nc, at.nt, at.gap, normal);
+      }
+    at.eta[0] = start; // the integration begins at the same place with sights and without
   }
   for (int q = 0; q < rule.n; ++q) {
     const double xi = begin + rule.t[q] * (end - begin);
-    if (!look(xi))
+    if (!at.look(t, xi))
       return;
-    double length = std::sqrt(dot(tangent[0], tangent[0], 2));
+    double length = std::sqrt(dot(at.tangent[0], at.tangent[0], 2));
     if (axisymmetric)
-      length *= 2 * std::numbers::pi * x[0];
-    const double normal[2] = {-n[0], -n[1]};
+      length *= 2 * std::numbers::pi * at.x[0];
+    const double normal[2] = {-at.n[0], -at.n[1]};
     if (!counted)
       sums.count_segment(), counted = true;
-    sums.add(c.kind, &xi, nc, nt, rule.wt[q] * (end - begin) * length, gap, normal);
+    sums.add(c.kind, &xi, at.nc, at.nt, rule.wt[q] * (end - begin) * length, at.gap, normal);
   }
+}
+
+void integrate_line(const Facet<double> &c, const Facet<double> &t, const Segment &own,
+                    const std::vector<Segment> &segments, const Rule &rule, bool axisymmetric, Accumulator &sums) {
+  std::vector<std::array<double, 2>> others;
+  for (int nearer : own.behind)
+    others.push_back({segments[nearer].begin, segments[nearer].end});
+  for (const auto &part : outside_of({own.begin, own.end}, others))
+    integrate_line(c, t, part[0], part[1], own.eta[0], rule, axisymmetric, sums);
 }
 
 // ---- 3D ------------------------------------------------------------------------------------------------------------
 
-void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &mine, const Piece &theirs,
-                   const Rule &rule, double reach, Accumulator &sums) {
-  Polygon subject;
-  double scale = 0;
-  for (int i = 0; i < mine.size; ++i) {
-    subject.push({mine.p[i], 0, i});
-    scale += std::abs(cross2(mine.p[i] - mine.p[0], mine.p[(i + 1) % mine.size] - mine.p[0]));
-  }
-  Polygon polygon = clip_convex(subject, theirs.p, theirs.size);
-  if (polygon.size < 3)
-    return;
-  Point2 corner[MAX_CLIP], middle{0, 0};
-  const std::array<Curve, 4> curves[2] = {mine.curve, theirs.curve};
-  for (int i = 0; i < polygon.size; ++i) {
-    Vertex &v = polygon.v[i];
-    const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
-    const Curve &in = curves[before.side][before.edge], &out = curves[v.side][v.edge];
-    if (before.side != v.side && !(in.straight && out.straight))
-      polish(in, out, v.p);
-    corner[i] = v.p;
-    middle = middle + (1.0 / polygon.size) * v.p;
-  }
-  if (std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale)
-    return;
+// A contactor facet and the target pieces that lie over it, in its mean plane.
+struct Over {
+  const Contactor3 &c;
+  std::vector<Piece> &theirs;
 
-  double xi[2], eta[2];
-  c.facet.centre(xi), t.centre(eta);
+  const Piece &piece(int side) const {
+    const int own = int(c.pieces.size());
+    return side < own ? c.pieces[side] : theirs[side - own];
+  }
+  const Curve *curve(const Vertex &v) const { return v.side == STRAIGHT ? nullptr : &piece(v.side).curve[v.edge]; }
+};
+
+// What it sees of a target facet from a point of the plane.
+struct Sight3 {
+  const Contactor3 &c;
+  double xi[2], eta[2], x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], turned[2][3];
+  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
+
+  explicit Sight3(const Contactor3 &own) : c(own) {}
   // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
-  double x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], turned[2][3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
-  auto look = [&](Point2 p) {
+  double look(const Facet<double> &t, Point2 p) {
     if (!c.locate(p, xi))
       return HUGE_VAL;
     const double *t1 = c.plane.e1, *t2 = c.plane.e2;
@@ -164,42 +194,143 @@ void couple_pieces(const Contactor3 &c, const Facet<double> &t, const Piece &min
       return HUGE_VAL;
     t.at(eta, y, target_tangent, nullptr, nt);
     return (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1] + (y[2] - x[2]) * n[2];
-  };
-  if (!(std::abs(look(middle)) <= reach))
+  }
+  void begin(const double *own, const double *other) { std::copy(own, own + 2, xi), std::copy(other, other + 2, eta); }
+};
+
+// Moves vertices where two curves cross on to both; false for a polygon without area.
+bool finish(const Over &over, Polygon &polygon, double scale, Point2 *corner, Point2 &middle) {
+  if (polygon.size < 3)
+    return false;
+  const Polygon chords = polygon;
+  middle = {0, 0};
+  for (int i = 0; i < polygon.size; ++i) {
+    Vertex &v = polygon.v[i];
+    const Vertex &before = chords.v[(i + polygon.size - 1) % polygon.size];
+    const Curve *in = over.curve(before), *out = over.curve(v);
+    if (in && out && before.side != v.side && !(in->straight && out->straight))
+      polish(*in, *out, v.p);
+    corner[i] = v.p;
+    middle = middle + (1.0 / polygon.size) * v.p;
+  }
+  return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
+}
+
+double scale_of(const Piece &piece) {
+  double scale = 0;
+  for (int i = 0; i < piece.size; ++i)
+    scale += std::abs(cross2(piece.p[i] - piece.p[0], piece.p[(i + 1) % piece.size] - piece.p[0]));
+  return scale;
+}
+
+void cut_pieces(const Over &over, const Facet<double> &t, Segment own, double reach, std::vector<Segment> &out) {
+  const Piece &mine = over.piece(own.mine), &theirs = over.piece(own.theirs);
+  Polygon subject;
+  for (int i = 0; i < mine.size; ++i)
+    subject.push({mine.p[i], own.mine, i});
+  own.polygon = clip_convex(subject, theirs.p, theirs.size, own.theirs);
+  Polygon polygon = own.polygon;
+  Point2 corner[MAX_CLIP], middle;
+  if (!finish(over, polygon, scale_of(mine), corner, middle))
+    return;
+  Sight3 at(over.c);
+  over.c.facet.centre(at.xi), t.centre(at.eta);
+  if (!(std::abs(at.look(t, middle)) <= reach))
     return;
   double facing[3];
-  cross(target_tangent[0], target_tangent[1], facing);
-  if (dot(facing, n, 3) >= 0)
+  cross(at.target_tangent[0], at.target_tangent[1], facing);
+  if (dot(facing, at.n, 3) >= 0)
+    return;
+  std::copy(at.xi, at.xi + 2, own.xi), std::copy(at.eta, at.eta + 2, own.eta);
+  out.push_back(own);
+}
+
+void find_hidden(const Over &over, const std::vector<Facet<double>> &targets, const std::int32_t *nodes,
+                 std::vector<Segment> &segments) {
+  find_hidden<Point2>(
+      segments, nodes,
+      [&](const Segment &a, const Segment &b, Point2 &middle) {
+        if (a.mine != b.mine)
+          return false;
+        Box boxes[2];
+        const Segment *both[2] = {&a, &b};
+        for (int k = 0; k < 2; ++k)
+          for (int i = 0; i < both[k]->polygon.size; ++i)
+            boxes[k].add(&both[k]->polygon.v[i].p.x, 2);
+        if (!boxes[0].meets(boxes[1], 2))
+          return false;
+        const Piece &other = over.piece(b.theirs);
+        const Polygon common = clip_convex(a.polygon, other.p, other.size, b.theirs);
+        Point2 corner[MAX_CLIP];
+        middle = {0, 0};
+        for (int i = 0; i < common.size; ++i)
+          corner[i] = common.v[i].p, middle = middle + (1.0 / common.size) * corner[i];
+        return common.size > 2 && signed_area(corner, common.size) > TOUCHING * scale_of(over.piece(a.mine));
+      },
+      [&](const Segment &own, Point2 middle) {
+        Sight3 at(over.c);
+        at.begin(own.xi, own.eta);
+        return std::abs(at.look(targets[own.target], middle));
+      });
+}
+
+void integrate_part(const Over &over, const Facet<double> &t, const Segment &own, Polygon polygon, const Rule &rule,
+                    Accumulator &sums) {
+  Point2 corner[MAX_CLIP], middle;
+  if (!finish(over, polygon, scale_of(over.piece(own.mine)), corner, middle))
     return;
   sums.count_segment();
+  Sight3 at(over.c);
   if (sums.wants_sights()) {
     auto see = [&](Point2 p) {
-      const double gap = look(p), normal[3] = {-n[0], -n[1], -n[2]};
+      const double gap = at.look(t, p), normal[3] = {-at.n[0], -at.n[1], -at.n[2]};
       if (gap != HUGE_VAL)
-        sums.see(nc, nt, gap, normal);
+        sums.see(at.nc, at.nt, gap, normal);
     };
-    const double start[4] = {xi[0], xi[1], eta[0], eta[1]}; // integrals are the same with sights and without
+    at.begin(own.xi, own.eta);
     see(middle);
     for (int i = 0; i < polygon.size; ++i)
       see(corner[i]);
-    std::copy(start, start + 2, xi), std::copy(start + 2, start + 4, eta);
   }
-  integrate_polygon(polygon, curves, rule, [&](Point2 p, double weight) {
-    if (weight == 0)
-      return;
-    const double gap = look(p);
-    if (gap == HUGE_VAL)
-      return;
-    double area[3]; // the area on the facet over that in the plane: theory (S11)
-    cross(tangent[0], tangent[1], area);
-    const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, c.plane.n, 3), normal[3] = {-n[0], -n[1], -n[2]};
-    sums.add(c.facet.kind, xi, nc, nt, weight * stretch, gap, normal);
-  });
+  at.begin(own.xi, own.eta); // integrals are the same with sights and without
+  integrate_polygon(
+      polygon, [&](const Vertex &v) { return over.curve(v); }, rule,
+      [&](Point2 p, double weight) {
+        if (weight == 0)
+          return;
+        const double gap = at.look(t, p);
+        if (gap == HUGE_VAL)
+          return;
+        double area[3]; // the area on the facet over that in the plane: theory (S11)
+        cross(at.tangent[0], at.tangent[1], area);
+        const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, over.c.plane.n, 3);
+        const double normal[3] = {-at.n[0], -at.n[1], -at.n[2]};
+        sums.add(over.c.facet.kind, at.xi, at.nc, at.nt, weight * stretch, gap, normal);
+      });
 }
 
-void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, const Rule &rule, double reach,
-                  std::vector<Piece> &pieces, Accumulator &sums) {
-  pieces.clear();
+void integrate_pieces(const Over &over, const Facet<double> &t, const Segment &own,
+                      const std::vector<Segment> &segments, const Rule &rule, Accumulator &sums) {
+  if (own.behind.empty()) {
+    integrate_part(over, t, own, own.polygon, rule, sums);
+    return;
+  }
+  const double least = TOUCHING * scale_of(over.piece(own.mine));
+  std::vector<Polygon> left{own.polygon}, next;
+  for (int nearer : own.behind) {
+    next.clear();
+    for (const Polygon &part : left)
+      outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
+    left.swap(next);
+  }
+  for (const Polygon &part : left)
+    integrate_part(over, t, own, part, rule, sums);
+}
+
+void cut_facet(const Over &over, const Facet<double> &t, int number, int subdivide, double reach,
+               std::vector<Segment> &out) {
+  const Contactor3 &c = over.c;
+  const std::size_t before = over.theirs.size();
   flatten(
       t, subdivide, true,
       [&](const double *eta, Point2 &p) {
@@ -208,16 +339,20 @@ void couple_facet(const Contactor3 &c, const Facet<double> &t, int subdivide, co
         p = c.carry(y);
         return true;
       },
-      pieces);
-  for (const Piece &mine : c.pieces)
-    for (const Piece &theirs : pieces) {
+      over.theirs);
+  const int own = int(c.pieces.size());
+  for (int mine = 0; mine < own; ++mine)
+    for (std::size_t theirs = before; theirs < over.theirs.size(); ++theirs) {
       Box a, b;
-      for (int i = 0; i < mine.size; ++i)
-        a.add(&mine.p[i].x, 2);
-      for (int i = 0; i < theirs.size; ++i)
-        b.add(&theirs.p[i].x, 2);
-      if (a.meets(b, 2))
-        couple_pieces(c, t, mine, theirs, rule, reach, sums);
+      for (int i = 0; i < c.pieces[mine].size; ++i)
+        a.add(&c.pieces[mine].p[i].x, 2);
+      for (int i = 0; i < over.theirs[theirs].size; ++i)
+        b.add(&over.theirs[theirs].p[i].x, 2);
+      if (!a.meets(b, 2))
+        continue;
+      Segment segment;
+      segment.target = number, segment.mine = mine, segment.theirs = own + int(theirs);
+      cut_pieces(over, t, segment, reach, out);
     }
 }
 
@@ -244,6 +379,7 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     Accumulator sums(out, lists[part], options, dim);
     std::vector<int> found;
     std::vector<Piece> pieces;
+    std::vector<Segment> segments;
     for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
       const Facet<double> c = contactor.facet(f);
       Box swept = box_of(c);
@@ -256,27 +392,42 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
         }
       }
       swept.inflate(1e-9 * swept.diagonal(dim), dim);
-      const Sight sight(c, options.reach);
-      tree.query(swept, found, [&](const Box &box) { return sight.may_see(box); });
-      std::erase_if(found, [&](int t) { return !sight.may_see(targets[t]); });
+      const Horizon horizon(c, options.reach);
+      tree.query(swept, found, [&](const Box &box) { return horizon.may_see(box); });
+      std::erase_if(found, [&](int t) { return !horizon.may_see(targets[t]); });
       if (found.empty())
         continue;
+      segments.clear(), pieces.clear();
       sums.begin(f, c);
-      if (dim == 2) {
-        for (int t : found) {
+      // Segments of one target facet follow each other.
+      auto each = [&](auto integrate) {
+        for (std::size_t i = 0; i < segments.size();) {
+          const int t = segments[i].target;
           sums.begin_target(t, targets[t].nodes);
-          couple_line(c, targets[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
-                      options.axisymmetric, sums);
+          const Rule rule = rules.rule(std::max(points_c[f], points_t[t]));
+          for (; i < segments.size() && segments[i].target == t; ++i)
+            integrate(targets[t], segments[i], rule);
           sums.end_target(target.nodes + 9 * t);
         }
+      };
+      if (dim == 2) {
+        for (int t : found)
+          cut_line(c, targets[t], t, options.reach, segments);
+        if (!options.hidden)
+          find_hidden(c, targets, target.nodes, segments);
+        each([&](const Facet<double> &t, const Segment &own, const Rule &rule) {
+          integrate_line(c, t, own, segments, rule, options.axisymmetric, sums);
+        });
       } else {
         const Contactor3 own(c, subdivide_c[f]);
-        for (int t : found) {
-          sums.begin_target(t, targets[t].nodes);
-          couple_facet(own, targets[t], subdivide_t[t], rules.rule(std::max(points_c[f], points_t[t])), options.reach,
-                       pieces, sums);
-          sums.end_target(target.nodes + 9 * t);
-        }
+        const Over over{own, pieces};
+        for (int t : found)
+          cut_facet(over, targets[t], t, subdivide_t[t], options.reach, segments);
+        if (!options.hidden)
+          find_hidden(over, targets, target.nodes, segments);
+        each([&](const Facet<double> &t, const Segment &own, const Rule &rule) {
+          integrate_pieces(over, t, own, segments, rule, sums);
+        });
       }
       sums.end(contactor.nodes + 9 * f);
     }

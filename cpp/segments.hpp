@@ -42,6 +42,7 @@ struct Options {
   bool axisymmetric; // coordinates are (r, z): integrals run round the axis
   double reach;      // largest distance between the surfaces, either sign
   double rounding;   // gaps below this are rounding errors of the coordinates: none
+  bool hidden;       // count also what lies behind something nearer: theory (S12)
 };
 
 // Entries are (row, column, values): row 9 f + k for pressure function k of contactor facet f, column a point number.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -31,6 +32,19 @@ from abut.conditions import (
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
 from abut.probe import Probe, check_probes
+from abut.sides import (
+    Names,
+    Sides,
+    bodies_of,
+    check_names,
+    check_own,
+    check_twice,
+    find_sides,
+    label,
+    listed,
+    normalised,
+    words,
+)
 from abut.solids.integration import INTEGRATIONS, check_integration
 from abut.solids.materials import LinearElastic
 
@@ -85,14 +99,17 @@ class Integration:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact pair. The contactor carries the pressure; ``offset`` is added to the geometric gap (negative:
-    interference), in the mesh's length unit, in full from the start or times ``amplitude``; ``adjust`` (length): initial
-    gaps and overlaps up to this size count as zero, before the offset is added; ``epsilon`` smooths the constraint
-    function (dimensionless, relative to the square of a reference pressure); ``method``: the node-to-segment ones are
-    there for comparison only."""
+    """A contact pair. The contactor carries the pressure. ``contactor`` and ``target`` are names of surfaces or bodies, or
+    lists of them, which have one pressure: every point of the contactor faces the nearest target along its normal; of a
+    body that part of its outside counts which can meet the other side.
 
-    contactor: str
-    target: str
+    ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
+    times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
+    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
+    ``method``: the node-to-segment ones are there for comparison only."""
+
+    contactor: Names
+    target: Names
     name: str = ""
     kind: str = "contact"
     pressure: str = "auto"
@@ -105,8 +122,10 @@ class Contact:
     amplitude: History = None
 
     def __post_init__(self) -> None:
+        for side in ("contactor", "target"):
+            object.__setattr__(self, side, normalised(getattr(self, side), f"contact '{self.name}': {side}"))
         if not self.name:
-            object.__setattr__(self, "name", f"{self.contactor}-{self.target}")
+            object.__setattr__(self, "name", f"{label(self.contactor)}-{label(self.target)}")
         where = f"contact '{self.name}'"
         checks.choice(self.kind, f"{where}: kind", ("contact", "tied"))
         checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
@@ -128,8 +147,9 @@ class Contact:
             raise InputError(f"{where}: adjust: expected a length >= 0, got {self.adjust!r}")
         if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):
             raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
-        if self.contactor == self.target:
-            raise InputError(f"{where}: contactor and target are the same surface '{self.contactor}'")
+        both = [name for name in listed(self.contactor) if name in listed(self.target)]
+        if both:
+            raise InputError(f"{where}: contactor and target are the same surface {words(both)}")
 
 
 @dataclass(frozen=True)
@@ -218,6 +238,25 @@ class Model:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
         return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
+
+    def sides(self, contact: Contact) -> Sides:
+        """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
+        return self._sides[contact.name]
+
+    @cached_property
+    def _sides(self) -> dict[str, Sides]:
+        return {c.name: find_sides(self.mesh, c.contactor, c.target, self._moved) for c in self.contacts}
+
+    @property
+    def _moved(self) -> float:
+        """The largest displacement that is prescribed as a number."""
+        given: list[Support | Rigid] = [*self.supports, *self.rigid]
+        values = [
+            (getattr(own, name, None), 1.0 if own.amplitude is None else own.amplitude.largest)
+            for own in given
+            for name in (*COMPONENTS, "normal")
+        ]
+        return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
 
     def temperatures(self, time: float) -> dict[str, float]:
         """Change of temperature of each solid body as a whole, which follows the ramp (degrees)."""
@@ -333,15 +372,20 @@ class Model:
                 raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
         names: set[str] = set()
         for i, contact in enumerate(self.contacts):
-            _known(contact.contactor, mesh.surfaces, f"contacts[{i}].contactor", "surface")
-            _known(contact.target, mesh.surfaces, f"contacts[{i}].target", "surface")
+            check_names(mesh, contact.contactor, f"contacts[{i}].contactor")
+            check_names(mesh, contact.target, f"contacts[{i}].target")
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
-            if rigid >= self._bodies_of(contact.contactor):
+            if rigid >= bodies_of(mesh, contact.contactor):
                 self._refuse_rigid(i, contact, rigid)
-        self._check_swapped()
-        self._check_facets()
+        self._check_sides()
+
+    def _check_sides(self) -> None:
+        every = [self.sides(contact) for contact in self.contacts]
+        for i, (contact, own) in enumerate(zip(self.contacts, every)):
+            check_own(own, contact.contactor, contact.target, f"contacts[{i}]")
+        check_twice([contact.name for contact in self.contacts], every)
 
     def _check_place(self, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
         mesh = self.mesh
@@ -353,41 +397,12 @@ class Model:
             _known(load.on, mesh.surfaces, where, "surface")
 
     def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
-        if rigid >= self._bodies_of(contact.target):
+        if rigid >= bodies_of(self.mesh, contact.target):
             raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
         raise InputError(
-            f"contacts[{i}].contactor: '{contact.contactor}' is rigid; the pressure needs the displacements of its own "
+            f"contacts[{i}].contactor: {words(contact.contactor)} is rigid; the pressure needs the displacements of its own "
             "side to be unique: swap contactor and target"
         )
-
-    def _bodies_of(self, surface: str) -> set[str]:
-        cells = self.mesh.surfaces[surface][:, 0]
-        return {body for body, own in self.mesh.bodies.items() if np.isin(cells, own).any()}
-
-    def _check_swapped(self) -> None:
-        sides = {(contact.contactor, contact.target): contact.name for contact in self.contacts}
-        for i, contact in enumerate(self.contacts):
-            other = sides.get((contact.target, contact.contactor))
-            if other is not None and i:
-                raise InputError(
-                    f"contacts[{i}]: '{contact.name}' is contact '{other}' with its sides swapped: the pressure between "
-                    "them would be determined twice; keep the one whose contactor is softer or has the coarser mesh"
-                )
-
-    def _check_facets(self) -> None:
-        """A facet that carries the pressure of one pair must not belong to another: it would be held twice."""
-        owner: dict[tuple[int, int], tuple[str, str]] = {}
-        for i, contact in enumerate(self.contacts):
-            for side in ("contactor", "target"):
-                facets = {(int(c), int(f)) for c, f in self.mesh.surfaces[getattr(contact, side)]}
-                for facet in facets & owner.keys():
-                    name, role = owner[facet]
-                    if name != contact.name and "contactor" in (side, role):
-                        raise InputError(
-                            f"contacts[{i}].{side}: facets of '{getattr(contact, side)}' (cell {facet[0]}, ...) already "
-                            f"belong to contact '{name}' as {role}; give each facet to one pair"
-                        )
-                owner |= dict.fromkeys(facets, (contact.name, side))
 
 
 def _known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:

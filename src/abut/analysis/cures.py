@@ -8,6 +8,7 @@ import numpy as np
 
 from abut.interface.geometry import facet_sizes
 from abut.model import LAWS, METHODS, Contact
+from abut.sides import code, words
 from abut.state import Check, ContactResult, Solution
 
 FINER = 0.8  # contactor's facet size over the target's below which it sees the target's kinks
@@ -82,14 +83,14 @@ def _oscillation(contact: Contact, result: ContactResult) -> str:
     fine = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
     if fine < FINER:
         return (
-            f'swap the sides (contactor = "{contact.target}", target = "{contact.contactor}"), or refine the target: the '
-            f"contactor's facets are {fine:.2g} of the target's in size"
+            f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)}), or refine the "
+            f"target: the contactor's facets are {fine:.2g} of the target's in size"
         )
     return "refine both surfaces where they touch, and take the softer body as contactor"
 
 
 def _resolution(contact: Contact, result: ContactResult) -> str:
-    return f"refine '{contact.contactor}' where it touches: contact needs three facets to each side of its middle"
+    return f"refine {words(contact.contactor)} where it touches: contact needs three facets to each side of its middle"
 
 
 def _moments(contact: Contact, result: ContactResult) -> str:
@@ -98,7 +99,7 @@ def _moments(contact: Contact, result: ContactResult) -> str:
 
 def _bare(contact: Contact, result: ContactResult) -> str:
     return (
-        f'swap the sides (contactor = "{contact.target}", target = "{contact.contactor}"), or end the facets of the '
+        f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)}), or end the facets of the "
         "contactor where the target ends"
     )
 

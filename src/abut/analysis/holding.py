@@ -201,8 +201,8 @@ def require_unmoved(held_by: Holding, held: Supports, forces: Sequence[NDArray[n
     motion = held_by.unheld(held, forces)
     if motion:
         raise SingularModelError(
-            f"{motion}: contact can only push it that way, and neither supports, other contact nor loads hold it there; add a "
-            "support, what it rests on, or the load that keeps it in place"
+            f"{motion}: contact can only push it that way, and neither supports, other contact nor loads hold it there; add "
+            "a support, what it rests on, or the load that keeps it in place"
         )
 
 

@@ -12,6 +12,7 @@ from abut.interface.coupling import surface_degree
 from abut.interface.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact
+from abut.sides import code, words
 from abut.state import ContactResult, Solution, Step
 
 COUNT = 3
@@ -110,7 +111,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
         if coarse > 1.0 / FINER:
             yield Remedy(
-                f'{where}swap the sides (contactor = "{contact.target}", target = "{contact.contactor}")',
+                f"{where}swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})",
                 f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
             )
         yield Remedy(
@@ -168,12 +169,12 @@ def _by_sides(solution: Solution, contact: Contact, result: ContactResult, where
         reasons.append(f"the contactor is {stiff:.3g} times as stiff, and the softer side should carry the pressure")
     if reasons:
         yield Remedy(
-            f'{where}swap the sides (contactor = "{contact.target}", target = "{contact.contactor}")',
+            f"{where}swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})",
             "; ".join(reasons),
         )
     if fine < FINER:
         yield Remedy(
-            f"{where}refine '{contact.target}' {1.0 / fine:.2g} times",
+            f"{where}refine {words(contact.target)} {1.0 / fine:.2g} times",
             "then its facets are no larger than the contactor's",
         )
 

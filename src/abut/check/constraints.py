@@ -11,6 +11,7 @@ from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 from abut.interface.geometry import nodal_normals
 from abut.model import Model
+from abut.sides import words
 
 MOST, ALL = 0.5, 1.0 - 1e-9  # share of the contactor's nodes: a symmetry plane across a contact holds fewer
 
@@ -37,7 +38,7 @@ def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
             "error" if pair.tied and part > ALL else "warning",
             where,
             f"over-constrained: {names} and {does} hold the same nodes, {int(taken.sum())} of {len(nodes)} of contactor "
-            f"'{pair.contact.contactor}', so that {does} acts on the target alone",
+            f"{words(pair.contact.contactor)}, so that {does} acts on the target alone",
             cure,
             status=SingularModelError.exit_status,
         )

@@ -16,6 +16,7 @@ from abut.interface.geometry import full_moments, nodal_normals
 from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
+from abut.sides import words
 
 BINS, WIDTH = 8, 30  # of the histogram: bars, and characters of the longest
 DEEP = 0.5  # overlap over facet size that is hardly meant
@@ -28,7 +29,7 @@ SAME_WAY, ACROSS = 0.5, -0.2  # cosine of the mean normals
 
 def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
     """Why no facet of a contactor faces the target: units, the wrong side of a body, or distance."""
-    contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
+    contactor, target = model.sides(contact)
     where = f"contact '{contact.name}'"
     own, other = (bodies_at(model.mesh, surface.cells) for surface in (contactor, target))
     distance = _distance(contactor, target)
@@ -51,7 +52,7 @@ def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
         return Finding(
             "error",
             where,
-            f"the outward normals of '{contact.contactor}' and '{contact.target}' {how}: one of them "
+            f"the outward normals of {words(contact.contactor)} and {words(contact.target)} {how}: one of them "
             "is on the wrong side of its body",
             _right_side(model, contact, found),
         )
@@ -60,11 +61,11 @@ def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
         return Finding(
             "error",
             where,
-            f"'{contact.contactor}' and '{contact.target}' lie {distance:.3g} apart, beyond the reach of "
+            f"{words(contact.contactor)} and {words(contact.target)} lie {distance:.3g} apart, beyond the reach of "
             f"{reach:.3g} (two facets, or a tenth of the contactor)",
             "move the bodies together in the mesh",
         )
-    return Finding("error", where, f"no facet of '{contact.contactor}' faces '{contact.target}'", str(error))
+    return Finding("error", where, f"no facet of {words(contact.contactor)} faces {words(contact.target)}", str(error))
 
 
 def _right_side(model: Model, contact: Contact, found: list[FoundContact]) -> str:
@@ -169,20 +170,23 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
     possible = float(
         np.minimum(couple(pair.contactor, around, 0, points=1, reach=reach).covered, whole).sum() / whole.sum()
     )
+    whose = ("body " if len(bodies) == 1 else "bodies ") + words(bodies)
     if possible - share > MISSING:
         return [
             Finding(
                 "warning",
                 where,
-                f"target '{pair.contact.target}' is too small: {possible - share:.0%} of contactor "
-                f"'{pair.contact.contactor}' lies opposite facets of body '{bodies[0]}' that do not "
+                f"target {words(pair.contact.target)} is too small: {possible - share:.0%} of contactor "
+                f"{words(pair.contact.contactor)} lies opposite facets of {whose} that do not "
                 "belong to it, and would sink into them",
-                f"add these facets to '{pair.contact.target}', or let auto = true find the pair",
+                f"add these facets to {words(pair.contact.target)}, or let auto = true find the pair",
             )
         ]
     if share < LITTLE:
         return [
-            Finding("info", where, f"{1.0 - share:.0%} of contactor '{pair.contact.contactor}' has no target opposite")
+            Finding(
+                "info", where, f"{1.0 - share:.0%} of contactor {words(pair.contact.contactor)} has no target opposite"
+            )
         ]
     return []
 

@@ -11,6 +11,7 @@ from abut.interface.geometry import facet_sizes, nodal_normals
 from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Model
+from abut.sides import words
 
 ALIKE = 1.1  # ratio of Young's moduli up to which neither side is the softer one
 FINER = 2.0  # ratio of facet sizes that is worth a word
@@ -32,7 +33,7 @@ def sides(model: Model, pair: Pair) -> list[Finding]:
             Finding(
                 "advice",
                 where,
-                f"contactor '{pair.contact.contactor}' is the stiffer side ({summary})",
+                f"contactor {words(pair.contact.contactor)} is the stiffer side ({summary})",
                 "swap contactor and target: the softer side should carry the pressure",
             )
         ]
@@ -41,7 +42,7 @@ def sides(model: Model, pair: Pair) -> list[Finding]:
             Finding(
                 "advice",
                 where,
-                f"contactor '{pair.contact.contactor}' is {size[1] / size[0]:.2g} times finer than its "
+                f"contactor {words(pair.contact.contactor)} is {size[1] / size[0]:.2g} times finer than its "
                 f"curved target, whose kinks its pressure will show ({summary})",
                 "refine the target, or swap the sides",
             )
@@ -51,7 +52,7 @@ def sides(model: Model, pair: Pair) -> list[Finding]:
             Finding(
                 "advice",
                 where,
-                f"contactor '{pair.contact.contactor}' is {size[0] / size[1]:.2g} times coarser than "
+                f"contactor {words(pair.contact.contactor)} is {size[0] / size[1]:.2g} times coarser than "
                 f"its target ({summary})",
                 "swap the sides for a finer pressure, or refine the contactor",
             )

@@ -14,7 +14,7 @@ from abut.discretization.supports import Supports
 from abut.errors import InputError
 from abut.interface.clearance import of_corners, partly_adjusted
 from abut.interface.coupling import Couple, Coupling, couple, default_reach, surface_degree
-from abut.interface.geometry import facet_sizes, full_moments, nodal_normals, split_at_creases
+from abut.interface.geometry import facet_sizes, full_moments, side_normals
 from abut.interface.node_to_segment import node_to_segment
 from abut.interface.pressure import (
     DUAL,
@@ -27,8 +27,10 @@ from abut.interface.pressure import (
     with_plain_facets,
 )
 from abut.interface.rim import ends_on_target
+from abut.interface.shared import Functions, functions, one_each
 from abut.mesh.surface import Surface
-from abut.model import LAWS, Contact, Model
+from abut.model import LAWS, METHODS, Contact, Model
+from abut.sides import Sides, words
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
 SHARPNESS = (  # theory (L8)
@@ -106,14 +108,26 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
     Raises InputError where two surfaces do not face each other."""
     result = []
     for contact in model.contacts:
-        result.append(pair(model, contact, held, couple))
+        sides = model.sides(contact)
+        result.append(pair(model, contact, held, couple, sides))
         if contact.method == "node-to-segment-two-pass":
             back = replace(
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
-            result.append(pair(model, back, held, couple))
+            result.append(pair(model, back, held, couple, (sides[1], sides[0])))
+    result = [
+        own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
+        for own, keep in zip(result, one_each([_shared(own) for own in result]))
+    ]
     tied_together = bool(model.equations or model.rigid)
     return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
+
+
+def _shared(own: Pair) -> Functions | None:
+    """What others at the same points need to know of a pair's multipliers; nothing of ties, and of methods for comparison."""
+    if own.tied or own.contact.method != METHODS[0] or not own.space.continuous:
+        return None
+    return functions(own.space, own.contactor, own.coupling)
 
 
 def _repeats(operator: Any) -> bool:
@@ -126,9 +140,10 @@ def _repeats(operator: Any) -> bool:
     return bool(values[0] < DEPENDENT * values[-1])
 
 
-def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple) -> Pair:
-    """Cut, integrate and reduce one contact pair. Raises InputError where the surfaces do not face each other."""
-    contactor, target = model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)
+def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple, sides: Sides | None = None) -> Pair:
+    """Cut, integrate and reduce one contact pair; sides: the model's own where left out. Raises InputError where the
+    surfaces do not face each other."""
+    contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
     reach = _reach(held, contactor, target)
     coupling, space = _couple(contact, contactor, target, reach, couple)
@@ -173,13 +188,20 @@ def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArra
     inner = inner_facets(own.space, own.contactor, own.interior, active)
     if not inner.any():
         return own
-    space = with_plain_facets(own.space, own.contactor, own.coupling, inner)
+    return _in_space(model, own, with_plain_facets(own.space, own.contactor, own.coupling, inner), held)
+
+
+def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> Pair:
+    """A pair, not tied, with another space."""
     rows = (space.transfer.T @ own.coupling.operator).tocsr()
     constant, varying = offsets(model, own.contact)
+    points, at = own.points, own.coupling.points
+    if points is not None and at is not None:
+        points = replace(points, test=(at.pressure @ space.transfer).tocsr())
     return replace(
-        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(),
+        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(), points=points,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
-        gap=space.transfer.T @ own.coupling.gap + constant * space.weight,
+        gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
 
 
@@ -206,8 +228,8 @@ def _couple(
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():
         raise InputError(
-            f"contact '{contact.name}': no facet of '{contact.contactor}' faces '{contact.target}' within reach; check the "
-            "names, that both surfaces' normals point out of their bodies, and the distance between them"
+            f"contact '{contact.name}': no facet of {words(contact.contactor)} faces {words(contact.target)} within "
+            "reach; check the names, that both surfaces' normals point out of their bodies, and the distance between them"
         )
     return coupling, space
 
@@ -286,10 +308,7 @@ def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, 
     sits = np.flatnonzero(space.node >= 0)
     if not len(sits):
         return space
-    split, _ = split_at_creases(contactor)
-    at = np.zeros_like(split.points)
-    used = split.nodes >= 0
-    at[split.nodes[used]] = nodal_normals(contactor)[used]
+    _, at = side_normals(contactor)
     normals = at[space.side[sits]]
     keep = np.ones(len(space), dtype=bool)
     keep[sits] = held.held_share(space.node[sits], normals) < HELD

@@ -9,9 +9,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
 from abut.interface.coupling import couple
-from abut.interface.geometry import LINEAR_FACET, by_kind, facet_sizes, full_moments, nodal_normals
+from abut.interface.geometry import facet_sizes, full_moments, nodal_normals, straight
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -57,7 +56,7 @@ def outside(mesh: Mesh, names: Sequence[str]) -> Outside:
         number[mesh.bodies[name]] = i
     rows = exterior(mesh)
     rows = rows[number[rows[:, 0]] >= 0]
-    surface = _straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
+    surface = straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
     normal = nodal_normals(surface).sum(axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     area = full_moments(surface, 0)[:, 0]
@@ -103,7 +102,7 @@ def _search(
         if not len(one) or not len(other):
             return none
     coupling = couple(
-        _part(all_of.surface, one), _part(all_of.surface, other), 0, points=1, reach=far, keep_points=True
+        _part(all_of.surface, one), _part(all_of.surface, other), 0, points=1, reach=far, keep_points=True, hidden=True
     )
     at = coupling.points
     if at is None:
@@ -153,16 +152,6 @@ def _boxes(surface: Surface, facets: NDArray[np.int64]) -> tuple[NDArray[np.floa
     nodes = surface.nodes[facets]
     x = surface.points[np.where(nodes >= 0, nodes, nodes[:, :1])]
     return x.min(axis=1), x.max(axis=1)
-
-
-def _straight(surface: Surface) -> Surface:
-    """Facets of first order through the corners."""
-    kinds, nodes = surface.kinds.copy(), surface.nodes.copy()
-    for kind, facets in by_kind(surface):
-        corners = CELLS[LINEAR_FACET.get(kind, kind)]
-        kinds[facets] = corners.code
-        nodes[facets, corners.nodes :] = -1
-    return replace(surface, kinds=kinds, nodes=nodes)
 
 
 def _part(surface: Surface, facets: NDArray[np.int64]) -> Surface:

@@ -7,7 +7,7 @@ pressure spaces of ``abut.interface.pressure`` are combinations of these rows. "
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -117,6 +117,7 @@ def couple(
     keep_points: bool = False,
     sights: bool = False,
     adjust: float = 0.0,
+    hidden: bool = False,
     only: NDArray[np.bool_] | None = None,
 ) -> Coupling:
     """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
@@ -129,6 +130,8 @@ def couple(
     componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
             sights: keep corners and middles of the segments, which takes a tenth of the time.
     adjust: gaps and overlaps up to this size count as zero, length.
+    hidden: count also what lies behind something nearer; else each point of the contactor sees the nearest target only,
+            theory (S12).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.interface.parts``.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
@@ -143,7 +146,7 @@ def couple(
     tables = rule_tables(rule)
     normals = nodal_normals(contactor)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
-    part = contactor if only is None else _some(contactor, facets)
+    part = contactor if only is None else contactor.part(facets)
     order_c, split_c = _plan(part, tables, points)
     order_t, split_t = _plan(target, tables, points)
     if points == "auto":
@@ -153,7 +156,7 @@ def couple(
         target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
         degree, not componentwise, keep_points, sights, contactor.axisymmetric,
         default_reach(contactor, target) if reach is None else reach,
-        no_gap(contactor, target, adjust),
+        no_gap(contactor, target, adjust), hidden,
     )  # fmt: skip
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
@@ -176,16 +179,6 @@ def couple(
 
 
 Couple = Callable[..., Coupling]  # ``couple``, or what has it done by others
-
-
-def _some(surface: Surface, facets: NDArray[np.int64]) -> Surface:
-    return replace(
-        surface,
-        kinds=np.ascontiguousarray(surface.kinds[facets]),
-        nodes=np.ascontiguousarray(surface.nodes[facets]),
-        cells=surface.cells[facets],
-        local=surface.local[facets],
-    )
 
 
 def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:

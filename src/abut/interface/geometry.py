@@ -46,6 +46,16 @@ def by_kind(surface: Surface) -> list[tuple[str, NDArray[np.int64]]]:
     return [(BY_CODE[code].name, np.flatnonzero(surface.kinds == code)) for code in np.unique(surface.kinds)]
 
 
+def straight(surface: Surface) -> Surface:
+    """Facets of first order through the corners."""
+    kinds, nodes = surface.kinds.copy(), surface.nodes.copy()
+    for kind, facets in by_kind(surface):
+        corners = CELLS[LINEAR_FACET.get(kind, kind)]
+        kinds[facets] = corners.code
+        nodes[facets, corners.nodes :] = -1
+    return replace(surface, kinds=kinds, nodes=nodes)
+
+
 def _area_vectors(
     surface: Surface, kind: str, facets: NDArray[np.int64], xi: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -106,6 +116,15 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     result = np.zeros_like(own)
     result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
     return result
+
+
+def side_normals(surface: Surface) -> tuple[Surface, NDArray[np.float64]]:
+    """The surface split at its creases, and the unit normals at its points, (n_points, dim), zero where no facet is."""
+    split, _ = split_at_creases(surface)
+    at = np.zeros_like(split.points)
+    used = split.nodes >= 0
+    at[split.nodes[used]] = nodal_normals(surface)[used]
+    return split, at
 
 
 def _without_crease(

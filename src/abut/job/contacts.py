@@ -1,4 +1,5 @@
-"""Contacts of a job file: surfaces by name, pairs found (auto = true), and found surfaces by their name ("auto:a-b")."""
+"""Contacts of a job file: surfaces and bodies by name, pairs found (auto = true), and found surfaces by their name
+("auto:a-b")."""
 
 from __future__ import annotations
 
@@ -9,9 +10,9 @@ from abut.errors import InputError, nearest
 from abut.facing import AUTO, FoundContact, add_surfaces, find_contacts
 from abut.job.schema import ContactTable
 from abut.job.values import values
-from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Integration, Solid
+from abut.sides import Names, bodies_of, listed
 
 FINDING = ("auto", "bodies", "reach")  # keys that say what to look for; the others are the contact's own
 Key = tuple[float | None, tuple[str, ...] | None]
@@ -40,7 +41,7 @@ def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequenc
     named = [() if table.auto else finder.named(table, f"contacts[{i}]") for i, table in enumerate(tables)]
     used: dict[str, FoundContact] = {found.contactor: found for own in named for found in own}
     mesh = add_surfaces(mesh, list(used.values()))
-    coupled = {_bodies(mesh, table) for table in tables if not table.auto}
+    coupled = {pair for table in tables if not table.auto for pair in _bodies(mesh, table)}
     contacts: list[tuple[int, Contact]] = []
     notes: list[str] = []
     for i, table in enumerate(tables):
@@ -80,16 +81,16 @@ class _Finder:
 
     def named(self, table: ContactTable, where: str) -> tuple[FoundContact, ...]:
         """The found pair that an entry names by its surfaces, if it does."""
-        sides = {side: name for side in ("contactor", "target") if (name := getattr(table, side)).startswith(AUTO)}
-        sides = {side: name for side, name in sides.items() if name not in self._mesh.surfaces}
-        if not sides:
+        names = [(side, name) for side in ("contactor", "target") for name in _found(getattr(table, side))]
+        names = [(side, name) for side, name in names if name not in self._mesh.surfaces]
+        if not names:
             return ()
         pairs = self.find(table)
         known = [name for found in pairs for name in (found.contactor, found.target)]
-        for side, name in sides.items():
+        for side, name in names:
             if name not in known:
                 raise InputError(f"{where}.{side}: no two surfaces found as {name!r}{nearest(name, known)}")
-        return tuple(found for found in pairs if {found.contactor, found.target} & set(sides.values()))
+        return tuple(found for found in pairs if {found.contactor, found.target} & {name for _, name in names})
 
 
 def _check(table: ContactTable, where: str) -> None:
@@ -101,17 +102,21 @@ def _check(table: ContactTable, where: str) -> None:
     for side in ("contactor", "target"):
         if not getattr(table, side):
             raise InputError(f"{where}.{side}: missing; name both surfaces, or give auto = true")
-    if (table.bodies, table.reach) != (None, None) and not any(
-        name.startswith(AUTO) for name in (table.contactor, table.target)
-    ):
+    if (table.bodies, table.reach) != (None, None) and not (_found(table.contactor) or _found(table.target)):
         raise InputError(
             f"{where}: bodies and reach are for auto = true and surfaces named '{AUTO}...'; leave them out"
         )
 
 
-def _bodies(mesh: Mesh, table: ContactTable) -> frozenset[str]:
-    """Bodies that an entry couples by its surfaces; none where it names unknown ones, which the model will refuse."""
+def _found(side: Names) -> list[str]:
+    """The names of found surfaces among those of a side."""
+    return [name for name in listed(side) if name.startswith(AUTO)]
+
+
+def _bodies(mesh: Mesh, table: ContactTable) -> set[frozenset[str]]:
+    """Pairs of bodies that an entry couples; none where it names unknown ones, which the model will refuse."""
     sides = (table.contactor, table.target)
-    if not all(name in mesh.surfaces for name in sides):
-        return frozenset()
-    return frozenset(body for name in sides for body in bodies_at(mesh, mesh.surfaces[name][:, 0]))
+    if not all(name in mesh.surfaces or name in mesh.bodies for side in sides for name in listed(side)):
+        return set()
+    own, other = (bodies_of(mesh, side) for side in sides)
+    return {frozenset({a, b}) for a in own for b in other}

@@ -21,7 +21,6 @@ from abut.io.abaqus.pretension import cut
 from abut.io.abaqus.record import Deck, GeneralContact, Numbers, Pair
 from abut.job.deck_rigid import join, rigid_bodies
 from abut.mesh.check import check_mesh
-from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
@@ -39,6 +38,7 @@ from abut.model import (
     Temperature,
     Term,
 )
+from abut.sides import bodies_of, find_sides
 from abut.solids.loads import stress_load
 from abut.solids.materials import LinearElastic
 
@@ -207,10 +207,7 @@ def _general(
     general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
 ) -> tuple[Mesh, list[Contact]]:
     """Pairs of bodies that face each other and that no *CONTACT PAIR or *TIE names; the mesh with their surfaces."""
-    named = [
-        {body for side in (c.contactor, c.target) for body in bodies_at(mesh, mesh.surfaces[side][:, 0])}
-        for c in contacts
-    ]
+    named = [{body for side in (c.contactor, c.target) for body in bodies_of(mesh, side)} for c in contacts]
     found = [f for f in find_contacts(mesh, solids) if set(f.bodies) not in named]
     if not found and not contacts:
         raise InputError(
@@ -223,7 +220,7 @@ def _general(
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     """Raise InputError for surfaces that look the same way, which happens where meshes overlap."""
-    push = [stress_load(mesh.surface(name), np.eye(mesh.dim)) for name in (contact.contactor, contact.target)]
+    push = [stress_load(own, np.eye(mesh.dim)) for own in find_sides(mesh, contact.contactor, contact.target)]
     a, b = (own.reshape(-1, mesh.dim).sum(axis=0) for own in push)  # area times outward normal
     if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
         card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"

@@ -154,8 +154,8 @@ class IntegrationTable(Table):
 
 class ContactTable(Table):
     name: str = ""
-    contactor: str = ""
-    target: str = ""
+    contactor: str | list[str] = ""
+    target: str | list[str] = ""
     auto: bool = False
     bodies: list[str] | None = None
     reach: Number | None = None

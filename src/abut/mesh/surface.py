@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,16 @@ class Surface:
     def around(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """What an integral over facets is multiplied by at points (..., dim): 2 pi r round an axis, else 1."""
         return around(points, self.axisymmetric)
+
+    def part(self, facets: NDArray[Any]) -> Surface:
+        """Some of its facets: their numbers, or (n_facets,) bool."""
+        return replace(
+            self,
+            kinds=np.ascontiguousarray(self.kinds[facets]),
+            nodes=np.ascontiguousarray(self.nodes[facets]),
+            cells=self.cells[facets],
+            local=self.local[facets],
+        )
 
     def __len__(self) -> int:
         return int(self.kinds.shape[0])

@@ -18,6 +18,7 @@ from abut.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
 from abut.probing.feet import feet
 from abut.probing.sides import CONTACTOR, Side, choose
+from abut.sides import words
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,9 @@ def _quantities(model: Model, probe: Probe, side: Side | None) -> tuple[str, ...
     if "gap" in probe.of and side is not None and side.role != CONTACTOR:
         contact = model.contacts[side.contact]
         raise InputError(
-            f"probe '{probe.name}': the gap of contact '{contact.name}' is known on its contactor '{contact.contactor}', "
-            f"but the probe lies on its target '{contact.target}'; put it on the contactor, or take gap out of its 'of'"
+            f"probe '{probe.name}': the gap of contact '{contact.name}' is known on its contactor "
+            f"{words(contact.contactor)}, but the probe lies on its target {words(contact.target)}; put it on the "
+            "contactor, or take gap out of its 'of'"
         )
     return probe.of
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import InputError
+from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.probe import ON_CONTACTS, Probe
 from abut.probing.feet import feet
@@ -63,21 +64,19 @@ def _better(model: Model, probe: Probe, number: int, points: NDArray[np.float64]
     """The side of a contact that more of the probe is on, of those that belong to the probe's body."""
     sides = []
     for role in (CONTACTOR, TARGET):
-        name = getattr(model.contacts[number], role)
-        cells = model.mesh.surfaces[name][:, 0]
-        if probe.body is None or np.isin(cells, model.mesh.bodies[probe.body]).any():
-            sides.append(Side(number, role, _how_much(model, probe, name, points)))
+        surface = model.sides(model.contacts[number])[role == TARGET]
+        if probe.body is None or np.isin(surface.cells, model.mesh.bodies[probe.body]).any():
+            sides.append(Side(number, role, _how_much(model, probe, surface, points)))
     return max(sides, key=lambda side: side.on, default=None)
 
 
-def _how_much(model: Model, probe: Probe, name: str, points: NDArray[np.float64]) -> int:
+def _how_much(model: Model, probe: Probe, surface: Surface, points: NDArray[np.float64]) -> int:
     """How much of a probe is on a surface: of sets and surfaces a facet, of lines two points."""
     mesh = model.mesh
     if probe.on in mesh.surfaces:
         rows = {(int(c), int(f)) for c, f in mesh.surfaces[str(probe.on)]}
-        if any((int(c), int(f)) in rows for c, f in mesh.surfaces[name]):
+        if any((int(c), int(f)) in rows for c, f in zip(surface.cells, surface.local)):
             return LIES
-    surface = mesh.surface(name)
     if probe.on is not None:
         nodes = mesh.nodes_of(probe.on)
         among = np.isin(surface.nodes, nodes) & (surface.nodes >= 0)

@@ -23,6 +23,7 @@ from abut.mesh.facets import facet_keys, number_keys
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model, Solid
+from abut.sides import Sides
 from abut.solids.elements import stiffness
 from abut.solids.loads import stress_load
 from abut.solids.materials import LinearElastic
@@ -72,7 +73,8 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
             f"verify: contact '{contact.name}' is {contact.method}, whose pressure is not unique; take another method"
         )
     contact = replace(contact, kind="contact", law="complementarity", offset=0.0)
-    normal = _plane_normal(model, contact)
+    sides = model.sides(contact)
+    normal = _plane_normal(model.mesh.axisymmetric, sides)
     bodies = Model(
         model.mesh,
         [Solid(s.body, LinearElastic(1.0, POISSON), integration=s.integration) for s in model.solids],
@@ -80,14 +82,14 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
         plane=model.plane,
     )
     if normal is None:
-        own = pair(bodies, contact, supports(bodies))
+        own = pair(bodies, contact, supports(bodies), sides=sides)
         force, moment = balance(own, np.ones(9 * len(own.contactor)))
         return InterfacePatch(contact.name, False, None, None, force, moment)
     stress = -np.outer(normal, normal)
     exact = model.mesh.points @ _strain(stress, model.plane)
     pinned = _pinned(bodies, exact)
     held = supports(pinned)
-    own = pair(pinned, contact, held)
+    own = pair(pinned, contact, held, sides=sides)
     load = _load(model.mesh, own.contactor, own.target, stress)
     full = stiffness(pinned.mesh, {s.body: s.material for s in pinned.solids}, model.plane, model.integration)
     displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
@@ -104,13 +106,12 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     )
 
 
-def _plane_normal(model: Model, contact: Contact) -> NDArray[np.float64] | None:
+def _plane_normal(axisymmetric: bool, sides: Sides) -> NDArray[np.float64] | None:
     """The unit normal of a plane interface, None where it is curved (or, axisymmetric, not across the axis)."""
-    surfaces = [model.mesh.surface(contact.contactor), model.mesh.surface(contact.target)]
-    used = [nodal_normals(s)[s.nodes >= 0] for s in surfaces]
+    used = [nodal_normals(s)[s.nodes >= 0] for s in sides]
     normal = used[0].mean(axis=0)
     normal /= max(float(np.linalg.norm(normal)), 1e-300)
-    if model.mesh.axisymmetric and abs(normal[0]) > FLAT:
+    if axisymmetric and abs(normal[0]) > FLAT:
         return None
     for own, sign in zip(used, (1.0, -1.0)):
         if np.abs(own - sign * normal).max() > FLAT:

@@ -19,9 +19,9 @@ struct Extent {
 // Points at height h above the plane of the facet are seen from places at most h times `slope` beside them: theory
 // (S5). So a target whose extent, that much wider, misses the facet's own cannot be seen. Reach is measured from the
 // facet itself, and how far its normals lean is its own matter too: what is far away on the surface costs nothing.
-class Sight {
+class Horizon {
 public:
-  Sight(const Facet<double> &c, double reach) : dim_(c.dim), reach_(reach) {
+  Horizon(const Facet<double> &c, double reach) : dim_(c.dim), reach_(reach) {
     set_frame(c);
     for (int i = 0; i < c.nodes; ++i)
       add(own_, c.x[i]);
