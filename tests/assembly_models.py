@@ -28,9 +28,7 @@ class Assembly:
     rest: dict[str, Any]
 
     def solids(self) -> list[abut.Solid]:
-        return [
-            s if isinstance(s, abut.Solid) else abut.Solid(*s) for s in self.rest.get("solids", self._all(STEEL))
-        ]
+        return [s if isinstance(s, abut.Solid) else abut.Solid(*s) for s in self.rest.get("solids", self._all(STEEL))]
 
     def _all(self, material: abut.LinearElastic) -> list[tuple[str, abut.LinearElastic]]:
         return [(body, material) for body in self.mesh.bodies]
@@ -88,11 +86,14 @@ def bearing() -> Assembly:
         occ = gmsh.model.occ
 
         def race(inner: float, outer: float) -> int:
-            return int(occ.cut([(2, occ.addDisk(0, 0, 0, outer, outer))], [(2, occ.addDisk(0, 0, 0, inner, inner))])[0][0][1])
+            return int(
+                occ.cut([(2, occ.addDisk(0, 0, 0, outer, outer))], [(2, occ.addDisk(0, 0, 0, inner, inner))])[0][0][1]
+            )
 
         bodies = {"inner": race(4.0, middle - radius + preload), "outer": race(middle + radius - preload, 21.0)}
         bodies |= {
-            f"ball{i}": occ.addDisk(middle * np.cos(t), middle * np.sin(t), 0, radius, radius) for i, t in enumerate(turns)
+            f"ball{i}": occ.addDisk(middle * np.cos(t), middle * np.sin(t), 0, radius, radius)
+            for i, t in enumerate(turns)
         }
         occ.synchronize()
         for name, tag in bodies.items():
@@ -101,7 +102,9 @@ def bearing() -> Assembly:
             curves = [t for _, t in gmsh.model.getBoundary([(2, bodies[body])], oriented=False)]
             own = [t for t in curves if abs(gmsh.model.getBoundingBox(1, t)[3] - wanted) < 1e-3]
             gmsh.model.addPhysicalGroup(1, own, name=name)
-        touch = [occ.addPoint(r * np.cos(t), r * np.sin(t), 0) for t in turns for r in (middle - radius, middle + radius)]
+        touch = [
+            occ.addPoint(r * np.cos(t), r * np.sin(t), 0) for t in turns for r in (middle - radius, middle + radius)
+        ]
         occ.synchronize()
         field = gmsh.model.mesh.field
         near, size = field.add("Distance"), field.add("Threshold")
@@ -253,7 +256,12 @@ def involute(teeth: int, module: float, backlash: float, hub: float, roundness: 
     for k in range(teeth):
         centre = 2 * np.pi * (k + 0.5) / teeth
         flank = [(r, centre - h) for r, h in zip(radii, half)]
-        tooth = [(root, centre - half[0]), *flank, *((r, 2 * centre - a) for r, a in reversed(flank)), (root, centre + half[0])]
+        tooth = [
+            (root, centre - half[0]),
+            *flank,
+            *((r, 2 * centre - a) for r, a in reversed(flank)),
+            (root, centre + half[0]),
+        ]
         corners += [(r * np.cos(a), r * np.sin(a)) for r, a in dict.fromkeys(tooth)]
     return corners
 

@@ -150,6 +150,8 @@ def _search(
 
 def _plausible(all_of: Outside, found: Facing, reach: float | None) -> NDArray[np.bool_]:
     opposite = np.einsum("ij,ij->i", all_of.normal[found.one], all_of.normal[found.other]) < OPPOSITE
+    # The far side of a body may lie at any angle.
+    opposite |= (all_of.body[found.one] == all_of.body[found.other]) & (found.gap < 0.0)
     near = NEAR * (all_of.size[found.one] + all_of.size[found.other])
     limit = near if reach is None else reach
     close = (found.gap <= limit) & (-found.gap <= np.minimum(limit, near))
