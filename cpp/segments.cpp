@@ -26,6 +26,7 @@ Facet<double> SurfaceView::facet(std::size_t f) const {
 namespace {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
+constexpr double EDGE_ON = 1e-9;        // cosine of normals: facets that the contactor sees edge-on do not face it
 
 Box box_of(const Facet<double> &f) {
   Box box;
@@ -97,8 +98,10 @@ void cut_line(const Facet<double> &c, const Facet<double> &t, int number, double
     return;
   // The middle decides whether the two face each other within reach.
   Sight2 at(c);
-  if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach ||
-      at.target_tangent[0][1] * at.n[0] - at.target_tangent[0][0] * at.n[1] >= 0)
+  if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach)
+    return;
+  const double *along = at.target_tangent[0], size = std::sqrt(dot(along, along, 2));
+  if (along[1] * at.n[0] - along[0] * at.n[1] >= -EDGE_ON * size)
     return;
   own.eta[0] = at.eta[0];
   out.push_back(own);
@@ -239,7 +242,7 @@ void cut_pieces(const Over &over, const Facet<double> &t, Segment own, double re
     return;
   double facing[3];
   cross(at.target_tangent[0], at.target_tangent[1], facing);
-  if (dot(facing, at.n, 3) >= 0)
+  if (dot(facing, at.n, 3) >= -EDGE_ON * std::sqrt(dot(facing, facing, 3)))
     return;
   std::copy(at.xi, at.xi + 2, own.xi), std::copy(at.eta, at.eta + 2, own.eta);
   out.push_back(own);

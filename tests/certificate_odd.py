@@ -11,11 +11,6 @@ from abut.mesh.make import box, cylinder, join, rectangle
 from certificate_models import NU, SOFT, fit, squares, steel
 
 
-def joined(mesh: abut.Mesh, name: str, *surfaces: str) -> abut.Mesh:
-    """The mesh with several surfaces as one more."""
-    return replace(mesh, surfaces={**mesh.surfaces, name: np.concatenate([mesh.surfaces[s] for s in surfaces])})
-
-
 def strip(facets: int, cell: str = "quad8", **contact: object) -> abut.Model:
     """A round punch, 0.384 wide and of radius 0.5, pressed on a plate by a pressure of 100, with ``adjust``."""
     punch = rectangle((-0.192, 0.192), (0, 0.4), (facets, 2), cell)
@@ -38,8 +33,8 @@ def approach(model: abut.Model) -> float:
     return -float(solution.displacement[solution.model.mesh.nodes_of("punch.top"), 1].mean())
 
 
-def sheets(both: bool) -> abut.Model:
-    """A sheet on a base, under a cover within reach; the target is the sheet, or (wrong) the cover too. Pressure 1."""
+def sheets(*contacts: abut.Contact) -> abut.Model:
+    """A sheet on a base, under a cover within reach. Pressure 1 on the sheet. Contacts: base and sheet where left out."""
     mesh = join(
         {
             "base": rectangle((0, 1), (0, 1), (4, 4), "quad4"),
@@ -47,13 +42,12 @@ def sheets(both: bool) -> abut.Model:
             "cover": rectangle((0, 1), (1.06, 1.5), (5, 2), "quad4"),
         }
     )
-    mesh = joined(mesh, "both", "sheet.bottom", "cover.bottom")
     return abut.Model(
         mesh,
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.0)) for body in mesh.bodies],
         [abut.Support("base.bottom", x=0, y=0), abut.Support("cover.top", x=0, y=0), abut.Support("sheet.left", x=0)],
         [abut.Pressure("sheet.top", 1.0)],
-        contacts=[abut.Contact("base.top", "both" if both else "sheet.bottom")],
+        contacts=contacts or [abut.Contact("base.top", "sheet.bottom")],
         plane="strain",
     )
 

@@ -151,9 +151,18 @@ def sheets(pressed: str) -> abut.Model:
 
 
 def test_two_layers_of_target_where_nothing_presses() -> None:
-    """Facets that stay open may see as many layers as they like; those that are pressed, or cut into, may not."""
-    assert checks(abut.solve(sheets("right")))["covered twice"].value < 1e-9
-    assert checks(abut.solve(sheets("left")))["covered twice"].value == pytest.approx(1.0, abs=1e-9)
+    """What lies behind the nearest target does not count, whether that is pressed or not; what other contacts say of it
+    does where both press."""
+    for pressed in ("right", "left"):
+        assert checks(abut.solve(sheets(pressed)))["covered twice"].value < 1e-9
+    behind = abut.Contact("base.top", "cover.bottom", offset=-0.08)
+    twice = replace(sheets("left"), contacts=[abut.Contact("base.top", "left.bottom"), behind])
+    solution = abut.solve(twice)
+    found = {(c.contact, c.name): c for c in solution.certificate}
+    for contact in twice.contacts:
+        assert found[contact.name, "covered twice"].value == pytest.approx(1.0, abs=1e-9)
+    open_behind = replace(twice, contacts=[twice.contacts[0], replace(behind, offset=0.0)])
+    assert all(c.passed for c in abut.solve(open_behind).certificate if c.name == "covered twice")
 
 
 def tubes(linear: str, cell: str = "hex8") -> abut.Model:

@@ -15,7 +15,7 @@ from abut.job import json_schema
 EXAMPLE = Path(__file__).parents[1] / "examples" / "two-blocks" / "job.toml"
 TEXT = EXAMPLE.read_text()
 MESH = TEXT[TEXT.index("[mesh.bodies.lower]") : TEXT.index("[materials")]
-TWICE = '[[contacts]]\nname = "first"\ncontactor = "upper.bottom"\ntarget = "lower.right"\n[materials.steel]'
+TWICE = '[[contacts]]\nname = "first"\ncontactor = "upper.bottom"\ntarget = "lower.top"\n[materials.steel]'
 
 
 def run(tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, str]:
@@ -45,7 +45,7 @@ BAD = {
     "wrong side": ('"lower.top"', '"lower.bottom"', "faces"),
     "missing solid": ('[[solids]]\nbody = "upper"\nmaterial = "steel"\n', "", "no material for body 'upper'"),
     "no mesh file": (MESH, '[mesh]\nfile = "no.msh"\n', "does not exist"),
-    "facet in two pairs": ("[materials.steel]", TWICE, "already belong to contact 'first'"),
+    "pair given twice": ("[materials.steel]", TWICE, "pressure between them would be determined twice"),
 }
 # fmt: on
 

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from abut.errors import InputError, nearest
-from abut.interface.coupling import couple, default_reach
-from abut.interface.geometry import CREASE, area_vectors, straight
+from abut.interface.coupling import Coupling, couple, default_reach
+from abut.interface.geometry import CREASE, area_vectors, full_moments, straight
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -20,6 +21,8 @@ from abut.mesh.surface import Surface
 Names = str | Sequence[str]  # of surfaces or bodies
 Rows = NDArray[np.int64]  # (n, 2): cell, local facet
 Sides = tuple[Surface, Surface]  # contactor, target
+ROUNDING = 1e-9
+SLIVER = 1e-9  # of a facet's area: less is rounding where edges of both sides coincide
 ON_AXIS = 1e-9  # of the largest radius: facets at smaller ones have no area
 
 
@@ -119,13 +122,34 @@ def _met(
     contactor, target = straight(plane.facets(own)), straight(plane.facets(other))
     every = straight(plane.facets(np.concatenate([other, hiding])))
     reach = default_reach(contactor, target) + 2.0 * moved
-    at = couple(contactor, every, 0, points=1, reach=reach, keep_points=True).points
-    assert at is not None
-    seen = at.target_facet < len(other)
+    seen = couple(contactor, every, 0, points=1, reach=reach, keep_points=True, sights=True)
+    pairs = _facing_pairs(contactor, seen, len(other)) & _not_through(contactor, seen, len(other))
     met = np.zeros(len(own), dtype=bool), np.zeros(len(other), dtype=bool)
-    met[0][at.facet[seen]] = True
-    met[1][at.target_facet[seen]] = True
+    for facet, target_facet in pairs:
+        met[0][facet] = met[1][target_facet] = True
     return _and_around(contactor, met[0]), _and_around(target, met[1])
+
+
+def _facing_pairs(contactor: Surface, seen: Coupling, n_target: int) -> set[tuple[int, int]]:
+    """Facets of contactor and target (its first ``n_target`` facets) of which more than a sliver sees each other."""
+    at = seen.points
+    assert at is not None
+    large = at.weight > SLIVER * full_moments(contactor, 0)[:, 0][at.facet]
+    large &= at.target_facet < n_target
+    return set(zip(at.facet[large].tolist(), at.target_facet[large].tolist()))
+
+
+def _not_through(contactor: Surface, seen: Coupling, n_target: int) -> set[tuple[int, int]]:
+    """The same but for those seen through the contactor's body: what lies inside it is seen from where it is nearest to its
+    outside. Chords of a bore that cut into a pin do not press on the pin's end."""
+    at = seen.sights
+    assert at is not None
+    x = np.einsum("ik,ikd->id", at.own, contactor.points[np.maximum(contactor.nodes[at.facet], 0)])
+    place = x - at.gap[:, None] * at.normal
+    around = cKDTree(contactor.points[np.unique(contactor.nodes[contactor.nodes >= 0])])
+    near = (at.gap >= 0.0) | (-at.gap <= around.query(place)[0] * (1.0 + ROUNDING))
+    near &= at.target_facet < n_target
+    return set(zip(at.facet[near].tolist(), at.target_facet[near].tolist()))
 
 
 def _and_around(surface: Surface, core: NDArray[np.bool_]) -> NDArray[np.bool_]:

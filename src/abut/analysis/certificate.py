@@ -33,7 +33,8 @@ NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after
 def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
                 residual: float, reference: float = 0.0, overlap: NDArray[np.float64] | None = None,
                 share: NDArray[np.float64] | None = None, beside: float = 0.0,
-                free: NDArray[np.bool_] | None = None) -> tuple[Check, ...]:  # fmt: skip
+                free: NDArray[np.bool_] | None = None,
+                elsewhere: NDArray[np.float64] | None = None) -> tuple[Check, ...]:  # fmt: skip
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
@@ -42,7 +43,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     residual: of the contact law, relative to the largest pressure; reference: largest
     pressure of the steps before; overlap: (n_facets,) largest of each at a
     point, over its size; beside: largest pressure of all pairs, now and before; free: (dim,) axes along
-    which a side may shift, all by default.
+    which a side may shift, all by default; elsewhere: (n_facets, 2) shares of each that other contacts cover,
+    and load.
     """
     name = pair.contact.name
     largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), NOTHING * max(reference, beside), 1e-300)
@@ -82,15 +84,18 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         add("facet moments", _moment_error(pair, areas, cover, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
     loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
-    bare = 1.0 - float(pair.coupling.covered[loaded].sum() / areas[loaded].sum()) if loaded.any() else 0.0
+    others = np.zeros((len(areas), 2)) if elsewhere is None else elsewhere
+    covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
+    bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
     add("bare area", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
     total = pair.space.removed + len(pair.space)
     add("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
         "share of the contactor's multipliers without target or held by supports")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
     counts = loaded if pair.tied else loaded | (hidden > OVERLAP)
-    add("covered twice", max(float(cover[counts].max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
-        "share of a loaded facet with two layers of target opposite, both counted")  # fmt: skip
+    every = (cover + others[:, 1])[counts]
+    add("covered twice", max(float(every.max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
+        "share of a loaded facet with two layers of target opposite, both counted, here or by another contact")  # fmt: skip
     return tuple(checks)
 
 

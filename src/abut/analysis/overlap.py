@@ -1,13 +1,16 @@
-"""How far the surfaces of a contact overlap after deformation, point by point."""
+"""How far the surfaces of a contact overlap after deformation, point by point, and facets that several contacts load."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.faceting import misfit, unseen
+from abut.analysis.oscillation import CLOSED
 from abut.discretization.pairs import Pair
-from abut.interface.geometry import facet_sizes
+from abut.interface.geometry import facet_sizes, full_moments
 
 ROUNDING = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 
@@ -37,3 +40,20 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
         depth = np.minimum(depth, depth - unseen(pair, chords))
     np.maximum.at(deepest, at.facet, depth / facet_sizes(pair.contactor)[at.facet])
     return deepest
+
+
+def covered_elsewhere(pairs: Sequence[Pair], pressures: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """Of each pair, shares of its contactor's facets, (n_facets, 2): what other pairs cover, and what they load of it."""
+    numbers = [8 * pair.contactor.cells + pair.contactor.local for pair in pairs]  # no cell has more than 8 facets
+    loaded = []
+    for pair, pressure in zip(pairs, pressures):
+        size = np.abs(pair.space.transfer @ pressure).reshape(-1, 9).max(axis=1)
+        share = pair.coupling.covered / np.maximum(full_moments(pair.contactor, 0)[:, 0], 1e-300)
+        loaded.append(np.column_stack([share, np.where(size > CLOSED * size.max(initial=0.0), share, 0.0)]))
+    result = [np.zeros((len(number), 2)) for number in numbers]
+    for i, own in enumerate(numbers):
+        for j, other in enumerate(numbers):
+            if i != j:
+                _, here, there = np.intersect1d(own, other, assume_unique=True, return_indices=True)
+                result[i][here] += loaded[j][there]
+    return result

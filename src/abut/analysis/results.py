@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.analysis.certificate import NOTHING, certificate
 from abut.analysis.faceting import free_axes
 from abut.analysis.loads import Loads
-from abut.analysis.overlap import overlaps
+from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -77,14 +77,16 @@ def step_result(
             depth,
             beside,
             free_axes(model, held, pair),
+            elsewhere,
         )
-        for pair, pressure, gap, active, reference, depth in zip(
+        for pair, pressure, gap, active, reference, depth, elsewhere in zip(
             system.pairs,
             pressures,
             system.split(system.gap(unknowns, stage.weights)),
             system.split(unknowns.active),
             _largest_pressures(len(system.pairs), before),
             deepest,
+            covered_elsewhere(system.pairs, pressures),
         )
     )
     cycling = {}
@@ -147,6 +149,7 @@ def _contact(
     overlap: NDArray[np.float64],
     beside: float,
     free: NDArray[np.bool_],
+    elsewhere: NDArray[np.float64],
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
@@ -191,7 +194,9 @@ def _contact(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, values, nodal, max(depth, 0.0), residual, reference, overlap, share, beside, free),
+        checks=certificate(
+            pair, values, nodal, max(depth, 0.0), residual, reference, overlap, share, beside, free, elsewhere
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=own[ids],

@@ -124,7 +124,7 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
 
 
 def _shared(own: Pair) -> Functions | None:
-    """What others at the same points need to know of a pair's multipliers; nothing of ties, and of methods for comparison."""
+    """What others at the same points need to know of a pair's multipliers; nothing of ties and methods for comparison."""
     if own.tied or own.contact.method != METHODS[0] or not own.space.continuous:
         return None
     return functions(own.space, own.contactor, own.coupling)

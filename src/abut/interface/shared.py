@@ -24,8 +24,9 @@ TWICE = 1e-3  # covered share over 1 from which on two targets lie over each oth
 
 @dataclass(frozen=True)
 class Functions:
-    """The functions of a pressure, all at points. node, weight: (n,); normal: (n, dim); neighbours: (n, n) sparse, those with a
-    facet in common; facet: (m,) numbers of the contactor's facets in the mesh, nodes: (m, 9) theirs, covered: (m,) share."""
+    """The functions of a pressure, all at points. node, weight: (n,); normal: (n, dim); neighbours: (n, n) sparse, those
+    with a facet in common; facet: (m,) numbers of the contactor's facets in the mesh, nodes: (m, 9) theirs, covered: (m,)
+    share."""
 
     node: NDArray[np.int64]
     weight: NDArray[np.float64]
