@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -159,7 +160,7 @@ def wall() -> Assembly:
         if row % 2:
             cuts = np.array([0.0, 1.5, 3.5, 5.5, 7.5, 10.0])
         rows.append([])
-        for k, (left, right) in enumerate(zip(cuts, cuts[1:])):
+        for k, (left, right) in enumerate(pairwise(cuts)):
             name = f"block{row}{k}"
             cells = (round(4 * (right - left)) + (row + k) % 2, 4 + k % 2)
             parts[name] = make.rectangle((left, right), (row, row + 1), cells, "quad4")
@@ -241,7 +242,7 @@ def flange() -> Assembly:
     return Assembly(in_gmsh(build, 2.5, 2), names(*every), rest)
 
 
-def involute(teeth: int, module: float, backlash: float, hub: float, roundness: int = 6) -> list[Point]:
+def involute(teeth: int, module: float, backlash: float, roundness: int = 6) -> list[Point]:
     """The outline of a gear, pressure angle 20 degrees, counter-clockwise, the middle of a gap at angle 0."""
     pitch = 0.5 * module * teeth
     base, tip, root = pitch * np.cos(np.deg2rad(20)), pitch + module, pitch - 1.25 * module
@@ -274,7 +275,7 @@ def gears() -> Assembly:
     def build(gmsh: Any) -> None:
         occ = gmsh.model.occ
         for i, (name, count) in enumerate(zip(("pinion", "wheel"), teeth)):
-            outline = involute(count, module, backlash, 0.0)
+            outline = involute(count, module, backlash)
             # A tooth of the pinion, a gap of the wheel on the line of centres.
             turn = np.pi / count if i == 0 else np.pi
             shift = 0.0 if i == 0 else distance
@@ -330,7 +331,7 @@ def clevis(size: float = 3.2) -> Assembly:
 
         flat = {
             "middle": faces(eye, lambda b: b[5] < 1e-3) + faces(pin, lambda b: b[5] < 1e-3),
-            "plane": sum((faces(t, lambda b: b[4] < 1e-3) for t in (eye, fork, pin)), []),
+            "plane": [face for t in (eye, fork, pin) for face in faces(t, lambda b: b[4] < 1e-3)],
             "pulled": faces(eye, lambda b: b[0] > 39.9),
             "held": faces(fork, lambda b: b[3] < -39.9),
         }

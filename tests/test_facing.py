@@ -156,8 +156,8 @@ def test_patches_apart_are_pairs_of_their_own() -> None:
 
 
 def test_facets_may_belong_to_several_pairs() -> None:
-    """Two hard blocks on a soft plate, one facet of which lies under both: it is the contactor's in both pairs, and any model
-    made of what is found is accepted."""
+    """Two hard blocks on a soft plate, one facet of which lies under both: it is the contactor's in both pairs, and a
+    model made of what is found is accepted."""
     mesh = join(
         {
             "plate": box(x=(0, 10), y=(0, 4), z=(0, 2), cells=(3, 2, 2)),

@@ -154,9 +154,9 @@ def _choose(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int
     a, b = (every.names[i] for i in patch.bodies)
     share = [min(patch.faces.area.sum() / every.area[facets].sum(), 1.0) for facets in patch.facets]
     soft = int(young[b] < young[a]) if a in young and b in young else 0
-    if a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b]):
-        if share[soft] > BARE or young[(a, b)[1 - soft]] == np.inf:
-            return soft, "softer"
+    unlike = a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b])
+    if unlike and (share[soft] > BARE or young[(a, b)[1 - soft]] == np.inf):
+        return soft, "softer"
     fuller = int(share[1] > share[0])
     if share[fuller] > share[1 - fuller] + BARER and share[1 - fuller] < BARE:
         return fuller, "the facets of the other side reach far beyond this one"
