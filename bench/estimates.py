@@ -84,7 +84,7 @@ def main() -> None:
         spent = time.process_time() - start
         count = sum(len(step.iterations) for step in solution.steps)
         print(
-            f"{name:20s} {solution.free_dofs:7d} dofs {count:3d} solutions: foreseen {foreseen.seconds:7.2f} s, took "
+            f"{name:20s} {held.free.shape[1]:7d} dofs {count:3d} solutions: foreseen {foreseen.seconds:7.2f} s, took "
             f"{spent:7.2f} s, ratio {foreseen.seconds / spent:5.2f}",
             flush=True,
         )

@@ -18,6 +18,8 @@ from abut.interface.coupling import couple
 from abut.mesh.exterior import exterior
 from assembly_models import ASSEMBLIES, Assembly, fir_tree
 
+pytest.importorskip("gmsh")
+
 NEAR = 0.3  # of a facet: a gap within which nobody would doubt that two facets face each other
 OPPOSITE = -0.7  # cosine of the normals, likewise
 COARSE = {  # lines of the certificate that a mesh of this size fails for a good reason: contact on less than three facets

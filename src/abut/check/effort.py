@@ -1,7 +1,7 @@
 """How long a run takes, stage by stage: counts of what has to be done, times what one of it took, measured.
 
-All constants are seconds on one core of a server of 2023 (about 5 Gflop/s in a sparse factorisation); a count is known from
-the mesh and the pairs, but for how many linear solutions and Krylov iterations the contact will take: those are typical ones.
+All constants are seconds on one core of a server of 2023 (some 5 Gflop/s in a sparse factorisation). Counts are known from
+the mesh and the pairs, but for those of linear solutions and Krylov iterations: these are typical ones.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SEGMENT = {  # seconds a segment between flat facets, between curved ones
 }  # fmt: skip
 A_PAIR, A_BODY = 8e-3, 4e-4  # seconds a pair and a body, whatever their size
 RESULT = 1.0e-6  # seconds a free displacement and step: stresses, checks
-ROW, FRONT = 5e-6, 1.3e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
+ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
 ELIMINATIONS = {
     1: 1,
     2: 2,
