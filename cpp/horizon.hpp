@@ -16,8 +16,8 @@ struct Extent {
   }
 };
 
-// Points at height h above the plane of the facet are seen from places at most h times `slope` beside them: theory
-// (S5). So a target whose extent, that much wider, misses the facet's own cannot be seen. Reach is measured from the
+// By theory (S5), points at height h above the plane of the facet are seen from places at most h times `slope` beside
+// them. So a target whose extent, that much wider, misses the facet's own cannot be seen. Reach is measured from the
 // facet itself, and how far its normals lean is its own matter too: what is far away on the surface costs nothing.
 class Horizon {
 public:
