@@ -15,6 +15,9 @@ from abut.solvers.newton import (
     Unknowns,
     active_laws,
     advance,
+    equilibrium,
+    internal_force,
+    largest_force,
     largest_pressure,
     next_active,
     report,
@@ -23,6 +26,7 @@ from abut.state import Iteration
 
 Aim = Literal["solution", "set", "this set"]
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
+TOLD, AGAIN = 1e-2, 3  # of equilibrium and of closed gaps, from where on a state tells which set comes next
 STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
 SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
@@ -55,9 +59,14 @@ def solve_set(
     clock = time.perf_counter()
     active = system.complete(state.active, system.gap(state, stage.weights)) | tied
     state = replace(state, active=active)
-    state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
+    for _ in range(AGAIN):
+        state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
+        left = closure(system, state, stage)
+        error = 0.0 if system.exact else max(left, unbalanced(system, state, stage))
+        if error <= TOLD:
+            break
+        accuracy = max(0.3 * TOLD / error, STRIDE)
     wanted, violation = next_active(system, state, stage, tied)
-    left = closure(system, state, stage)
     changed = int((wanted != active).sum())
     row = report(system, state, stage, count, changed, violation, time.perf_counter() - clock)
     row = replace(row, contact_residual=max(row.contact_residual, left))
@@ -76,6 +85,13 @@ def finer(system: System, solved: Solved, aim: Aim) -> float:
 
 def _wanted(system: System, aim: Aim) -> float:
     return max(SEARCHED, system.accurate) if aim == "set" else system.accurate
+
+
+def unbalanced(system: System, state: Unknowns, stage: Stage) -> float:
+    """Largest residual of equilibrium over the largest force."""
+    internal = internal_force(system, state)
+    residual = equilibrium(system, state, stage.weights, internal)
+    return float(np.abs(residual).max(initial=0.0) / largest_force(system, internal, stage))
 
 
 def closure(system: System, state: Unknowns, stage: Stage) -> float:
