@@ -105,7 +105,7 @@ def solve_step(
         if aim == "this set":
             break
         count = int(changed.sum())
-        misled = lawful is not None and count > changes[-1] and system.softens
+        misled = lawful is not None and count > max(changes[-1], FEW * active.sum())
         if misled and lawful is not None:  # back to what the law asked for, and no more foresight
             seen.add(active.tobytes())
             state, lawful, foresight, doubtful = replace(state, active=lawful), None, None, True
