@@ -3,7 +3,6 @@ interface's own operator for the pressures. Nothing but the interface's part cha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,16 +13,7 @@ from abut.errors import InputError
 from abut.solvers.active_set import Rows, System
 from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import (
-    Apply,
-    Interface,
-    interfaces,
-    predictor,
-    schur,
-    schur_diagonal,
-    schur_inverse,
-    soft_inverse,
-)
+from abut.solvers.schur import Apply, PressureBlock, predictor, pressure_block
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
@@ -43,18 +33,13 @@ class Count:
 
 @dataclass(frozen=True)
 class Iterative:
-    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see; scale: of pressures;
-    forward, diagonal: of S; unit: size of the stiffness' entries."""
+    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
 
     operator: Any
     hierarchy: Hierarchy
-    parts: Sequence[Interface]
+    pressures: PressureBlock
     motions: NDArray[np.float64]
-    scale: float
     count: Count
-    forward: Apply
-    diagonal: NDArray[np.float64]
-    unit: float
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
@@ -66,7 +51,7 @@ class Iterative:
         operator = self.operator[active]
         n = len(residual)
         soft = -rows.by_pressure.diagonal()[active]
-        inverse, s = self._pressures(soft, active)
+        inverse, s = self.pressures.on(soft, active)
         coarse = self._rigid(operator, inverse)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -102,13 +87,6 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _pressures(self, soft: NDArray[np.float64], active: NDArray[np.bool_]) -> tuple[Apply, NDArray[np.float64]]:
-        """The preconditioner of the active pressures, and what they are divided by. soft: (n_active,) gap per pressure that
-        the rows add; with it residuals are measured in the root of energy."""
-        if not soft.any():
-            return schur_inverse(self.parts, active), np.full(len(soft), self.scale)
-        return soft_inverse(self.forward, self.diagonal, soft), np.sqrt(self.unit / (self.diagonal + soft))
-
     def _rigid(self, operator: Any, inverse: Apply) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         if not self.motions.shape[1]:
@@ -123,14 +101,6 @@ def compliance(moved: NDArray[np.float64], inverse: Apply) -> NDArray[np.float64
     return np.asarray(np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T])))
 
 
-def pressure_scale(system: System) -> float:
-    """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
-    operator = system.operator
-    rows = np.flatnonzero(np.diff(operator.indptr))
-    largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
-    return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
-
-
 def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], count: Count) -> System:
     """The system with its linear systems solved iteratively; ``count`` goes on counting.
 
@@ -141,12 +111,7 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], 
             f"solve.linear: \"amg\" does not know the constraint function of contact '{smooth[0]}'; choose law = "
             '"complementarity", or linear = "direct"'
         )
-    scale = pressure_scale(system)
-    parts = interfaces(system.pairs)
-    forward = schur(parts)
-    solver = Iterative(
-        system.operator, hierarchy, parts, motions, scale, count, forward, schur_diagonal(parts, system.operator.shape[0]),
-        float(np.median(system.stiffness.diagonal())),
-    )  # fmt: skip
-    predict = predictor(forward, np.asarray(system.operator @ motions))
+    pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
+    solver = Iterative(system.operator, hierarchy, pressures, motions, count)
+    predict = predictor(pressures.forward, np.asarray(system.operator @ motions))
     return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)
