@@ -53,7 +53,7 @@ def solve_set(
 ) -> Solved:
     """Solve with the active set of ``state``, completed where it lets a body go, as iteration ``count`` of the step."""
     clock = time.perf_counter()
-    active = system.complete(state.active, system.gap(state, stage.weights)) | tied
+    active = system.complete(state.active, system.gap(state, stage.weights), stage.weights) | tied
     state = replace(state, active=active)
     state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
     wanted, violation = next_active(system, state, stage, tied)
