@@ -112,8 +112,8 @@ class Flexibility:
     def _resisted(
         self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], pressure: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance; pressure:
-        (n_multipliers,) sizes, beside which what is left of forces in balance is rounding."""
+        """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance;
+        pressure: (n_multipliers,) sizes, beside which what is left of forces in balance is rounding."""
         if not self.motions.shape[1]:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
