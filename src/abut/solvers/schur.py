@@ -156,6 +156,16 @@ def predictor(forward: Apply, moved: NDArray[np.float64]) -> Predict:
     return predict
 
 
+def foresight(pairs: Sequence[Pair], moved: NDArray[np.float64]) -> Predict:
+    """``predictor`` of the pairs' own half spaces, set up when it is first asked."""
+
+    @cache
+    def ready() -> Predict:
+        return predictor(schur(interfaces(pairs)), moved)
+
+    return lambda *state: ready()(*state)
+
+
 def _balanced(
     forward: Apply, rest: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
     own: NDArray[np.int64],
