@@ -43,9 +43,18 @@ class Holding:
         """The same with something else that resists."""
         return _holding(self.rigid, self.supports + gram, self.pairs) if gram.any() else self
 
-    def complete(self, active: NDArray[np.bool_], gap: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """The active set, with the closest multipliers added where it would let a body go, theory (V8)."""
-        if self.by_supports or self._holds(active):
+    def complete(
+        self,
+        held: Supports,
+        load: NDArray[np.float64],
+        active: NDArray[np.bool_],
+        gap: NDArray[np.float64],
+        weights: NDArray[np.float64],
+    ) -> NDArray[np.bool_]:
+        """The active set, with the closest multipliers added where it would let a body go that the loads move, theory (V8).
+
+        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.solvers.newton.System``."""
+        if self.by_supports or self._holds(active) or self._moved(held, load @ weights, active) is None:
             return active
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
@@ -59,12 +68,19 @@ class Holding:
     def pulled_off(self, held: Supports, load: NDArray[np.float64], weights: NDArray[np.float64]) -> str:
         """The motion, in words, that loads cause though contact pushes wherever it can; empty where there is none.
 
-        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.solvers.newton.System``."""
+        load, weights: as for ``complete``."""
+        motion = self._moved(held, load @ weights)
+        return "" if motion is None else describe(self.rigid, motion[:, None])
+
+    def _moved(
+        self, held: Supports, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.float64] | None:
+        """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
+        pushes where it can; None where there is none."""
         free = free_motions([self.supports])
-        force = load @ weights
         moves = held.coordinates(self.rigid.modes @ free)
-        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()))
-        return "" if motion is None else describe(self.rigid, (free @ motion)[:, None])
+        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
+        return None if motion is None else free @ motion
 
     def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
@@ -75,18 +91,25 @@ class Holding:
 
 
 def unbalanced(
-    pairs: Sequence[Pair], moves: NDArray[np.float64], work: NDArray[np.float64], size: float
+    pairs: Sequence[Pair],
+    moves: NDArray[np.float64],
+    work: NDArray[np.float64],
+    size: float,
+    active: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64] | None:
     """The motion (m,) that is left where no pressures that push (ties: nor pull) balance the loads, theory (V15); None
     where some do.
 
     moves: (n_free, m) rigid motions that supports leave free; work: (m,) of the loads on them; size: sum of all forces,
-    of which a work of ``UNBALANCED`` is none."""
+    of which a work of ``UNBALANCED`` is none; active: (n,) multipliers that may press, all where left out."""
     if not len(work) or not np.abs(work).max() > UNBALANCED * size:
         return None
+    chosen = [None] * len(pairs) if active is None else np.split(active, np.cumsum([len(p) for p in pairs])[:-1])
     push = [np.zeros((0, len(work)))]
-    for pair in pairs:  # with points the pressure is positive there, its coefficients need not be
-        moved = np.asarray((pair.operator if pair.points is None else pair.points.operator) @ moves)
+    for pair, own in zip(pairs, chosen):  # with points the pressure is positive there, its coefficients need not be
+        points = own is None and pair.points is not None
+        operator = pair.points.operator if points and pair.points is not None else pair.operator
+        moved = np.asarray((operator if own is None else operator[own]) @ moves)
         push += [moved, -moved] if pair.tied else [moved]
     forces = np.concatenate(push)
     length = np.linalg.norm(forces, axis=1)

@@ -26,6 +26,7 @@ from abut.parallel.partition import Layout
 from abut.parallel.team import Team
 from abut.solvers.active_set import Rows, System
 from abut.solvers.blocks import saddle
+from abut.solvers.conditions import conditions
 from abut.solvers.direct import SINGULAR
 from abut.solvers.iterative import RESPONSE, Count, NotConverged, compliance
 from abut.solvers.linear import Prepared
@@ -51,16 +52,15 @@ class Iterative:
 
         Raises NotConverged."""
         fixed, active = rows.fixed, ~rows.decoupled
-        operator, soft = self.operator[active], -rows.by_pressure.diagonal()[active]
-        inverse, s = self.pressures.on(soft, active)
-        layout = self.matrix.layout
+        operator, own = self.operator[active], conditions(rows, self.operator, self.pressures)
+        s, inverse, layout = own.columns, own.inverse, self.matrix.layout
         small = compliance(operator @ self.motions, inverse) if self.motions.shape[1] else np.zeros((0, 0))
-        lower = spread(-sp.diags(s) @ operator, layout)
-        conditions = Conditions(
-            lower, lower, sp.diags(-soft * s * s, format="csr"), -s * rows.residual[active],
+        lower, corner = spread(sp.diags(s) @ own.lower, layout), sp.diags(s) @ own.corner @ sp.diags(s)
+        beside = Conditions(
+            lower, lower, corner.tocsr(), -s * rows.residual[active],
             lambda gap: inverse(gap / s) / s if len(gap) else gap,
         )  # fmt: skip
-        answers = self._solve(accuracy, -residual + self.operator.T @ fixed, small, conditions)
+        answers = self._solve(accuracy, -residual + self.operator.T @ fixed, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
@@ -74,12 +74,12 @@ class Iterative:
         with self.matrix.held(springs):
             return displacement(self._solve(RESPONSE, force, small, None), self.matrix.layout)
 
-    def _solve(self, accuracy: float, rhs: Vector, small: Vector, conditions: Conditions | None) -> list[Answer]:
-        n = 0 if conditions is None else len(conditions.rhs)
+    def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
+        n = 0 if beside is None else len(beside.rhs)
         shares = self.matrix.layout.shares(np.column_stack([rhs, self.motions]))
         answers: list[Answer] = self.matrix.team.each(
             iterate, accuracy, n, small,
-            own=[(v[:, 0], v[:, 1:], None if rank else conditions) for rank, (v,) in enumerate(shares)],
+            own=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
         )  # fmt: skip
         self.count.iterations += answers[0].iterations
         return answers
@@ -99,17 +99,17 @@ class Direct:
         if n == 0:
             return self._solve(0, True, -residual, None)[0], pressure
         s = saddle(self.unit, self.operator, rows, residual)
-        conditions = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
-        solution, q = self._solve(n, s.symmetric, s.rhs_u, conditions)
+        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+        solution, q = self._solve(n, s.symmetric, s.rhs_u, beside)
         return solution, s.pressure(q)
 
     def factorise(self, rows: Rows) -> Solve:
         """As ``abut.solvers.blocks.factorise``."""
         layout, n = self.matrix.layout, len(rows.residual)
         s = saddle(self.unit, self.operator, rows, np.zeros(self.matrix.shape[0]))
-        conditions = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
         team = self.matrix.team
-        team.each(keep_factors, n, s.symmetric, own=[(None if rank else conditions,) for rank in range(team.size)])
+        team.each(keep_factors, n, s.symmetric, own=[(None if rank else beside,) for rank in range(team.size)])
 
         def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
             s = saddle(self.unit, self.operator, replace(rows, residual=of_law), residual)
@@ -125,9 +125,9 @@ class Direct:
         with self.matrix.held(springs):
             return self._solve(0, True, force, None)[0]
 
-    def _solve(self, n: int, symmetric: bool, rhs: Vector, conditions: Conditions | None) -> tuple[Vector, Vector]:
+    def _solve(self, n: int, symmetric: bool, rhs: Vector, beside: Conditions | None) -> tuple[Vector, Vector]:
         shares = self.matrix.layout.shares(rhs)
-        own = [(share, None if rank else conditions) for rank, (share,) in enumerate(shares)]
+        own = [(share, None if rank else beside) for rank, (share,) in enumerate(shares)]
         return self._checked(self.matrix.team.each(factorise, n, symmetric, own=own))
 
     def _checked(self, answers: list[Answer]) -> tuple[Vector, Vector]:

@@ -120,7 +120,7 @@ def solve_step(
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 lawful, wanted = wanted, guess
         accuracy = finest
-        stuck = np.array_equal(system.complete(wanted, gap) | tied, active)
+        stuck = np.array_equal(system.complete(wanted, gap, stage.weights) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
         slow = repeated or hopeless(changes, rows) or (doubtful and count >= HALVED * changes[-2])
@@ -176,6 +176,6 @@ def following(system: System, stage: Stage, outcome: Outcome, weights: NDArray[n
     return Stage(
         stage.number + 1,
         weights,
-        largest_force(system, internal_force(system, state), stage),
+        largest_force(system, state, internal_force(system, state), stage),
         largest_pressure(state, stage),
     )

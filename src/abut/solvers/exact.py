@@ -60,7 +60,7 @@ def solve_set(
 
     An iterative solver goes on where a rough solution says nothing, as after a state that was far off."""
     clock = time.perf_counter()
-    active = system.complete(state.active, system.gap(state, stage.weights)) | tied
+    active = system.complete(state.active, system.gap(state, stage.weights), stage.weights) | tied
     state = replace(state, active=active)
     for _ in range(MOST if not system.exact else 1):
         state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)

@@ -67,7 +67,7 @@ def chosen(
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not coupled and find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in pairs)
+    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 

@@ -133,21 +133,14 @@ def soft_inverse(forward: Apply, diagonal: NDArray[np.float64], softness: NDArra
 
 @dataclass(frozen=True)
 class PressureBlock:
-    """What preconditions pressures, and what they are divided by. forward, diagonal: of S on all rows; scale: of pressures;
-    unit: size of the stiffness' entries."""
+    """What preconditions pressures. forward, diagonal: of S on all rows; scale: of pressures, theory (V2); unit: size of the
+    stiffness' entries."""
 
     parts: Sequence[Interface]
     forward: Apply
     diagonal: NDArray[np.float64]
     scale: float
     unit: float
-
-    def on(self, soft: NDArray[np.float64], active: NDArray[np.bool_]) -> tuple[Apply, NDArray[np.float64]]:
-        """The inverse on the active rows, and their scale. soft: (n_active,) gap per pressure that the rows add; with it
-        residuals are measured in the root of energy."""
-        if not soft.any():
-            return schur_inverse(self.parts, active), np.full(len(soft), self.scale)
-        return soft_inverse(self.forward, self.diagonal, soft), np.sqrt(self.unit / (self.diagonal + soft))
 
 
 def pressure_block(pairs: Sequence[Pair], operator: Any, diagonal: NDArray[np.float64]) -> PressureBlock:
