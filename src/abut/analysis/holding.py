@@ -48,9 +48,18 @@ class Holding:
         """The same with something else that resists."""
         return _holding(self.rigid, self.supports + gram, self.pairs, self.bare) if gram.any() else self
 
-    def complete(self, active: NDArray[np.bool_], gap: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """The active set, with the closest multipliers added where it would let a body go, theory (V8)."""
-        if self.by_supports or self._holds(active):
+    def complete(
+        self,
+        held: Supports,
+        load: NDArray[np.float64],
+        active: NDArray[np.bool_],
+        gap: NDArray[np.float64],
+        weights: NDArray[np.float64],
+    ) -> NDArray[np.bool_]:
+        """The active set, with the closest multipliers added where it would let a body go that the loads move, theory (V8).
+
+        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.solvers.newton.System``."""
+        if self.by_supports or self._holds(active) or self._moved(held, load @ weights, active) is None:
             return active
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
@@ -64,15 +73,13 @@ class Holding:
     def pulled_off(self, held: Supports, load: NDArray[np.float64], weights: NDArray[np.float64]) -> str:
         """The motion, in words, that loads cause though contact pushes wherever it can; empty where there is none.
 
-        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.solvers.newton.System``."""
+        load, weights: as for ``complete``."""
         return self.unbalanced(held, load @ weights)
 
     def unbalanced(self, held: Supports, force: NDArray[np.float64]) -> str:
         """The same for forces (n_free,) on the free displacements."""
-        free = free_motions([self.supports])
-        moves = held.coordinates(self.rigid.modes @ free)
-        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()))
-        return "" if motion is None else self._in_words(held, free @ motion, [force], driven=True)
+        motion = self._moved(held, force)
+        return "" if motion is None else self._in_words(held, motion, [force], driven=True)
 
     def unheld(self, held: Supports, forces: Sequence[NDArray[np.float64]]) -> str:
         """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
@@ -105,6 +112,16 @@ class Holding:
         best = plain[:, stays][:, 0] if stays.any() else motion
         return describe(self.rigid, best[:, None], one_way=True)
 
+    def _moved(
+        self, held: Supports, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.float64] | None:
+        """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
+        pushes where it can; None where there is none."""
+        free = free_motions([self.supports])
+        moves = held.coordinates(self.rigid.modes @ free)
+        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
+        return None if motion is None else free @ motion
+
     def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
         return [resistance_of_rows(self.rigid, p.rows[own]) for p, own in zip(self.pairs, np.split(active, splits))]
@@ -114,16 +131,21 @@ class Holding:
 
 
 def unbalanced(
-    pairs: Sequence[Pair], moves: NDArray[np.float64], work: NDArray[np.float64], size: float
+    pairs: Sequence[Pair],
+    moves: NDArray[np.float64],
+    work: NDArray[np.float64],
+    size: float,
+    active: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64] | None:
     """The motion (m,) that is left where no pressures that push (ties: nor pull) balance the loads, theory (V15); None
     where some do.
 
     moves: (n_free, m) rigid motions that supports leave free; work: (m,) of the loads on them; size: sum of all forces,
-    of which a work of ``UNBALANCED`` is none."""
+    of which a work of ``UNBALANCED`` is none; active: (n,) multipliers that may press, all where left out."""
     if not _drives(work, size):
         return None
-    forces = _pushes(pairs, moves)
+    chosen = [None] * len(pairs) if active is None else np.split(active, np.cumsum([len(p) for p in pairs])[:-1])
+    forces = np.concatenate([np.zeros((0, len(work))), *(_pushes(p, moves, own) for p, own in zip(pairs, chosen))])
     if not len(forces):
         return work
     pressure, missing = nnls(forces.T, -work)
@@ -137,7 +159,7 @@ def unheld(
     none, as where each contact can be under pressure while pressures balance one another or the loads.
 
     works: (m,) of each load step and the sum of its forces, as for ``unbalanced``."""
-    own = [_pushes([pair], moves) for pair in pairs]
+    own = [_pushes(pair, moves) for pair in pairs]
     forces = np.concatenate([np.zeros((0, moves.shape[1])), *own])
     loads = [work / np.linalg.norm(work) for work, size in works if _drives(work, size)]
     columns = np.concatenate([forces, *(load[None] for load in loads)])
@@ -162,18 +184,19 @@ def _drives(work: NDArray[np.float64], size: float) -> bool:
     return bool(len(work)) and bool(np.abs(work).max() > UNBALANCED * size)
 
 
-def _pushes(pairs: Sequence[Pair], moves: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What a pressure of each multiplier, positive, does on the motions, (rows, m), each of unit length; those of ties both
-    ways, and none of those that do nothing but rounding."""
-    push = [np.zeros((0, moves.shape[1]))]
-    for pair in pairs:  # with points the pressure is positive there, its coefficients need not be
-        operator = pair.operator if pair.points is None else pair.points.operator
-        moved = np.asarray(operator @ moves)
-        length = np.linalg.norm(moved, axis=1)
-        keep = length > NOTHING * np.asarray(abs(operator).sum(axis=1)).ravel()
-        moved = moved[keep] / length[keep, None]
-        push += [moved, -moved] if pair.tied else [moved]
-    return np.concatenate(push)
+def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
+    """What a pressure of each multiplier of a pair, or of those ``active``, does on the motions, (rows, m), each of unit
+    length; those of ties both ways, and none of those that do nothing but rounding."""
+    operator = pair.operator
+    if active is not None:
+        operator = operator[active]
+    elif pair.points is not None:  # the pressure is positive there, its coefficients need not be
+        operator = pair.points.operator
+    moved = np.asarray(operator @ moves)
+    length = np.linalg.norm(moved, axis=1)
+    keep = length > NOTHING * np.asarray(abs(operator).sum(axis=1)).ravel()
+    moved = moved[keep] / length[keep, None]
+    return np.concatenate([moved, -moved]) if pair.tied else moved
 
 
 def require_held(held_by: Holding, held: Supports, loads: Sequence[NDArray[np.float64]]) -> None:

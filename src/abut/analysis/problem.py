@@ -77,7 +77,7 @@ def problem(
         load=load,
         pairs=every,
         operator=operator,
-        complete=held_by.complete,
+        complete=partial(held_by.complete, held, load),
         pulled_off=partial(held_by.pulled_off, held, load),
         step=partial(newton_step, reduced, operator),
         motions=held.coordinates(held_by.free),
