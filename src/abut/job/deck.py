@@ -143,16 +143,16 @@ def translate(deck: Deck) -> Translation:
 
 def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
-    apart = {n for e in deck.equations for n, _, _ in e.terms} | {
-        n for r in deck.rigid for n in (r.reference, r.turning)
-    }
-    made = np.union1d(groups.used, np.array(sorted(apart), np.int64))
+    made = set(groups.used.tolist())
+    made |= {n for e in deck.equations for n, _, _ in e.terms}
+    made |= {n for r in deck.rigid for n in (r.reference, r.turning)}
+    given = set(deck.nodes.tolist())
     notes: dict[str, None] = {}
     for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):
-        idle = np.setdiff1d(value.numbers, made)
-        if value.kind == "boundary" and len(idle) == len(value.numbers):
-            what = "belongs to no element and no equation" if np.isin(idle[0], deck.nodes) else "does not exist"
-            notes[f"{value.place}: *BOUNDARY: node {idle[0]} {what}: the line holds nothing"] = None
+        if value.kind == "boundary" and made.isdisjoint(value.numbers.tolist()):
+            node = int(value.numbers[0])
+            what = "belongs to no element and no equation" if node in given else "does not exist"
+            notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
     return list(notes)
 
 

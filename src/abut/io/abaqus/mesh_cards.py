@@ -46,7 +46,7 @@ class Names:
 
 @dataclass(frozen=True)
 class MeshCards:
-    """What the mesh cards say; see ``record.Deck``."""
+    """What the mesh cards say; see ``record.Deck``. numbers: of all nodes; kinds: cell type of each element."""
 
     nodes: Numbers
     points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -54,6 +54,8 @@ class MeshCards:
     node_sets: Names
     element_sets: Names
     surfaces: Mapping[str, Faces]
+    numbers: frozenset[int]
+    kinds: Mapping[int, str]
     virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
 
     def existing(self, line: Line, i: int) -> Numbers:
@@ -61,7 +63,7 @@ class MeshCards:
         nodes = self.node_sets.resolve(line, i, "node")
         if not len(nodes):
             raise line.unknown(f"node set '{line.text(i)}' is empty")
-        if len(nodes) == 1 and not np.isin(nodes, self.nodes).all() and int(nodes[0]) not in self.virtual:
+        if len(nodes) == 1 and int(nodes[0]) not in self.numbers and int(nodes[0]) not in self.virtual:
             raise line.unknown(f"node {nodes[0]} does not exist; give it in *NODE")
         return nodes
 
@@ -105,7 +107,18 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
     places = {key(card.get("TYPE") or ""): card.place for card in reversed(cards) if card.key == "ELEMENT"}
-    return MeshCards(ids, points, _blocks(elements, places), node_sets, element_sets, _named(surfaces), virtual)
+    kinds = {number: ELEMENTS[code].kind for number, (code, _) in elements.items()}
+    return MeshCards(
+        ids,
+        points,
+        _blocks(elements, places),
+        node_sets,
+        element_sets,
+        _named(surfaces),
+        frozenset(nodes),
+        kinds,
+        virtual,
+    )
 
 
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:

@@ -160,7 +160,7 @@ def _direction(line: Line, i: int) -> int:
 def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
     kind = key(line.text(0))
     if kind not in ("TIE", "PIN"):
-        raise line.error(f"*MPC of type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
+        raise line.error(f"type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
     a, b = (mesh.existing(line, i) for i in (1, 2))
     if len(b) == 1:
         b = np.repeat(b, len(a))

@@ -159,11 +159,10 @@ def _force(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
 
 def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     label, value = line.text(1).upper(), line.number(2, "magnitude")
-    every = np.concatenate([block.ids for block in mesh.blocks]) if mesh.blocks else np.empty(0, np.int64)
-    elements = mesh.element_sets.resolve(line, 0, "element") if line.text(0) else every
-    missing = np.setdiff1d(elements, every)
-    if len(missing):
-        raise line.unknown(f"element {missing[0]} does not exist")
+    elements = mesh.element_sets.resolve(line, 0, "element") if line.text(0) else np.array(sorted(mesh.kinds), np.int64)
+    for number in elements.tolist():
+        if number not in mesh.kinds:
+            raise line.unknown(f"element {number} does not exist")
     if label == "GRAV":
         x, y, z = (line.number(i, "direction", 0.0) for i in (3, 4, 5))
         size = float(np.sqrt(x * x + y * y + z * z))
@@ -173,7 +172,7 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
         return [Prescribed("gravity", elements, (0,), value, amplitude, line.place, vector)]
     if not label.startswith("P") or label == "P":
         raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face) and GRAV are")
-    kinds = {block.type.kind for block in mesh.blocks if np.isin(elements, block.ids).any()}
+    kinds = {mesh.kinds[number] for number in elements.tolist()}
     face = face_number(line, label, "P", kinds)
     return [Prescribed("pressure", elements, (face,), value, amplitude, line.place)]
 
