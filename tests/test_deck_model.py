@@ -28,6 +28,22 @@ def test_pressure_through_contact(tmp_path):
     assert set(solution.model.mesh.bodies) == {"EALL-1", "EALL-2"}
 
 
+def test_one_surface_in_two_pairs(tmp_path):
+    """A brick between two others, both its faces one slave surface: each pair finds its own face, and carries the 10."""
+    nodes = "".join(
+        f"{n + 10}, {x},{y},2\n{n + 20}, {x},{y},3\n" for n, x, y in ((11, 0, 0), (12, 1, 0), (13, 1, 1), (14, 0, 1))
+    )
+    cap = f"*NODE, NSET=ALL\n{nodes}*ELEMENT, TYPE=C3D8, ELSET=CAP\n3, 21,22,23,24,31,32,33,34\n"
+    text = BRICKS.replace("*ELSET, ELSET=EALL\nLOW, HIGH", cap + "*ELSET, ELSET=EALL\nLOW, HIGH, CAP")
+    text = text.replace("NAME=SLAVE\n2, S1", "NAME=SLAVE\n2, S1\n2, S2\n*SURFACE, NAME=LID\n3, S1")
+    text += PAIR.replace(
+        "SLAVE, MASTER", "SLAVE, MASTER\n*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nSLAVE, LID"
+    )
+    solution = solve(tmp_path, text + HELD + PUSH.replace("2, P2", "3, P2"))
+    assert [c.force[2] for c in solution.contacts] == pytest.approx([10.0, -10.0], abs=1e-9)
+    assert tops(solution) == pytest.approx(-3 * 10.0 / E, rel=1e-10)
+
+
 def test_loads_add_up_within_a_step_and_replace_those_of_earlier_ones(tmp_path):
     """As CalculiX does (checked with it): equal lines of one step add up, OP=MOD replaces, OP=NEW ends the others."""
     text = (

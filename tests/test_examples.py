@@ -32,7 +32,8 @@ def test_example_runs_and_balances(path: Path) -> None:
     step = solution.steps[-1]
     check_expected(path, step)
     size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
-    assert np.abs(step.load + step.reaction).max() < 1e-9 * size
+    balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
+    assert np.abs(balance).max() < 1e-9 * size
     for contact in step.contacts:  # action and reaction: the target gets the opposite, on the same lines of action
         assert contact.pressure[np.isfinite(contact.pressure)].min() > -0.1 * contact.max_pressure
     assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)

@@ -98,6 +98,15 @@ def loose() -> Any:
     return pin(17, 0.05, 0.03)
 
 
+def clevis() -> Any:
+    """A pin in eye and fork: one surface in two contacts, one of them with a list of bodies."""
+    import abut
+    from test_sides import clevis as model
+
+    built = model(abut.Contact("pin.round", "eye", name="eye"), abut.Contact("pin", ["arm1", "arm2"], name="arms"))
+    return replace(built, supports=[*built.supports, abut.Support("pin.top", x=0.01, y=0, z=0)])
+
+
 def example(path: str) -> Any:
     """Of the examples."""
     from abut.job import load_job
@@ -122,6 +131,8 @@ CASES: dict[str, Callable[[], Any]] = {
     "larger": lambda: press(11),
     "alone": alone,
     "rigid": rigid,
+    "clevis": clevis,
+    "two-rings": lambda: example("two-rings/job.toml"),
     "hertz-line": lambda: example("hertz-line/quad8.toml"),
     "ball": ball,
     "lifted": lifted,

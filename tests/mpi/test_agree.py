@@ -57,8 +57,8 @@ def test_other_solvers(mpirun: Run) -> None:
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_steps_loads_and_constraints(mpirun: Run, n: int) -> None:
     """Two steps with weight and heat where contact opens; a rigid tool and an equation, which couple points of several
-    parts; no contact at all, by factors and by conjugate gradients."""
-    compared(mpirun, n, ["press", "press-tet10", "rigid", "alone"])
+    parts; a surface in two contacts, lists and bodies; no contact at all, by factors and by conjugate gradients."""
+    compared(mpirun, n, ["press", "press-tet10", "rigid", "alone", "clevis", "two-rings"])
     assert "gamg" in compared(mpirun, n, ["alone"], "-pc_type", "gamg")["alone"]["solver"]
 
 

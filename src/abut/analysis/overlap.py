@@ -45,12 +45,15 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
 def covered_elsewhere(pairs: Sequence[Pair], pressures: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     """Of each pair, shares of its contactor's facets, (n_facets, 2): what other pairs cover, and what they load of it."""
     numbers = [8 * pair.contactor.cells + pair.contactor.local for pair in pairs]  # no cell has more than 8 facets
+    result = [np.zeros((len(number), 2)) for number in numbers]
+    every = np.concatenate([*numbers, np.zeros(0, dtype=np.int64)])
+    if len(np.unique(every)) == len(every):
+        return result
     loaded = []
     for pair, pressure in zip(pairs, pressures):
         size = np.abs(pair.space.transfer @ pressure).reshape(-1, 9).max(axis=1)
         share = pair.coupling.covered / np.maximum(full_moments(pair.contactor, 0)[:, 0], 1e-300)
         loaded.append(np.column_stack([share, np.where(size > CLOSED * size.max(initial=0.0), share, 0.0)]))
-    result = [np.zeros((len(number), 2)) for number in numbers]
     for i, own in enumerate(numbers):
         for j, other in enumerate(numbers):
             if i != j:

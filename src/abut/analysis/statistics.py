@@ -19,7 +19,7 @@ from abut.interface.recover import Averages
 from abut.mesh.surface import Surface
 from abut.state import PressureStatistics, Resultant
 
-SUPPORTED = 0.5  # covered share of a point's support from which on its pressure counts
+SUPPORTED = 0.5 - 1e-6  # covered share of a point's support from which on its pressure counts
 LOADED = (
     1e-3  # multiplier over the largest above which it counts as loaded: the constraint function is never quite zero
 )

@@ -14,8 +14,9 @@ from abut.discretization.supports import Supports
 from abut.errors import InputError
 from abut.interface.clearance import of_corners, partly_adjusted
 from abut.interface.coupling import Couple, Coupling, couple, default_reach, surface_degree
-from abut.interface.geometry import facet_sizes, full_moments, side_normals
+from abut.interface.geometry import CREASE, beside_others, facet_sizes, full_moments, side_normals
 from abut.interface.node_to_segment import node_to_segment
+from abut.interface.opposite import by_target
 from abut.interface.pressure import (
     DUAL,
     DUAL_P1,
@@ -115,10 +116,12 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
             result.append(pair(model, back, held, couple, (sides[1], sides[0])))
-    result = [
-        own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
-        for own, keep in zip(result, one_each([_shared(own) for own in result]))
-    ]
+    if len(result) > 1 or any(own.contactor.parts is not None for own in result):
+        kept = one_each([_shared(own) for own in result])
+        result = [
+            own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
+            for own, keep in zip(result, kept)
+        ]
     tied_together = bool(model.equations or model.rigid)
     return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
 
@@ -146,7 +149,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
     reach = _reach(held, contactor, target)
-    coupling, space = _couple(contact, contactor, target, reach, couple)
+    contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
     sizes = facet_sizes(contactor)
     size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
     stiffness = modulus / size
@@ -174,9 +177,11 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
 
 
 def _interior(contactor: Surface, target: Surface, coupling: Coupling, reach: float) -> NDArray[np.bool_]:
-    """Facets (n_facets,) that are covered all over and at no edge of the contactor on the target."""
+    """Facets (n_facets,) that are covered all over, at no edge of the contactor on the target and of no target beside
+    another."""
     share = coupling.covered / full_moments(contactor, 0)[:, 0]
-    return np.asarray((np.abs(share - 1.0) < WHOLE) & ~ends_on_target(contactor, target, reach))
+    edge = ends_on_target(contactor, target, reach) | beside_others(contactor)
+    return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
 
 
 def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
@@ -207,8 +212,8 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
 
 def _couple(
     contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple
-) -> tuple[Coupling, PressureSpace]:
-    """The coupling by the contact's method, and its pressure space."""
+) -> tuple[Surface, Coupling, PressureSpace]:
+    """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
@@ -225,13 +230,14 @@ def _couple(
         )  # fmt: skip
         coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
         coupling = of_corners(contactor, coupling) if of_dual else coupling
+        contactor = contactor if tied else by_target(contactor, target, coupling)
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():
         raise InputError(
             f"contact '{contact.name}': no facet of {words(contact.contactor)} faces {words(contact.target)} within "
             "reach; check the names, that both surfaces' normals point out of their bodies, and the distance between them"
         )
-    return coupling, space
+    return contactor, coupling, space
 
 
 def offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
@@ -318,18 +324,26 @@ def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, 
     several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
     onto = np.full(len(space), -1)
     if len(several):
-        first = _repeated(space.node[several], held.can_move(space.node[several], at[space.side[several]]))
+        own = at[space.side[several]]
+        first = _repeated(space.node[several], own, held.can_move(space.node[several], own))
         onto[several[first >= 0]] = several[first[first >= 0]]
     return reduce(space, coupling, keep & (onto < 0), onto=onto)
 
 
-def _repeated(nodes: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.int64]:
+def _repeated(
+    nodes: NDArray[np.int64], normals: NDArray[np.float64], directions: NDArray[np.float64]
+) -> NDArray[np.int64]:
     """Of directions (n, dim) at nodes (n,), the first one at the same node where they add nothing to those before them,
-    else -1."""
+    else -1. Those with one of the normals (n, dim) before them are no crease's, but of another part: -1."""
     result = np.full(len(nodes), -1)
     before: dict[int, list[NDArray[np.float64]]] = {}
     first: dict[int, int] = {}
-    for i, (node, direction) in enumerate(zip(nodes.tolist(), directions)):
+    seen: dict[int, list[NDArray[np.float64]]] = {}
+    for i, (node, normal, direction) in enumerate(zip(nodes.tolist(), normals, directions)):
+        others = seen.setdefault(node, [])
+        if any(normal @ other > CREASE for other in others):
+            continue
+        others.append(normal)
         basis = before.setdefault(node, [])
         rest = direction - sum(((direction @ other) * other for other in basis), np.zeros(len(direction)))
         size = float(np.linalg.norm(rest))

@@ -118,6 +118,20 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     return result
 
 
+def beside_others(surface: Surface) -> NDArray[np.bool_]:
+    """Facets (n_facets,) that share a point with those of another part, with no crease between them."""
+    result = np.zeros(len(surface), dtype=bool)
+    if surface.parts is None:
+        return result
+    own = area_vectors(surface)
+    facet, local = np.nonzero(surface.nodes >= 0)
+    unit = own[facet, local] / np.maximum(np.linalg.norm(own[facet, local], axis=1, keepdims=True), 1e-300)
+    part = surface.parts[facet]
+    for here, other in _without_crease(surface.nodes[facet, local].astype(np.int64), unit):
+        result[facet[here[part[here] != part[other]]]] = True
+    return result
+
+
 def side_normals(surface: Surface) -> tuple[Surface, NDArray[np.float64]]:
     """The surface split at its creases, and the unit normals at its points, (n_points, dim), zero where no facet is."""
     split, _ = split_at_creases(surface)
@@ -147,13 +161,16 @@ def _without_crease(
 
 
 def split_at_creases(surface: Surface) -> tuple[Surface, NDArray[np.int64]]:
-    """The surface with its points doubled along creases, one for each smooth side, and (n_points,) the point that each of
-    its points was: theory (P13). Points keep their numbers, further ones come at the end."""
+    """The surface with its points doubled along creases and borders of its parts, one for each smooth side, and (n_points,)
+    the point that each of its points was: theory (P13). Points keep their numbers, further ones come at the end."""
     own = area_vectors(surface)
     facet, local = np.nonzero(surface.nodes >= 0)
     node = surface.nodes[facet, local].astype(np.int64)
     unit = own[facet, local] / np.maximum(np.linalg.norm(own[facet, local], axis=1, keepdims=True), 1e-300)
     pairs = list(_without_crease(node, unit))
+    if surface.parts is not None:
+        part = surface.parts[facet]
+        pairs = [(here[same], other[same]) for here, other in pairs for same in (part[here] == part[other],)]
     links = np.concatenate([np.zeros((2, 0), dtype=np.int64), *(np.stack(pair) for pair in pairs)], axis=1)
     graph = sp.csr_matrix((np.ones(links.shape[1]), (links[0], links[1])), shape=(len(node), len(node)))
     _, side = connected_components(graph, directed=False)

@@ -1,13 +1,14 @@
-"""Points of a contactor where pressures of several contacts meet: only one of them has a function of its own there.
+"""Points of a contactor where several contacts meet, or several targets of one: only one pressure has a function of its own
+there.
 
-A point gives way along its normal once. Two pressures that both have a function at it, each over a part of its facets, ask
-that of it twice, and where the targets do not give way (rigid ones, or much stiffer) the pressures are not unique."""
+A point gives way along its normal once. Two functions at it, each over a part of its facets, ask that of it twice, and where
+the targets do not give way (rigid ones, or much stiffer) the pressures are not unique."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -19,16 +20,18 @@ from abut.interface.geometry import CREASE, full_moments, side_normals
 from abut.interface.pressure import PressureSpace
 from abut.mesh.surface import Surface
 
+EVEN = 1e-3  # weights that differ by less are equal: those of curved facets of one size
 TWICE = 1e-3  # covered share over 1 from which on two targets lie over each other, not beside each other
 
 
 @dataclass(frozen=True)
 class Functions:
-    """The functions of a pressure, all at points. node, weight: (n,); normal: (n, dim); neighbours: (n, n) sparse, those
-    with a facet in common; facet: (m,) numbers of the contactor's facets in the mesh, nodes: (m, 9) theirs, covered: (m,)
-    share."""
+    """The functions of a pressure, all at points. node, part, weight: (n,); normal: (n, dim); neighbours: (n, n) sparse,
+    those with a facet in common; facet: (m,) numbers of the contactor's facets in the mesh, nodes: (m, 9) theirs,
+    covered: (m,) share."""
 
     node: NDArray[np.int64]
+    part: NDArray[np.int64]
     weight: NDArray[np.float64]
     normal: NDArray[np.float64]
     neighbours: Any
@@ -44,21 +47,32 @@ def functions(space: PressureSpace, contactor: Surface, coupling: Coupling) -> F
     by_facet = sp.csr_matrix((np.ones(uses.nnz), (uses.row // 9, uses.col)), shape=(len(contactor), len(space)))
     number = 8 * contactor.cells + contactor.local  # no cell has more than 8 facets
     share = coupling.covered / np.maximum(full_moments(contactor, 0)[:, 0], 1e-300)
+    part = np.zeros(len(space), dtype=np.int64)
+    if contactor.parts is not None:
+        part[uses.col] = contactor.parts[uses.row // 9]
     return Functions(
-        space.node, space.weight, normals[space.side], (by_facet.T @ by_facet).tocsr(), number, contactor.nodes, share
+        space.node,
+        part,
+        space.weight,
+        normals[space.side],
+        (by_facet.T @ by_facet).tocsr(),
+        number,
+        contactor.nodes,
+        share,
     )
 
 
 def one_each(contacts: Sequence[Functions | None]) -> list[NDArray[np.bool_] | None]:
-    """Which functions of each contact stay, (n,) bool, None for all; theory (P14). Those that go follow a neighbour.
+    """Which functions of each contact stay, (n,) bool, None for all; theory (P15). Those that go follow a neighbour.
 
     Of two at one point with one normal, whose targets lie side by side, the one of more weight stays, of equals the first.
     Where targets lie one behind the other both stay: at most one of them closes."""
     lost = [np.zeros(0 if own is None else len(own.node), dtype=bool) for own in contacts]
     rivals: list[tuple[int, int, int, int]] = []
-    for (i, a), (j, b) in combinations([(i, own) for i, own in enumerate(contacts) if own is not None], 2):
-        for k, m in _side_by_side(a, b):
-            first = a.weight[k] >= b.weight[m] * (1.0 - 1e-9)
+    given = [(i, own) for i, own in enumerate(contacts) if own is not None]
+    for (i, a), (j, b) in combinations_with_replacement(given, 2):
+        for k, m in _side_by_side(a, b) if i != j else _twice(a):
+            first = a.weight[k] >= b.weight[m] * (1.0 - EVEN)
             lost[j if first else i][m if first else k] = True
             rivals.append((i, k, j, m))
     for i, own in enumerate(contacts):
@@ -86,6 +100,15 @@ def _side_by_side(a: Functions, b: Functions) -> list[tuple[int, int]]:
     for k in mine.tolist():
         result += [(k, m) for m in by_node[int(a.node[k])] if a.normal[k] @ b.normal[m] > CREASE]
     return result
+
+
+def _twice(own: Functions) -> list[tuple[int, int]]:
+    """Functions of one contact at the same points with one normal, towards different parts of the target."""
+    order = np.lexsort((own.part, own.node))
+    groups = np.split(order, np.flatnonzero(np.diff(own.node[order])) + 1) if len(order) else []
+    return [
+        (k, m) for group in groups for k, m in combinations(group.tolist(), 2) if own.normal[k] @ own.normal[m] > CREASE
+    ]
 
 
 def _beside(own: Functions, k: int) -> NDArray[np.int64]:

@@ -52,6 +52,7 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 }  # fmt: skip
 
 
+CHOICES = ("str", "int", "list[str]")  # pydantic's names for one of several types that a value may have
 DECK = ".inp"
 
 
@@ -196,7 +197,7 @@ def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: i
 
 def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
-    location = [part for part in error["loc"] if part not in LOADS]
+    location = [part for part in error["loc"] if part not in LOADS and part not in CHOICES]
     place = ""
     for part in location:
         place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)

@@ -18,6 +18,7 @@ class Surface:
     nodes:  (n_facets, 9) int32 indices into ``points``, padded with -1; order as in ``abut.cells``, so that the
             normal points out of the body.
     axisymmetric: the coordinates are (r, z), and integrals run round the axis.
+    parts:  (n_facets,) numbers, where the pressure on it may jump from facets of one number to those of another.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 
@@ -28,6 +29,7 @@ class Surface:
     local: NDArray[np.int64]
     name: str = "surface"
     axisymmetric: bool = False
+    parts: NDArray[np.int64] | None = None
 
     @property
     def dim(self) -> int:
@@ -46,6 +48,7 @@ class Surface:
             nodes=np.ascontiguousarray(self.nodes[facets]),
             cells=self.cells[facets],
             local=self.local[facets],
+            parts=None if self.parts is None else self.parts[facets],
         )
 
     def __len__(self) -> int:

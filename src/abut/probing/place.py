@@ -17,7 +17,7 @@ from abut.model import Contact, Model
 from abut.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
 from abut.probing.feet import feet
-from abut.probing.sides import CONTACTOR, Side, choose
+from abut.probing.sides import CONTACTOR, TARGET, Side, choose
 from abut.sides import words
 
 
@@ -149,8 +149,7 @@ def _on_surface(
     model: Model, probe: Probe, side: Side, points: NDArray[np.float64], nodes: NDArray[np.int64] | None
 ) -> tuple[OnSurface, list[str]]:
     contact: Contact = model.contacts[side.contact]
-    name = getattr(contact, side.role)
-    surface = model.mesh.surface(name)
+    surface = model.sides(contact)[side.role == TARGET]
     if nodes is not None:
         facet, local = np.nonzero((surface.nodes >= 0) & np.isin(surface.nodes, nodes))
         point = np.searchsorted(nodes, surface.nodes[facet, local])
@@ -160,7 +159,7 @@ def _on_surface(
     own = feet(surface, points)
     if own.beside.all():
         raise InputError(
-            f"probe '{probe.name}': no point of it lies over surface '{name}' of contact '{contact.name}'; move it, or take "
+            f"probe '{probe.name}': no point of it lies over surface '{surface.name}' of contact '{contact.name}'; move it, or take "
             "pressure and gap out of its 'of'"
         )
     notes = []
@@ -168,5 +167,7 @@ def _on_surface(
     if not own.touching[~own.beside].all() and farthest > NEAR * float(
         np.ptp(surface.points[surface.node_ids], axis=0).max()
     ):
-        notes.append(f"probe '{probe.name}': points up to {farthest:.3g} off surface '{name}' are projected onto it")
+        notes.append(
+            f"probe '{probe.name}': points up to {farthest:.3g} off surface '{surface.name}' are projected onto it"
+        )
     return OnSurface(side.contact, side.role, own.point, own.facet, own.weights), notes
