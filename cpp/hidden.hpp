@@ -6,6 +6,7 @@
 namespace abut {
 
 constexpr double TOUCHING = 1e-12; // of the contactor facet: common parts below are none
+constexpr double EDGE_ON = 1e-9;   // cosine of normals: facets that the contactor sees edge-on do not face it
 constexpr int MANY_CORNERS = 12;   // polygons with more are halved before they are cut again
 
 // An interval of a contactor line, or a polygon in a contactor facet's mean plane, that sees one target facet.

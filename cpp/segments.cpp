@@ -4,9 +4,9 @@
 #include "contactor.hpp"
 #include "hidden.hpp"
 #include "horizon.hpp"
+#include "lines.hpp"
 #include "parallel.hpp"
 #include "tree.hpp"
-#include <numbers>
 
 namespace abut {
 
@@ -26,7 +26,6 @@ Facet<double> SurfaceView::facet(std::size_t f) const {
 namespace {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
-constexpr double EDGE_ON = 1e-9;        // cosine of normals: facets that the contactor sees edge-on do not face it
 
 Box box_of(const Facet<double> &f) {
   Box box;
@@ -36,130 +35,6 @@ Box box_of(const Facet<double> &f) {
     box.inflate(0.15 * box.diagonal(f.dim), f.dim);
   return box;
 }
-
-// ---- 2D ------------------------------------------------------------------------------------------------------------
-
-// Where the contactor sees the point v along its continuous normal, clamped to the facet: the root of
-// (v - x(xi)) x n(xi), which neighbouring facets share at their common node; theory (S3).
-double sees(const Facet<double> &c, const double *v) {
-  auto ahead = [&](double xi) { // > 0 where v lies ahead of xi
-    double x[3], tangent[2][3], n[3];
-    c.at(&xi, x, tangent, n);
-    return -((v[0] - x[0]) * n[1] - (v[1] - x[1]) * n[0]);
-  };
-  double low = -1, high = 1, at_low = ahead(low), at_high = ahead(high);
-  if (at_low <= 0)
-    return -1;
-  if (at_high >= 0)
-    return 1;
-  double xi = low + (high - low) * at_low / (at_low - at_high);
-  for (int i = 0; i < 60; ++i) { // regula falsi safeguarded by bisection
-    const double value = ahead(xi);
-    if (value > 0)
-      low = xi, at_low = value;
-    else
-      high = xi, at_high = value;
-    if (value == 0 || high - low < 1e-15)
-      break;
-    double next = low + (high - low) * at_low / (at_low - at_high);
-    if (i % 3 == 2)
-      next = 0.5 * (low + high);
-    if (std::abs(next - xi) < 1e-16)
-      break;
-    xi = next;
-  }
-  return xi;
-}
-
-// What a contactor line sees of a target facet from one of its points.
-struct Sight2 {
-  const Facet<double> &c;
-  double eta[2] = {0, 0}, x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], gap = 0;
-  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
-
-  explicit Sight2(const Facet<double> &own) : c(own) {}
-  bool look(const Facet<double> &t, double xi) { // the point seen from x: theory (S2)
-    c.at(&xi, x, tangent, n);
-    const double along[2] = {-n[1], n[0]};
-    if (!project(t, x, along, along, eta))
-      return false;
-    t.at(eta, y, target_tangent);
-    gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
-    c.values(&xi, nc, d), t.values(eta, nt, d);
-    return true;
-  }
-};
-
-void cut_line(const Facet<double> &c, const Facet<double> &t, int number, double reach, std::vector<Segment> &out) {
-  Segment own;
-  own.target = number;
-  own.begin = sees(c, t.x[1]), own.end = sees(c, t.x[0]); // the target runs the other way
-  if (own.end - own.begin < 1e-14)
-    return;
-  // The middle decides whether the two face each other within reach.
-  Sight2 at(c);
-  if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach)
-    return;
-  const double *along = at.target_tangent[0], size = std::sqrt(dot(along, along, 2));
-  if (along[1] * at.n[0] - along[0] * at.n[1] >= -EDGE_ON * size)
-    return;
-  own.eta[0] = at.eta[0];
-  out.push_back(own);
-}
-
-void find_hidden(const Facet<double> &c, const std::vector<Facet<double>> &targets, const std::int32_t *nodes,
-                 std::vector<Segment> &segments) {
-  find_hidden<double>(
-      segments, nodes,
-      [](const Segment &a, const Segment &b, double &middle) {
-        const double begin = std::max(a.begin, b.begin), end = std::min(a.end, b.end);
-        middle = 0.5 * (begin + end);
-        return end - begin > TOUCHING;
-      },
-      [&](const Segment &own, double middle) {
-        Sight2 at(c);
-        at.eta[0] = own.eta[0];
-        return at.look(targets[own.target], middle) ? std::abs(at.gap) : HUGE_VAL;
-      });
-}
-
-void integrate_line(const Facet<double> &c, const Facet<double> &t, double begin, double end, double start,
-                    const Rule &rule, bool axisymmetric, Accumulator &sums) {
-  bool counted = false;
-  Sight2 at(c);
-  at.eta[0] = start;
-  if (sums.wants_sights()) {
-    for (const double xi : {0.5 * (begin + end), begin, end})
-      if (at.look(t, xi)) {
-        const double normal[2] = {-at.n[0], -at.n[1]};
-        sums.see(at.nc, at.nt, at.gap, normal);
-      }
-    at.eta[0] = start; // the integration begins at the same place with sights and without
-  }
-  for (int q = 0; q < rule.n; ++q) {
-    const double xi = begin + rule.t[q] * (end - begin);
-    if (!at.look(t, xi))
-      return;
-    double length = std::sqrt(dot(at.tangent[0], at.tangent[0], 2));
-    if (axisymmetric)
-      length *= 2 * std::numbers::pi * at.x[0];
-    const double normal[2] = {-at.n[0], -at.n[1]};
-    if (!counted)
-      sums.count_segment(), counted = true;
-    sums.add(c.kind, &xi, at.nc, at.nt, rule.wt[q] * (end - begin) * length, at.gap, normal);
-  }
-}
-
-void integrate_line(const Facet<double> &c, const Facet<double> &t, const Segment &own,
-                    const std::vector<Segment> &segments, const Rule &rule, bool axisymmetric, Accumulator &sums) {
-  std::vector<std::array<double, 2>> others;
-  for (int nearer : own.behind)
-    others.push_back({segments[nearer].begin, segments[nearer].end});
-  for (const auto &part : outside_of({own.begin, own.end}, others))
-    integrate_line(c, t, part[0], part[1], own.eta[0], rule, axisymmetric, sums);
-}
-
-// ---- 3D ------------------------------------------------------------------------------------------------------------
 
 // A contactor facet and the target pieces that lie over it, in its mean plane.
 struct Over {

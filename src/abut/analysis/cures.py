@@ -112,7 +112,10 @@ def _removed(contact: Contact, result: ContactResult) -> str:
 
 
 def _twice(contact: Contact, result: ContactResult) -> str:
-    return "leave those facets out of the target that lie behind others, or give each layer a contact of its own"
+    return (
+        "two contacts press the same facets: leave them out of one, or name both targets in one contact, of which the "
+        "nearest counts; one contact alone: make the mesh of its target sound, whose facets overlap"
+    )
 
 
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult], str]] = {

@@ -159,8 +159,8 @@ def _on_surface(
     own = feet(surface, points)
     if own.beside.all():
         raise InputError(
-            f"probe '{probe.name}': no point of it lies over surface '{surface.name}' of contact '{contact.name}'; move "
-            "it, or take pressure and gap out of its 'of'"
+            f"probe '{probe.name}': no point of it lies over surface '{surface.name}' of contact '{contact.name}'; move it, "
+            "or take pressure and gap out of its 'of'"
         )
     notes = []
     farthest = float(own.distance[~own.beside].max())
