@@ -57,4 +57,5 @@ build: .venv/ready
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py
 	$(BIN)/python bench/assembly.py
+	OMP_NUM_THREADS=1 $(BIN)/python bench/estimates.py
 	$(BIN)/python bench/contact/run.py $(BENCH)

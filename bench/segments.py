@@ -1,30 +1,76 @@
-"""Segments cut and integrated a second on one core, flat interfaces with non-matching grids.
+"""Segments cut and integrated a second on one core: flat interfaces with non-matching grids, and spheres.
 
 python bench/segments.py [--cells N]
+
+Spheres in spheres and balls on blocks have facets of very different sizes, whose normals point everywhere: what lies within
+reach is much more than what is seen. The last column is the time a facet over that of the flat interface.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import replace
 
+from abut.cells import BY_CODE, CELLS
 from abut.interface.coupling import couple, surface_degree
-from abut.mesh.make import box, join
+from abut.mesh.make import box, join, sphere_octant
+from abut.mesh.surface import Surface
+
+
+def flat(n: int, cell: str) -> tuple[Surface, Surface]:
+    lower = box(cells=(n, n, 1), cell=cell)
+    upper = box(z=(1.0, 2.0), cells=(n + 11, n + 12, 1), cell=cell)
+    mesh = join({"lower": lower, "upper": upper})
+    return mesh.surface("lower.top"), mesh.surface("upper.bottom")
+
+
+def spheres(n: int, cell: str) -> tuple[Surface, Surface]:
+    """An octant of a ball in a socket with a clearance of 0.3 %, graded toward the pole."""
+    ball = sphere_octant(1.0, fine=0.2, cells=n // 3, cell=cell)
+    socket = sphere_octant(1.003, fine=0.2, cells=n // 3 + 3, cell=cell)
+    mesh = join({"ball": ball, "socket": socket})
+    return mesh.surface("ball.round"), inside_out(mesh.surface("socket.round"))
+
+
+def ball_on_block(n: int, cell: str) -> tuple[Surface, Surface]:
+    """An octant of a ball, graded toward its pole, on a block graded likewise."""
+    ball = sphere_octant(1.0, centre=(0.0, 0.0, 1.0), fine=0.2, cells=n // 3, cell=cell)
+    fine = {"x": [0.0, 0.25], "y": [0.0, 0.25]}
+    block = box(x=(0, 2), y=(0, 2), z=(-1, 0), cells=(n // 3 + 3, n // 3 + 3, 2), cell=cell, fine=fine)
+    mesh = join({"ball": ball, "block": block})
+    return mesh.surface("ball.round"), mesh.surface("block.top")
+
+
+def inside_out(surface: Surface) -> Surface:
+    """The same surface seen from its other side."""
+    kind = BY_CODE[surface.kinds[0]]
+    corners = kind.corners
+    order = [0, *range(corners - 1, 0, -1)]
+    if CELLS[kind.name].degree == 2:
+        order += [*range(2 * corners - 1, corners - 1, -1), *range(2 * corners, kind.nodes)]
+    nodes = surface.nodes.copy()
+    nodes[:, : kind.nodes] = surface.nodes[:, order]
+    return replace(surface, nodes=nodes)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cells", type=int, default=70, help="contactor facets along each side")
+    parser.add_argument("--cells", type=int, default=70, help="contactor facets along each side of the flat interface")
     n = parser.parse_args().cells
     for cell in ("tet4", "hex8", "tet10", "hex20", "hex27"):
-        lower = box(cells=(n, n, 1), cell=cell)
-        upper = box(z=(1.0, 2.0), cells=(n + 11, n + 12, 1), cell=cell)
-        mesh = join({"lower": lower, "upper": upper})
-        contactor, target = mesh.surface("lower.top"), mesh.surface("upper.bottom")
-        start = time.perf_counter()
-        count = int(couple(contactor, target, surface_degree(contactor)).segments.sum())
-        spent = time.perf_counter() - start
-        print(f"{cell:6s} {count:7d} segments in {spent:6.2f} s: {count / spent:9.0f} a second")
+        alone = 0.0
+        for name, make in (("flat", flat), ("sphere in sphere", spheres), ("ball on block", ball_on_block)):
+            contactor, target = make(n, cell)
+            start = time.process_time()
+            count = int(couple(contactor, target, surface_degree(contactor)).segments.sum())
+            spent = time.process_time() - start
+            a_facet = spent / len(contactor)
+            alone = alone or a_facet
+            print(
+                f"{cell:6s} {name:16s} {len(contactor):6d} facets {count:7d} segments in {spent:6.2f} s: "
+                f"{count / spent:9.0f} a second; a facet {a_facet / alone:5.1f} times flat"
+            )
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include "accumulator.hpp"
 #include "contactor.hpp"
 #include "hidden.hpp"
+#include "horizon.hpp"
 #include "lines.hpp"
 #include "parallel.hpp"
 #include "tree.hpp"
@@ -207,16 +208,6 @@ void integrate_pieces(const Over &over, const Facet<double> &t, const Segment &o
 void cut_facet(const Over &over, const Facet<double> &t, int number, int subdivide, double reach,
                std::vector<Segment> &out) {
   const Contactor3 &c = over.c;
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (int i = 0; i < t.nodes; ++i) {
-    const double h = c.plane.height(t.x[i]);
-    low = std::min(low, h), high = std::max(high, h);
-  }
-  double thickness = 0; // of the contactor facet itself about its mean plane
-  for (int i = 0; i < c.facet.nodes; ++i)
-    thickness = std::max(thickness, std::abs(c.plane.height(c.facet.x[i])));
-  if (low - thickness > 2 * reach || high + thickness < -2 * reach)
-    return;
   const std::size_t before = over.theirs.size();
   flatten(
       t, subdivide, true,
@@ -279,7 +270,9 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
         }
       }
       swept.inflate(1e-9 * swept.diagonal(dim), dim);
-      tree.query(swept, found);
+      const Horizon horizon(c, options.reach);
+      tree.query(swept, found, [&](const Box &box) { return horizon.may_see(box); });
+      std::erase_if(found, [&](int t) { return !horizon.may_see(targets[t]); });
       if (found.empty())
         continue;
       segments.clear(), pieces.clear();

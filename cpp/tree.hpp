@@ -46,8 +46,9 @@ public:
       build(0, int(boxes.size()));
   }
 
-  // Appends the numbers of all boxes that meet `box`, in ascending order.
-  void query(const Box &box, std::vector<int> &found) const {
+  // The numbers of all boxes that meet `box` and may be what is looked for, in ascending order. may_hold: false for a
+  // box with nothing of that inside.
+  template <class MayHold> void query(const Box &box, std::vector<int> &found, MayHold may_hold) const {
     found.clear();
     if (nodes_.empty())
       return;
@@ -55,7 +56,7 @@ public:
     while (!stack.empty()) {
       const Node &node = nodes_[stack.back()];
       stack.pop_back();
-      if (!node.box.meets(box, dim_))
+      if (!node.box.meets(box, dim_) || !may_hold(node.box))
         continue;
       if (node.right < 0) {
         for (int i = node.begin; i < node.end; ++i)

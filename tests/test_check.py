@@ -198,12 +198,10 @@ def test_loads_that_contact_cannot_balance(on: str, force: float, stands: bool) 
         assert abut.solve(model).converged
         return
     assert report.status == 4
-    assert "body 'upper' can shift along z: the loads pull it off its contact" in said(report, "error")
-    try:
-        converged = abut.solve(model).converged
-    except abut.SingularModelError:
-        converged = False
-    assert not converged
+    how = {"foot": "shift along z", "arm": "turn about y"}[on]
+    assert f"body 'upper' can {how}: the loads pull it off its contact" in said(report, "error")
+    with pytest.raises(abut.SingularModelError, match=f"body 'upper' can {how}: the loads pull it off its contact"):
+        abut.solve(model)
 
 
 def test_loose_motions_are_advice_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -274,22 +272,43 @@ def test_findings_check_themselves() -> None:
         Finding("warnin", "here", "something")
 
 
-def test_estimate_of_memory_and_time() -> None:
+def test_estimate_of_memory() -> None:
     """Within the factor of three that the page promises of what docs/performance.md measured (tilted, then the ball, then
     hex20 and tet10; one core)."""
     from abut.check.cost import LAWS
 
-    for solver, degree, n, seconds, megabytes in (
-        ("direct", 1, 9591, 0.239, 172),
-        ("amg", 1, 154686, 2.94, 769),
-        ("amg", 1, 1026453, 24.4, 4712),
-        ("amg", 1, 401568, 23.8, 2077),
-        ("amg", 2, 154011, 8.16, 1370),
-        ("amg", 2, 154686, 4.76, 865),
+    for solver, degree, n, megabytes in (
+        ("direct", 1, 9591, 172),
+        ("amg", 1, 154686, 769),
+        ("amg", 1, 1026453, 4712),
+        ("amg", 1, 401568, 2077),
+        ("amg", 2, 154011, 1370),
+        ("amg", 2, 154686, 865),
     ):
         law = LAWS[3, solver, degree]
-        assert 1 / 3 < law.time * n**law.time_power / seconds < 3
-        assert 1 / 3 < (law.base + law.memory * n**law.memory_power) / megabytes < 3
+        assert 1 / 3 < (law.base + law.memory * n**law.power) / megabytes < 3
+
+
+@pytest.mark.parametrize(("dim", "power"), [(2, 1.5), (3, 2.0)])
+def test_estimate_of_time_grows_as_nested_dissection(dim: int, power: float) -> None:
+    """Operations of a factorisation: n^(3/2) of a square, n^2 of a cube; of a bar ten times as long, ten times those of its
+    tenth part."""
+    from abut.check.effort import effort
+
+    def fronts(n: int, length: int = 1) -> float:
+        mesh = (
+            rectangle(x=(0, length), cells=(n * length, n), cell="quad4")
+            if dim == 2
+            else box(x=(0, length), cells=(n * length, n, n), cell="hex8")
+        )
+        plane = {"plane": "strain"} if dim == 2 else {}
+        model = abut.Model(mesh, [abut.Solid(body, STEEL) for body in mesh.bodies], **plane)
+        return effort(model, mesh.points.size, []).fronts
+
+    coarse, fine = (8, 16) if dim == 3 else (20, 40)
+    unknowns = [dim * (n + 1) ** dim for n in (coarse, fine)]
+    assert np.log(fronts(fine) / fronts(coarse)) / np.log(unknowns[1] / unknowns[0]) == pytest.approx(power, rel=1e-9)
+    assert fronts(fine, 10) == pytest.approx(10 * fronts(fine), rel=0.15)  # nodes at the ends count once
 
 
 LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not line.startswith("#")]

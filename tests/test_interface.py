@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from abut.interface.geometry import full_moments
 from abut.interface.laws import constraint_function
 from abut.interface.pressure import pressure_space, resolve
 from abut.mesh.surface import Surface
-from surfaces import FACETS_3D, grid, in_plane
+from surfaces import FACETS_2D, FACETS_3D, grid, in_plane, line
 
 
 def nodal_areas(surface: Surface) -> np.ndarray:
@@ -165,3 +166,38 @@ def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
     assert at.gap == pytest.approx(0.1, rel=1e-12)
     assert at.own.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
     assert at.other.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.6, -0.4])
+@pytest.mark.parametrize("kind", FACETS_3D)
+def test_nothing_in_sight_is_left_out(kind: str, gap: float) -> None:
+    """Of a dome under (or over) a wider one, every facet is covered all over, though normals lean and the two lie a facet or
+    more apart: candidates that are spared the cutting see nothing."""
+
+    def dome(radius: float, width: float) -> Callable[[np.ndarray], np.ndarray]:
+        def bulge(x: np.ndarray) -> np.ndarray:
+            flat = width * radius * (x[:, :2] - 0.5)
+            return np.column_stack([flat, np.sqrt(radius**2 - (flat**2).sum(axis=1))])
+
+        return bulge
+
+    contactor = grid(kind, (5, 4), bulge=dome(1.0, 0.8))
+    target = grid(kind, (6, 7), up=False, bulge=dome(1.0 + gap, 1.3))
+    covered = couple(contactor, target, 1, reach=2.0).covered
+    assert covered == pytest.approx(full_moments(contactor, 0)[:, 0], rel=1e-6)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.6, -0.4])
+@pytest.mark.parametrize("kind", FACETS_2D)
+def test_nothing_in_sight_is_left_out_in_the_plane(kind: str, gap: float) -> None:
+    def arch(radius: float, width: float) -> Callable[[np.ndarray], np.ndarray]:
+        def bulge(x: np.ndarray) -> np.ndarray:
+            angle = width * (x[:, 0] - 0.5)
+            return radius * np.column_stack([np.sin(angle), np.cos(angle)])
+
+        return bulge
+
+    contactor = line(kind, 5, bulge=arch(1.0, 1.5))
+    target = line(kind, 9, up=False, bulge=arch(1.0 + gap, 2.4))
+    covered = couple(contactor, target, 1, reach=2.0).covered
+    assert covered == pytest.approx(full_moments(contactor, 0)[:, 0], rel=1e-9)

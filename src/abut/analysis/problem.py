@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.clock import Clock
-from abut.analysis.holding import Holding, holding
+from abut.analysis.holding import Holding, holding, require_balance, require_unmoved
 from abut.analysis.loads import Loads, loads
 from abut.analysis.regularisation import Regularisation, regularise
 from abut.analysis.volume import Volume, whole
@@ -66,6 +66,9 @@ def problem(
     for text in idle.notes:
         note(text)
     held_by, reduced = held_by.helped_by(idle.gram), idle.added_to(reduced)
+    forces = [held.free.T @ force for force in loaded.at_ends(model)]
+    require_balance(held_by, held, forces[0], " in step 1" if len(forces) > 1 else "")
+    require_unmoved(held_by, held, forces)
     n_free = reduced.shape[0]
     operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
     _check_finite(reduced.diagonal(), loaded.forces)
@@ -74,7 +77,7 @@ def problem(
         load=load,
         pairs=every,
         operator=operator,
-        complete=held_by.complete,
+        complete=partial(held_by.complete, held, load),
         pulled_off=partial(held_by.pulled_off, held, load),
         step=partial(newton_step, reduced, operator),
         motions=held.coordinates(held_by.free),

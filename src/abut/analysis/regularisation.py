@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from abut.discretization.rigid import RigidModes, describe, each_motion, free_motions
+from abut.discretization.rigid import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 
@@ -73,7 +73,7 @@ def regularise(
         size, worst = _work(rigid, groups, own, loads)
         if worst is not None:
             raise SingularModelError(
-                f"{describe(rigid, worst)} without resistance{_others(own)}: the loads push it that way, and "
+                f"{describe(rigid, worst, one_way=True)} without resistance{_others(own)}: the loads push it that way, and "
                 f"neither supports nor contact hold it; {CURE}"
             )
         if size == 0.0 and len(groups) == 1 and own.shape[1] == rigid.per_group:
@@ -137,7 +137,11 @@ def _work(
         size = float(np.abs(load[touched]).sum())
         work = motions.T @ (rigid.modes.T @ load)
         if np.abs(work).max() > NO_WORK * size:
-            return size, (motions @ work / np.linalg.norm(work))[:, None]
+            worst = motions @ work / np.linalg.norm(work)
+            plain = simple_motions(rigid, worst)
+            free = np.linalg.norm(plain - motions @ (motions.T @ plain), axis=0) < TOGETHER
+            driven = plain.T @ (rigid.modes.T @ load) > NO_WORK * size
+            return size, plain[:, free & driven][:, :1] if (free & driven).any() else worst[:, None]
         largest = max(largest, size)
     return largest, None
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.clock import Clock
+from abut.analysis.holding import require_balance
 from abut.analysis.load_step import load_step, with_plain
 from abut.analysis.problem import problem
 from abut.analysis.results import step_result
@@ -112,6 +113,8 @@ def solve(
     for number, time in enumerate(times, start=len(steps) + 1):
         observe(Phase(f"step {number} of {count}", None, number - 1, count))
         stage = Stage(number, weights(model.histories, time), force, pressure)
+        when = f" in step {number}" if count > 1 else ""
+        require_balance(own.held_by, held, held.free.T @ (own.loaded.forces @ stage.weights), when)
         try:
             reached = load_step(model, held, system, solver, state, stage, observe)
         except NotConverged as reason:

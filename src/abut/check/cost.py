@@ -1,8 +1,4 @@
-"""What a run will take: solver, memory and time, from the number of unknowns.
-
-Fitted to docs/performance.md (3D) and to measurements in docs/check.md (2D, quadratic cells): one core, one load step of
-about five iterations. Good to a factor of two or three: enough to see whether a model fits.
-"""
+"""What a run will take: solver, memory and time, before it is solved."""
 
 from __future__ import annotations
 
@@ -11,6 +7,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 
 from abut.cells import CELLS
+from abut.check.effort import effort, seconds
 from abut.check.finding import Finding
 from abut.discretization.pairs import Pair
 from abut.discretization.supports import Supports
@@ -22,36 +19,52 @@ from abut.solvers.linear import LARGE, chosen
 
 @dataclass(frozen=True)
 class Law:
-    """seconds = time n^time_power, megabytes = base + memory n^memory_power, for n free displacements."""
+    """megabytes = base + memory n^power, for n free displacements."""
 
-    time: float
-    time_power: float
     memory: float
-    memory_power: float
+    power: float
     base: float = 100.0
 
 
-LAWS = {  # by dimension, solver and degree of the cells
-    (2, "direct", 1): Law(3.3e-5, 1.0, 2.3e-3, 1.0),
-    (2, "direct", 2): Law(4.2e-5, 1.0, 3.1e-3, 1.0),
-    (3, "direct", 1): Law(6.8e-7, 1.4, 2.7e-4, 4 / 3),
-    (3, "direct", 2): Law(3.3e-6, 1.4, 4.5e-4, 4 / 3),
-    (3, "amg", 1): Law(6.7e-6, 1.12, 4.4e-3, 1.0, 60.0),
-    (3, "amg", 2): Law(1.5e-5, 1.12, 1.0e-2, 1.0, 60.0),
+LAWS = {  # by dimension, solver and degree of the cells: fitted to docs/performance.md (3D) and docs/check.md
+    (2, "direct", 1): Law(2.3e-3, 1.0),
+    (2, "direct", 2): Law(3.1e-3, 1.0),
+    (3, "direct", 1): Law(2.7e-4, 4 / 3),
+    (3, "direct", 2): Law(4.5e-4, 4 / 3),
+    (3, "amg", 1): Law(4.4e-3, 1.0, 60.0),
+    (3, "amg", 2): Law(1.0e-2, 1.0, 60.0),
 }
 
 
-def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
-    """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
+@dataclass(frozen=True)
+class Foreseen:
+    """solver: "direct" or "amg"; stages: seconds of each on one core; megabytes."""
+
+    solver: str
+    stages: dict[str, float]
+    megabytes: float
+
+    @property
+    def seconds(self) -> float:
+        return sum(self.stages.values())
+
+
+def foresee(model: Model, held: Supports, pairs: Sequence[Pair]) -> Foreseen:
+    """What a run will need: seconds mostly within a factor of two, memory of two or three."""
     n = int(held.free.shape[1])
     petsc = model.solve.linear == "petsc"
     sizes = PETSC_LARGE if petsc else LARGE
     solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, held.coupled, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     law = LAWS[model.dim, "direct" if model.dim == 2 else solver, degree]
-    seconds, megabytes = law.time * n**law.time_power, law.base + law.memory * n**law.memory_power
-    if model.solve.steps > 1 and solver == "amg":
-        seconds *= model.solve.steps
+    return Foreseen(solver, seconds(effort(model, n, pairs), solver), law.base + law.memory * n**law.power)
+
+
+def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+    """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
+    n, petsc = int(held.free.shape[1]), model.solve.linear == "petsc"
+    foreseen = foresee(model, held, pairs)
+    solver, megabytes = foreseen.solver, foreseen.megabytes
     multipliers = sum(map(len, pairs))
     name, alone = (f"petsc ({solver})", "on one process ") if petsc else (solver, "")
     findings = [
@@ -59,7 +72,7 @@ def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
             "info",
             "solve",
             f"{n} free displacements, {multipliers} multipliers; linear solver {name}: about "
-            f"{_time(seconds)} and {_memory(megabytes)} {alone}(to a factor of two or three)",
+            f"{_time(foreseen.seconds)} {alone}(to a factor of two) and {_memory(megabytes)}",
         )
     ]
     if petsc and find_spec("petsc4py") is None:
@@ -88,7 +101,9 @@ def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
 def _time(seconds: float) -> str:
     if seconds < 1.0:
         return "a second"
-    return f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60.0:.0f} min"
+    return (
+        f"{seconds:.2g} s" if seconds < 10.0 else f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60.0:.0f} min"
+    )
 
 
 def _memory(megabytes: float) -> str:

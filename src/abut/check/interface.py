@@ -10,13 +10,13 @@ from abut.check.finding import Finding
 from abut.check.units import UNLIKE, body_size
 from abut.discretization.pairs import Pair
 from abut.errors import AbutError
-from abut.facing import FoundContact, find_contacts
+from abut.facing import AUTO, FoundContact, find_contacts
 from abut.interface.coupling import couple, default_reach
-from abut.interface.geometry import full_moments, nodal_normals
+from abut.interface.geometry import facet_sizes, full_moments, nodal_normals
 from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
-from abut.sides import words
+from abut.sides import listed, words
 
 BINS, WIDTH = 8, 30  # of the histogram: bars, and characters of the longest
 DEEP = 0.5  # overlap over facet size that is hardly meant
@@ -166,10 +166,7 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
     bodies = bodies_at(model.mesh, pair.target.cells)
     cells = np.concatenate([model.mesh.bodies[body] for body in bodies])
     around = model.mesh.facets(outside[np.isin(outside[:, 0], cells)], "outside of the target's body")
-    reach = default_reach(pair.contactor, pair.target)
-    possible = float(
-        np.minimum(couple(pair.contactor, around, 0, points=1, reach=reach).covered, whole).sum() / whole.sum()
-    )
+    possible = _covered(pair.contactor, around, default_reach(pair.contactor, pair.target), whole)
     whose = ("body " if len(bodies) == 1 else "bodies ") + words(bodies)
     if possible - share > MISSING:
         return [
@@ -179,7 +176,7 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
                 f"target {words(pair.contact.target)} is too small: {possible - share:.0%} of contactor "
                 f"{words(pair.contact.contactor)} lies opposite facets of {whose} that do not "
                 "belong to it, and would sink into them",
-                f"add these facets to {words(pair.contact.target)}, or let auto = true find the pair",
+                _more(pair.contact),
             )
         ]
     if share < LITTLE:
@@ -189,6 +186,23 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
             )
         ]
     return []
+
+
+def _covered(contactor: Surface, around: Surface, reach: float, whole: NDArray[np.float64]) -> float:
+    """Share of a contactor that lies opposite a surface, but for what it lies deep inside of: that is seen from behind."""
+    at = couple(contactor, around, 0, points=1, reach=reach, keep_points=True).points
+    if at is None:
+        return 0.0
+    near = -at.gap <= DEEP * (facet_sizes(contactor)[at.facet] + facet_sizes(around)[at.target_facet])
+    area = np.bincount(at.facet[near], at.weight[near], minlength=len(whole))
+    return float(np.minimum(area, whole).sum() / whole.sum())
+
+
+def _more(contact: Contact) -> str:
+    """How to make a target larger; where it was found by itself that is no advice any more."""
+    if any(name.startswith(AUTO) for name in listed(contact.target)):
+        return "name a larger surface of that body as the target, or give a larger reach"
+    return f"add these facets to {words(contact.target)}, or let auto = true find the pair"
 
 
 def _mean_normal(surface: Surface) -> NDArray[np.float64]:

@@ -8,12 +8,12 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.analysis.holding import Holding, holding, unbalanced
+from abut.analysis.holding import Holding, holding, require_held
 from abut.analysis.loads import loads
 from abut.analysis.regularisation import regularise
 from abut.check.finding import Finding, Motion, from_error
 from abut.discretization.pairs import Pair
-from abut.discretization.rigid import describe, each_motion, free_motions
+from abut.discretization.rigid import each_motion, free_motions
 from abut.discretization.supports import Supports
 from abut.errors import SingularModelError
 from abut.model import Model
@@ -42,37 +42,17 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
         )
     shown += _motions(model, held_by, lost, "nothing")
     if complete:
-        findings += _without_resistance(model, held_by, held)
-        if not any(finding.severity == "error" for finding in findings):
-            findings += _pulled_off(model, held_by, held, every)
+        findings += _unheld(model, held_by, held)
     return findings, shown
 
 
-def _pulled_off(model: Model, held_by: Holding, held: Supports, free: NDArray[np.float64]) -> list[Finding]:
-    """An error where no pressures that push balance the loads on the motions (n_modes, m) that supports leave free."""
-    load = loads(model).at_ends(model)[-1]
-    work = free.T @ (held_by.rigid.modes.T @ load)
-    moves = held.coordinates(held_by.rigid.modes @ free)
-    motion = unbalanced(held_by.pairs, moves, work, float(np.abs(load).sum()))
-    if motion is None:
-        return []
-    text = describe(held_by.rigid, (free @ motion)[:, None])
-    return [
-        Finding(
-            "error",
-            "bodies",
-            f"{text}: the loads pull it off its contact, which can only push",
-            "hold it by a support or turn the load round",
-            status=SingularModelError.exit_status,
-        )
-    ]
-
-
-def _without_resistance(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
-    """An error, or the motions that need no holding."""
+def _unheld(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
+    """An error for a motion that nothing holds; else those on which no load does any work, which need no holding."""
+    ends = loads(model).at_ends(model)
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
-        loose = regularise(held_by.rigid, held_by.everything, held, unit, loads(model).at_ends(model))
+        loose = regularise(held_by.rigid, held_by.everything, held, unit, ends)
+        require_held(held_by.helped_by(loose.gram), held, ends)
     except SingularModelError as error:
         return [from_error(error, "bodies")]
     return [

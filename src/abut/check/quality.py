@@ -63,6 +63,14 @@ def quality(mesh: Mesh) -> list[Finding]:
     return findings
 
 
+def ratios(mesh: Mesh) -> NDArray[np.float64]:
+    """Longest over shortest edge of each cell."""
+    result = np.empty(mesh.n_cells)
+    for kind, nodes, cells in chunks(mesh):
+        result[cells] = _shapes(kind, mesh.points[nodes[:, : CELLS[kind].corners]])[1]
+    return result
+
+
 def _shapes(kind: str, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest scaled Jacobian over the corners and ratio of edges of cells with corners x (n, corners, dim)."""
     name = next(own for own, _ in CORNERS if kind.startswith(own))

@@ -103,11 +103,28 @@ def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
     return np.asarray(vectors[:, values < FREE * max(values.max(initial=0.0), 1e-300)])
 
 
-def describe(rigid: RigidModes, motions: NDArray[np.float64]) -> str:
+def simple_motions(rigid: RigidModes, motion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Shifts along the axes, then turns about them, both ways, of each group of bodies that takes part in a motion
+    (n_modes,), and shifts of all of them together: (n_modes, k)."""
+    parts = motion.reshape(-1, rigid.per_group)
+    size = np.abs(parts).max(axis=1)
+    order = [int(g) for g in np.argsort(-size) if size[g] > 0.1 * size.max()]
+    shifts = {1: 1, 3: 2, 6: 3}[rigid.per_group]
+    result = []
+    for kinds in (range(shifts), range(shifts, rigid.per_group)):
+        for groups in [[g] for g in order] + ([order] if kinds.start == 0 and len(order) > 1 else []):
+            for kind in sorted(kinds, key=lambda k: -float(np.abs(parts[groups, k]).max())):
+                one = np.zeros_like(parts)
+                one[groups, kind] = np.sign(parts[groups, kind].sum()) or 1.0
+                result += [one.ravel(), -one.ravel()]
+    return np.stack(result, axis=1)
+
+
+def describe(rigid: RigidModes, motions: NDArray[np.float64], one_way: bool = False) -> str:
     """Say which body moves and how, from the free motions (n_modes, n_free): a shift or turn along an axis if one of
-    them is, else the first."""
-    pure = _pure(motions)
-    return _in_words(rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0])
+    them is, else the first. one_way: the sign of the motion matters."""
+    pure = np.zeros(0) if one_way else _pure(motions)
+    return _in_words(rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0], one_way)
 
 
 def each_motion(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
@@ -122,23 +139,27 @@ def _pure(motions: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.flatnonzero(np.linalg.norm(motions, axis=1) > 0.999)
 
 
-def _in_words(rigid: RigidModes, motion: NDArray[np.float64]) -> str:
+def _in_words(rigid: RigidModes, motion: NDArray[np.float64], one_way: bool = False) -> str:
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
     own = parts[group]
-    bodies = "body " + " + ".join(f"'{name}'" for name in rigid.groups[group])
+    alike = [g for g, part in enumerate(parts) if np.abs(part - own).max() < 1e-9 * np.abs(own).max()]
+    names = [" + ".join(f"'{name}'" for name in rigid.groups[g]) for g in alike]
+    bodies = f"body {names[0]}" if len(names) == 1 else f"bodies {', '.join(names)} together"
     if rigid.per_group == 1:
-        return f"{bodies} can shift along the axis y"
+        return f"{bodies} can shift along the axis {'-' if one_way and own[0] < 0.0 else ''}y"
     dim = 2 if rigid.per_group == 3 else 3
     shift, turn = own[:dim], own[dim:]
     if np.abs(shift).max() >= np.abs(turn).max():
-        return f"{bodies} can shift along {_axis(shift)}"
+        return f"{bodies} can shift along {_axis(shift, one_way)}"
     return f"{bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
 
 
-def _axis(vector: NDArray[np.float64]) -> str:
+def _axis(vector: NDArray[np.float64], one_way: bool = False) -> str:
+    """A direction in words, but for its sign unless ``one_way``."""
     vector = vector / np.linalg.norm(vector)
     largest = int(np.abs(vector).argmax())
+    sign = np.sign(vector[largest])
     if abs(vector[largest]) > 0.999:
-        return "xyz"[largest]
-    return "(" + ", ".join(f"{v / np.sign(vector[largest]):.3g}" for v in vector) + ")"
+        return ("-" if one_way and sign < 0 else "") + "xyz"[largest]
+    return "(" + ", ".join(f"{v if one_way else v / sign:.3g}" for v in vector) + ")"

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut import checks
 from abut.errors import InputError, nearest
-from abut.facing.search import Facing, Outside, facing, outside
+from abut.facing.search import Facing, Outside, facing, outside, seen_by
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Solid
 
@@ -21,6 +21,8 @@ AUTO = "auto:"  # what the names of found surfaces begin with
 ALIKE = 1.1  # ratio of Young's moduli up to which neither body is the softer one
 MUCH_FINER = 3.0  # ratio of facet sizes from which on a finer contactor would show the target's kinks
 FLAT = np.cos(np.deg2rad(1.0))  # facets all within that of one plane have no kinks to show
+BARE = 0.55  # share of the contactor's facets that lies opposite: with less a pressure stands on facets that are mostly bare
+BARER = 0.1  # difference of such shares that is worth a choice
 BEND = np.cos(np.deg2rad(45.0))  # facets beyond a sharper edge are not added around those that face something
 
 
@@ -63,10 +65,6 @@ class _Patch:
     facets: tuple[NDArray[np.int64], NDArray[np.int64]]
     faces: Facing
 
-    def distance(self, facet: int, side: int) -> float:
-        own = (self.faces.one if side == 0 else self.faces.other) == facet
-        return float(np.abs(self.faces.gap[own]).min())
-
 
 def find_contacts(
     mesh: Mesh, solids: Sequence[Solid] = (), *, reach: float | None = None, bodies: Sequence[str] | None = None
@@ -76,8 +74,8 @@ def find_contacts(
     solids: the softer body becomes the contactor, and one without a material counts as rigid; among equals, or where there
     are no solids, the finer mesh does, unless it is more than three times finer than a curved target. reach: the largest
     gap, length (default: half the sum of two facets' sizes; overlaps count up to half of that). bodies: look at these only.
-    Each patch is widened by the facets around it, so that contact may move. A facet that faces two bodies belongs to one
-    contactor only, that of the nearer pair.
+    Each patch is widened by the facets around it, so that contact may move, and the target by what the contactor sees. A
+    facet may belong to several pairs.
     Raises InputError for a reach that is not positive and for unknown bodies.
     """
     if reach is not None:
@@ -89,22 +87,16 @@ def find_contacts(
     every = outside(mesh, names)
     patches = _patches(every, facing(every, reach))
     young = {name: np.inf for name in names if solids} | {solid.body: solid.material.young for solid in solids}
-    sides = [_choose(every, patch, patches, young) for patch in patches]
-    cores = _without_shared(patches, [side for side, _ in sides])
-    taken = np.zeros(len(every.rows), dtype=bool)
-    for core, (side, _) in zip(cores, sides):
-        taken[core[side]] = True
+    sides = [_choose(every, patch, young) for patch in patches]
     count: dict[tuple[int, int], int] = {}
     result = []
-    for patch, core, (side, reason) in zip(patches, cores, sides):
-        if not len(core[0]) or not len(core[1]):
-            continue
+    for patch, (side, reason) in zip(patches, sides):
         count[patch.bodies] = count.get(patch.bodies, 0) + 1
         number = f":{count[patch.bodies]}" if count[patch.bodies] > 1 else ""
         a, b = (every.names[i] for i in patch.bodies)
         surface = f"{AUTO}{a}-{b}{number}", f"{AUTO}{b}-{a}{number}"
-        grown = [_widened(every, own, taken) for own in core]
-        taken[grown[side]] = True
+        grown = [_widened(every, own) for own in patch.facets]
+        grown[1 - side] = np.union1d(grown[1 - side], seen_by(every, grown[side], grown[1 - side]))
         result.append(
             FoundContact(
                 contactor=surface[side], target=surface[1 - side], bodies=(a, b) if side == 0 else (b, a),
@@ -156,21 +148,18 @@ def _patches(every: Outside, found: Facing) -> list[_Patch]:
     return result
 
 
-def _choose(every: Outside, patch: _Patch, patches: Sequence[_Patch], young: dict[str, float]) -> tuple[int, str]:
-    """Which side is the contactor, and why."""
-    side, reason = _softer_or_finer(every, patch, young)
-    others = [facets for other in patches if other is not patch for facets in other.facets]
-    used = np.concatenate(others) if others else np.zeros(0, dtype=np.int64)
-    shared = [bool(np.isin(facets, used).any()) for facets in patch.facets]
-    if shared[side] and not shared[1 - side] and young.get(every.names[patch.bodies[1 - side]]) != np.inf:
-        return 1 - side, f"the other side, {reason}, also faces another body"
-    return side, reason
-
-
-def _softer_or_finer(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int, str]:
+def _choose(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int, str]:
+    """Which side is the contactor, and why: the softer one, or the one that lies opposite with most of its facets, or the
+    finer one."""
     a, b = (every.names[i] for i in patch.bodies)
-    if a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b]):
-        return int(young[b] < young[a]), "softer"
+    share = [min(patch.faces.area.sum() / every.area[facets].sum(), 1.0) for facets in patch.facets]
+    soft = int(young[b] < young[a]) if a in young and b in young else 0
+    unlike = a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b])
+    if unlike and (share[soft] > BARE or young[(a, b)[1 - soft]] == np.inf):
+        return soft, "softer"
+    fuller = int(share[1] > share[0])
+    if share[fuller] > share[1 - fuller] + BARER and share[1 - fuller] < BARE:
+        return fuller, "the facets of the other side reach far beyond this one"
     sizes = [float(np.median(every.size[facets])) for facets in patch.facets]
     finer = int(sizes[1] < sizes[0] * (1.0 - 1e-9))
     if max(sizes) > MUCH_FINER * min(sizes) and not _flat(every, patch.facets[1 - finer]):
@@ -183,36 +172,14 @@ def _flat(every: Outside, facets: NDArray[np.int64]) -> bool:
     return bool((normals @ normals[0]).min() > FLAT)
 
 
-def _without_shared(patches: Sequence[_Patch], sides: Sequence[int]) -> list[list[NDArray[np.int64]]]:
-    """Facets of each patch's sides; one that faces several bodies, and is a contactor's in one of the pairs, stays in the
-    nearest pair only."""
-    owners: dict[int, list[tuple[int, int]]] = {}
-    for i, patch in enumerate(patches):
-        for s in (0, 1):
-            for facet in patch.facets[s]:
-                owners.setdefault(int(facet), []).append((i, s))
-    drop: list[tuple[set[int], set[int]]] = [(set(), set()) for _ in patches]
-    for facet, where in owners.items():
-        if len(where) == 1 or not any(sides[i] == s for i, s in where):
-            continue
-        best = min(where, key=lambda at: (patches[at[0]].distance(facet, at[1]), at[0]))
-        for i, s in where:
-            if (i, s) != best:
-                drop[i][s].add(facet)
-    return [
-        [own[~np.isin(own, list(gone))] for own, gone in zip(patch.facets, dropped)]
-        for patch, dropped in zip(patches, drop)
-    ]
-
-
-def _widened(every: Outside, core: NDArray[np.int64], taken: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The facets with those around them on the same body that no contactor has taken and no sharp edge parts off."""
+def _widened(every: Outside, core: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The facets with those around them on the same body that no sharp edge parts off."""
     nodes = every.surface.nodes
     normal = np.zeros_like(every.surface.points)
     facet, local = np.nonzero(nodes[core] >= 0)
     np.add.at(normal, nodes[core[facet], local], every.normal[core[facet]])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    free = np.flatnonzero((every.body == every.body[core[0]]) & ~taken)
+    free = np.flatnonzero(every.body == every.body[core[0]])
     facet, local = np.nonzero(nodes[free] >= 0)
     along = np.einsum("ij,ij->i", normal[nodes[free[facet], local]], every.normal[free[facet]])
     return np.union1d(core, free[facet[along > BEND]])

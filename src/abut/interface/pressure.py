@@ -25,6 +25,7 @@ NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support b
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
 WEAK_DUAL = 0.2  # the same for dual functions, whose pieces on slivers swing more
 BAND = 2  # layers of closed facets with dual functions along the edge of contact
+EVEN = 1e-9  # of the largest weight: neighbours with less difference are equals, and the first of them is followed
 DUAL, DUAL_P1 = "dual", "dual-P1"
 
 
@@ -197,8 +198,9 @@ def reduce(
         near = neighbours.indices[neighbours.indptr[k] : neighbours.indptr[k + 1]]
         near = near[keep[near]]
         if len(near):
+            best = near[space.weight[near] >= (1.0 - EVEN) * space.weight[near].max()].min()  # not by rounding
             rows.append(k)
-            columns.append(position[near[np.argmax(space.weight[near])]])
+            columns.append(position[best])
     follow = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, len(kept)))
     plain = (space.plain @ follow).tocsr()
     transfer = plain if space.ordinary else (space.transfer @ follow).tocsr()

@@ -35,12 +35,8 @@ FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once 
 FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
-CROWD, CROWDED = (
-    16,
-    6,
-)  # so many times the changes, which do not grow, make up the active set: so long it may settle yet
-MANY = 8  # iterations before which sets that are foreseen may settle yet
-SOON = 8.0  # so many more iterations, at the pace of the last three, are too many
+ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
+HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
 
@@ -80,8 +76,10 @@ def solve_step(
     history: list[NDArray[np.bool_]] = []
     log = Log(list(earlier), observe, len(earlier) + limit)
     changes: list[int] = []
+    foresight, doubtful = system.predict, False
+    lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
-    finest = ROUGH
+    finest, before = ROUGH, np.inf
     accuracy = STRIDE if settle else ROUGH
     if state.active.all() and not settle:
         accuracy = 0.1 * system.accurate  # closed all over may well be the answer
@@ -98,26 +96,35 @@ def solve_step(
         active = state.active
         history.append(active)
         if not changed.any():
-            if settled(system, solved, aim):
+            if settled(system, solved, aim, before):
                 if aim == "set":
                     return Outcome(state, tuple(log.done), True, changed, laws)
                 return finish_smooth(system, state, stage, limit, log.done, observe)
-            accuracy = finer(system, solved, aim)
+            accuracy, before = finer(system, solved, aim), solved.error
             continue
+        before = np.inf
         if aim == "this set":
             break
-        changes.append(int(changed.sum()))
+        count = int(changed.sum())
+        misled = lawful is not None and count > max(changes[-1], FEW * active.sum())
+        if misled and lawful is not None:  # back to what the law asked for, and no more foresight
+            seen.add(active.tobytes())
+            state, lawful, foresight, doubtful = replace(state, active=lawful), None, None, True
+            continue
+        changes.append(count)
         gap = system.gap(state, stage.weights)
-        early = len(log.done) - len(earlier) <= EARLY
-        if system.predict is not None and not share and (early or changes[-1] > FEW * active.sum()):
-            guess = system.predict(gap, state.pressure, wanted, tied)
+        rows = len(log.done) - len(earlier)
+        lawful = None
+        if foresight is not None and not share and (rows <= EARLY or count > FEW * active.sum()):
+            guess = foresight(gap, state.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
-                wanted = guess
+                lawful, wanted = wanted, guess
         accuracy = finest
-        stuck = np.array_equal(system.complete(wanted, gap) | tied, active)
+        stuck = np.array_equal(system.complete(wanted, gap, stage.weights) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
-        slow = repeated or (hopeless(changes, int(active.sum())) and (system.predict is None or len(changes) >= MANY))
+        slow = repeated or hopeless(changes, rows) or (doubtful and count >= HALVED * changes[-2])
+        doubtful = False
         if slow:
             _check_balance(system, stage)
         if repeated and not stuck and not system.exact and finest > FINE:
@@ -140,13 +147,12 @@ def stalled(changes: Sequence[int]) -> bool:
     return len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
 
 
-def hopeless(changes: Sequence[int], active: int) -> bool:
-    """Whether the set will take many more iterations, if any number is enough. active: multipliers in contact."""
-    settling = active <= CROWD * changes[-1] <= CROWD * min(changes)
-    if len(changes) <= (CROWDED if settling else PATIENCE):
+def hopeless(changes: Sequence[int], rows: int) -> bool:
+    """Whether the set will take too many more iterations, if any number is enough. rows: those of the step so far."""
+    if len(changes) <= PATIENCE:
         return False
     pace = np.log(changes[-1 - PATIENCE] / changes[-1]) / PATIENCE
-    return stalled(changes) or bool(np.log(changes[-1]) > SOON * pace)
+    return stalled(changes) or bool(np.log(changes[-1]) > max(ROWS - rows, 1) * pace)
 
 
 def _next_share(share: float, repeated: bool) -> float:
@@ -170,6 +176,6 @@ def following(system: System, stage: Stage, outcome: Outcome, weights: NDArray[n
     return Stage(
         stage.number + 1,
         weights,
-        largest_force(system, internal_force(system, state), stage),
+        largest_force(system, state, internal_force(system, state), stage),
         largest_pressure(state, stage),
     )

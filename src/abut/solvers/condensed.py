@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -15,12 +16,18 @@ from abut.discretization.pairs import Pair
 from abut.errors import SingularModelError
 from abut.solvers import direct
 from abut.solvers.blocks import store_diagonal
-from abut.solvers.newton import Laws, Rows, Solve, System, Unknowns
+from abut.solvers.newton import Laws, Rows, Solve, System, Unknowns, weight
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
 REPEATED = 1e-11  # singular value over the largest below which rows count as repeating each other
 SINGULAR = 1e-6  # relative residual above which a dense system is taken for singular
+RANK = 1e-14  # inverse condition below which it is, unless the residual is small beside the right-hand side
+FREE = 1e-10  # gap by a unit motion below which rows do not resist it
+UNBALANCED = 1e-6  # work of the forces on a motion that nothing resists, over their sum, from which on they move it
+PASSES, EVEN = 20, 0.1  # of equilibration, until the logarithm of the largest entries is below the second
+NOT_UNIQUE = "the equations have no unique solution; check supports, contacts and units"
+UNBALANCED_LOADS = "the loads move a body that nothing holds; check supports, contacts and units"
 
 
 @dataclass(frozen=True)
@@ -65,6 +72,7 @@ class Flexibility:
 
     factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
     the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures;
+    weight: (n_multipliers,) gap of each by a displacement of one; force: sum of the loads;
     redundant: constraints may repeat each other, then the smallest pressure that serves is taken.
     """
 
@@ -72,13 +80,17 @@ class Flexibility:
     motions: NDArray[np.float64]
     response: NDArray[np.float64]
     operator: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    force: float
     redundant: bool
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float = 0.0
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r): du = K^-1 (B^T dp - residual) + R a, with R^T of the
-        bracket zero, theory (V5), put into the rows of the laws."""
+        bracket zero, theory (V5), put into the rows of the laws. Motions that the rows leave free stay where they are.
+
+        Raises SingularModelError, also where ``residual`` does work on such motions."""
         known, wanted = rows.decoupled, -rows.residual
         free = np.flatnonzero(~known)
         dp = np.zeros(len(pressure))
@@ -86,15 +98,30 @@ class Flexibility:
         push = self.operator.T @ dp - residual
         du = scipy.linalg.cho_solve(self.factor, push)
         law = rows.by_displacement[free]
-        n, m = len(free), self.motions.shape[1]
+        motions = self._resisted(free, law, push, np.abs(pressure) + np.abs(dp))
+        n, m = len(free), motions.shape[1]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
-        matrix[:n, n:] = law @ self.motions
-        matrix[n:, :n] = (self.operator[free] @ self.motions).T
-        rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -self.motions.T @ push])
-        solved = _solve_dense(matrix, rhs, self.redundant)
+        matrix[:n, n:] = law @ motions
+        matrix[n:, :n] = (self.operator[free] @ motions).T
+        rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -motions.T @ push])
+        solved = solve_dense(matrix, rhs, self.redundant)
         dp[free] = solved[:n]
-        return du + self.response[:, free] @ solved[:n] + self.motions @ solved[n:], dp
+        return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
+
+    def _resisted(
+        self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], pressure: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance;
+        pressure: (n_multipliers,) sizes, beside which what is left of forces in balance is rounding."""
+        if not self.motions.shape[1]:
+            return self.motions
+        rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
+        loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
+        work = np.abs((self.motions @ loose).T @ push).max(initial=0.0)
+        if work > UNBALANCED * (np.abs(push).sum() + self.weight @ pressure + self.force):
+            raise SingularModelError(UNBALANCED_LOADS)
+        return self.motions @ held if loose.shape[1] else self.motions
 
     def factorise(self, rows: Rows) -> Solve:
         """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows
@@ -115,6 +142,10 @@ class Flexibility:
 
         by_motions = inverse(moved)
         small = moved.T @ by_motions
+        root = np.sqrt(
+            np.maximum(np.diagonal(small), 1e-300)
+        )  # a loose body's rows yield much more than a pressed one's
+        small = small / root[:, None] / root
 
         def solve(
             residual: NDArray[np.float64], of_law: NDArray[np.float64]
@@ -122,7 +153,8 @@ class Flexibility:
             du = scipy.linalg.cho_solve(self.factor, -residual)
             dp = inverse(of_law + rows.by_displacement @ du)
             if m:
-                shift = np.linalg.lstsq(small, moved.T @ dp - self.motions.T @ residual, rcond=REPEATED)[0]
+                force = (moved.T @ dp - self.motions.T @ residual) / root
+                shift = np.linalg.lstsq(small, force, rcond=REPEATED)[0] / root
                 dp, du = dp - by_motions @ shift, du + self.motions @ shift
             return du + self.response @ dp, dp
 
@@ -151,7 +183,9 @@ def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
     stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]  # theory (V3)
     redundant = any(pair.redundant for pair in system.pairs)
     unit = float(np.median(system.stiffness.diagonal()))
-    flexibility = _flexibility(stiffness, motions[kept], operator, unit, redundant)
+    sizes = system.join([weight(pair) for pair in system.pairs])
+    force = float(np.abs(system.load).sum())
+    flexibility = _flexibility(stiffness, motions[kept], operator, unit, sizes, force, redundant)
     if flexibility is None:
         return None
     small = replace(
@@ -183,6 +217,8 @@ def _flexibility(
     motions: NDArray[np.float64],
     operator: NDArray[np.float64],
     unit: float,
+    sizes: NDArray[np.float64],
+    force: float,
     redundant: bool,
 ) -> Flexibility | None:
     basis = np.linalg.svd(motions, full_matrices=False)[0] if motions.size else motions
@@ -190,7 +226,8 @@ def _flexibility(
         factor = scipy.linalg.cho_factor(stiffness + unit * (basis @ basis.T), lower=True)
     except np.linalg.LinAlgError:
         return None  # a zero-energy motion that is not rigid, as of bodies joined in a hinge
-    return Flexibility(factor, basis, scipy.linalg.cho_solve(factor, operator.T), operator, redundant)
+    response = scipy.linalg.cho_solve(factor, operator.T)
+    return Flexibility(factor, basis, response, operator, sizes, force, redundant)
 
 
 def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:
@@ -199,25 +236,71 @@ def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:
     return replace(pair, points=replace(pair.points, operator=pair.points.operator[:, kept].tocsr()))
 
 
-def _solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant: bool) -> NDArray[np.float64]:
-    """LU with equilibrated columns and rows, refined once; least squares where rows may repeat each other."""
+def let_go(rows: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Motions that rows do not resist and those that they do, (m, k) and (m, m - k) orthonormal.
+
+    rows: (n, m) what each gives for unit motions; weight: (n,) for a displacement of one."""
+    m = rows.shape[1]
+    _, size, basis = np.linalg.svd(np.concatenate([rows / weight[:, None], np.zeros((m, m))]), full_matrices=False)
+    none = size <= FREE * max(size.max(initial=0.0), 1.0)
+    return basis[none].T, basis[~none].T
+
+
+def solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant: bool) -> NDArray[np.float64]:
+    """LU of the equilibrated matrix, refined; least squares where rows may repeat each other.
+
+    matrix: (n, n); rhs: (n,). Raises SingularModelError unless the solution is that of a system that differs from this one
+    by rounding: with residuals as small as |A| |x| + |b| allows, and a matrix that is regular, or else a residual that is
+    small beside b as well."""
     if not len(rhs):
         return rhs
-    columns = np.abs(matrix).max(axis=0)
-    columns[columns == 0.0] = 1.0
-    rows = (np.abs(matrix) / columns).max(axis=1)
-    rows[rows == 0.0] = 1.0
-    scaled, b = matrix / columns / rows[:, None], rhs / rows
-    if (np.abs(scaled).max(axis=0) == 0.0).any():
-        raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
+    rows, columns = _equilibrate(matrix)
+    scaled, b = rows[:, None] * matrix * columns, rows * rhs
+    if (np.abs(scaled).max(axis=0) == 0.0).any() or not np.isfinite(scaled).all():
+        raise SingularModelError(NOT_UNIQUE)
     if redundant:
-        return np.asarray(np.linalg.lstsq(scaled, b, rcond=REPEATED)[0] / columns)
+        return np.asarray(columns * np.linalg.lstsq(scaled, b, rcond=REPEATED)[0])
     with np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)  # the residual below tells
+        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)  # what follows tells
         factor = scipy.linalg.lu_factor(scaled, check_finite=False)
         x = scipy.linalg.lu_solve(factor, b, check_finite=False)
         x = x + scipy.linalg.lu_solve(factor, b - scaled @ x, check_finite=False)
-        miss = np.abs(scaled @ x - b).max()
-    if not miss <= SINGULAR * max(np.abs(b).max(), 1e-300):
-        raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
-    return np.asarray(x / columns)
+        miss = np.abs(scaled @ x - b)
+        if miss.max() <= SINGULAR * np.abs(b).max():
+            return np.asarray(columns * x)
+        backward = (miss / np.maximum(np.abs(scaled) @ np.abs(x) + np.abs(b), 1e-300)).max()
+        regular = scipy.linalg.lapack.dgecon(factor[0], np.abs(scaled).sum(axis=0).max())[0] > RANK
+    if not (backward <= SINGULAR and regular):
+        raise SingularModelError(NOT_UNIQUE)
+    return np.asarray(columns * x)
+
+
+def _equilibrate(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Factors of rows and columns, (n,) each, with which the largest entry of each is one, but for ``EVEN`` (Ruiz 2001).
+
+    First of all diagonal entries become one, and rows and columns without (motions) follow: else entries of one block
+    (gaps by motions) may be even by themselves and leave another (gaps by pressures) as far below as the units put it."""
+    size = np.abs(matrix)
+    own = np.diagonal(size) > 0.0
+    rows = np.where(own, 1.0 / np.sqrt(np.where(own, np.diagonal(size), 1.0)), 1.0)
+    columns = rows.copy()
+    if own.any() and not own.all():
+        rows[~own] = 1.0 / _positive((size[~own] * columns)[:, own].max(axis=1))
+        columns[~own] = 1.0 / _positive((size[:, ~own] * rows[:, None])[own].max(axis=0))
+    size *= rows[:, None]
+    size *= columns
+    for _ in range(PASSES):
+        of_rows, of_columns = _positive(size.max(axis=1)), _positive(size.max(axis=0))
+        if max(np.abs(np.log(of_rows)).max(), np.abs(np.log(of_columns)).max()) < EVEN:
+            break
+        by_rows, by_columns = 1.0 / np.sqrt(of_rows), 1.0 / np.sqrt(of_columns)
+        size *= by_rows[:, None]
+        size *= by_columns
+        rows *= by_rows
+        columns *= by_columns
+    return rows, columns
+
+
+def _positive(sizes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """One for zero."""
+    return np.where(sizes > 0.0, sizes, 1.0)

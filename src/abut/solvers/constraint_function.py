@@ -19,6 +19,9 @@ from abut.solvers.newton import (
     Unknowns,
     active_laws,
     advance,
+    equilibrium,
+    internal_force,
+    largest_force,
     largest_pressure,
     next_active,
     report,
@@ -29,6 +32,7 @@ from abut.state import Iteration
 UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
 NO_PRESSURE = 1e-12  # over Young's modulus: a contact that presses less does not press at all
 TOLERANCE = 1e-8  # of the relative residuals
+ROUGH = 1e-2  # reduction of residuals asked of iterative linear solvers far from the solution
 
 
 def finish_smooth(
@@ -50,6 +54,7 @@ def finish_smooth(
         return Outcome(state, tuple(done), True, none, partial(active_laws, weights=stage.weights))
     smooth = partial(_smooth_laws, weights=stage.weights, reference=reference)
     violation = np.zeros(len(state.active))
+    before = np.inf
     tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
     exact = system.join([np.full(len(pair), not pair.smooth) for pair in system.pairs]).astype(bool)
     for _ in range(limit):
@@ -59,7 +64,9 @@ def finish_smooth(
         scale = system.join([weight(pair) for pair in system.pairs]) * reference
         violation = np.abs(residual / scale)
         law_error = float(violation.max(initial=0.0))
-        following = advance(system, state, stage.weights, laws)
+        residual_now = max(law_error, _unbalanced(system, state, stage))
+        following = advance(system, state, stage.weights, laws, _accuracy(residual_now, before))
+        before = residual_now
         following = _line_search(system, state, following, smooth, reference)
         wanted, _ = next_active(system, following, stage, tied)
         active = np.where(exact, wanted, system.join([law.active for law in laws]).astype(bool))
@@ -73,6 +80,18 @@ def finish_smooth(
         if law_error < TOLERANCE and row.residual < 1e-8 and not unsettled:
             return Outcome(state, tuple(done), True, none, smooth)
     return Outcome(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0), smooth)
+
+
+def _accuracy(error: float, before: float) -> float:
+    """The reduction of residuals asked of iterative solvers, so that Newton's method stays quadratic in the end (Eisenstat
+    and Walker 1996) and the last solution reaches ``TOLERANCE``. error, before: of the laws and of equilibrium."""
+    return float(np.clip((error / before) ** 2, 0.3 * TOLERANCE / max(error, TOLERANCE), ROUGH))
+
+
+def _unbalanced(system: System, state: Unknowns, stage: Stage) -> float:
+    internal = internal_force(system, state)
+    residual = equilibrium(system, state, stage.weights, internal)
+    return float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, stage))
 
 
 def _smooth_laws(

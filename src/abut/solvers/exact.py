@@ -23,7 +23,12 @@ from abut.state import Iteration
 
 Aim = Literal["solution", "set", "this set"]
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
+TOLD, MOST = (
+    0.2,
+    3,
+)  # of equilibrium and of closed gaps, where a state tells which set comes next; solutions until there
 STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
+ROUNDING = 1e-8  # the same that may be left to rounding
 SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
 
@@ -51,22 +56,29 @@ class Solved:
 def solve_set(
     system: System, state: Unknowns, stage: Stage, tied: NDArray[np.bool_], count: int, accuracy: float
 ) -> Solved:
-    """Solve with the active set of ``state``, completed where it lets a body go, as iteration ``count`` of the step."""
+    """Solve with the active set of ``state``, completed where it lets a body go, as iteration ``count`` of the step.
+
+    An iterative solver goes on where a rough solution says nothing, as after a state that was far off."""
     clock = time.perf_counter()
-    active = system.complete(state.active, system.gap(state, stage.weights)) | tied
+    active = system.complete(state.active, system.gap(state, stage.weights), stage.weights) | tied
     state = replace(state, active=active)
-    state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
-    wanted, violation = next_active(system, state, stage, tied)
-    left = closure(system, state, stage)
-    changed = int((wanted != active).sum())
-    row = report(system, state, stage, count, changed, violation, time.perf_counter() - clock)
-    row = replace(row, contact_residual=max(row.contact_residual, left))
-    return Solved(state, wanted, violation, left, row)
+    for _ in range(MOST if not system.exact else 1):
+        state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
+        wanted, violation = next_active(system, state, stage, tied)
+        changed = int((wanted != active).sum())
+        row = report(system, state, stage, count, changed, violation, time.perf_counter() - clock)
+        solved = Solved(state, wanted, violation, closure(system, state, stage), row)
+        if solved.error <= TOLD:
+            break
+        accuracy = max(TOLD / solved.error, STRIDE)
+    return replace(solved, row=replace(row, contact_residual=max(row.contact_residual, solved.closure)))
 
 
-def settled(system: System, solved: Solved, aim: Aim) -> bool:
-    """Whether a set that stands still has been solved well enough."""
-    return system.exact or solved.error <= _wanted(system, aim)
+def settled(system: System, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
+    """Whether a set that stands still has been solved well enough. before: its error after the solution before this one:
+    what no longer falls is rounding."""
+    rounding = solved.error <= ROUNDING and solved.error > 0.5 * before
+    return system.exact or solved.error <= _wanted(system, aim) or rounding
 
 
 def finer(system: System, solved: Solved, aim: Aim) -> float:

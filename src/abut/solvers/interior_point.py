@@ -19,7 +19,6 @@ from abut.solvers.blocks import store_diagonal
 from abut.solvers.newton import Rows, Solve, System, Unknowns, equilibrium, internal_force
 
 BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
-CENTRING = 0.1  # sigma where each right-hand side costs a solution of its own
 UNKNOWN = 1e3  # softness where it would cost too much to find out
 UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
 Vector = NDArray[np.float64]
@@ -70,14 +69,25 @@ class Programme:
     def solver(self, state: Unknowns, softness: Vector) -> Solve:
         """Solutions with rows of that softness, as often as wanted: (residual of equilibrium, shift) -> (du, dp)."""
         rows = self.rows(state, softness, np.zeros_like(softness))
-        gap = -rows.residual
-        factors = None if self.system.factorise is None else self.system.factorise(rows)
+        if self.system.factorise is None:
+            return self._iterations(rows, state)
+        factors = self.system.factorise(rows)
+        return lambda residual, shift: factors(residual, rows.residual + shift)
+
+    def _iterations(self, rows: Rows, state: Unknowns) -> Solve:
+        """The same by an iterative solver, each solution from the one before on."""
+        system = self.system
+        du, dp = np.zeros_like(state.displacement), np.zeros_like(state.pressure)
 
         def solve(residual: Vector, shift: Vector) -> tuple[Vector, Vector]:
-            if factors is not None:
-                return factors(residual, shift - gap)
-            here = replace(rows, residual=shift - gap)
-            return self.system.step(here, residual, state.pressure, ROUGH)
+            nonlocal du, dp
+            left, of_law = residual, rows.residual + shift
+            if du.any() or dp.any():
+                left = residual + system.stiffness @ du - system.operator.T @ dp
+                of_law = of_law + rows.by_displacement @ du + rows.by_pressure @ dp
+            more = system.step(replace(rows, residual=of_law), left, state.pressure, ROUGH)
+            du, dp = du + more[0], dp + more[1]
+            return du, dp
 
         return solve
 
@@ -151,15 +161,11 @@ def iterate(programme: Programme, here: Interior) -> Interior:
         du, dp = solve(residual, product * inverse)
         return du, dp, np.where(free, (product - g * p - g * dp) * inverse, 0.0)
 
-    if programme.system.factorise is None:
-        du, dp, dg = direction(CENTRING * mean * scale)
-        closing, opening = dp / (1.0 - CENTRING), dg / (1.0 - CENTRING)
-    else:
-        _, closing, opening = direction(np.zeros_like(p))
-        length = min(1.0, _longest(p, closing, free), _longest(g, opening, free))
-        foreseen = programme.mean(p + length * closing, g + length * opening)
-        centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
-        du, dp, dg = direction(centring * mean * scale - closing * opening)
+    _, closing, opening = direction(np.zeros_like(p))
+    length = min(1.0, _longest(p, closing, free), _longest(g, opening, free))
+    foreseen = programme.mean(p + length * closing, g + length * opening)
+    centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
+    du, dp, dg = direction(centring * mean * scale - closing * opening)
     length = min(1.0, BOUNDARY * _longest(p, dp, free), BOUNDARY * _longest(g, dg, free))
     state = replace(
         here.state, displacement=here.state.displacement + length * du, pressure=here.state.pressure + length * dp

@@ -3,30 +3,21 @@ interface's own operator for the pressures. Nothing but the interface's part cha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.errors import InputError
 from abut.solvers.active_set import Rows, System
+from abut.solvers.conditions import Conditions, conditions
 from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import (
-    Apply,
-    Interface,
-    interfaces,
-    predictor,
-    schur,
-    schur_diagonal,
-    schur_inverse,
-    soft_inverse,
-)
+from abut.solvers.schur import Apply, PressureBlock, predictor, pressure_block
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
+LOOSE = 1e-9  # resistance of contact to a motion, over the largest, below which it is none: the motion rests
 FAILED = "multigrid does not converge on this model"
 
 
@@ -43,18 +34,13 @@ class Count:
 
 @dataclass(frozen=True)
 class Iterative:
-    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see; scale: of pressures;
-    forward, diagonal: of S; unit: size of the stiffness' entries."""
+    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
 
     operator: Any
     hierarchy: Hierarchy
-    parts: Sequence[Interface]
+    pressures: PressureBlock
     motions: NDArray[np.float64]
-    scale: float
     count: Count
-    forward: Apply
-    diagonal: NDArray[np.float64]
-    unit: float
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
@@ -63,30 +49,28 @@ class Iterative:
 
         Raises NotConverged."""
         fixed, active = rows.fixed, ~rows.decoupled
-        operator = self.operator[active]
-        n = len(residual)
-        soft = -rows.by_pressure.diagonal()[active]
-        inverse, s = self._pressures(soft, active)
-        coarse = self._rigid(operator, inverse)
+        own = conditions(rows, self.operator, self.pressures)
+        operator, n = self.operator[active], len(residual)
+        coarse = self._rigid(operator, own)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            u, q = x[:n], x[n:]
+            u, p = x[:n], own.columns * x[n:]
             return np.concatenate(
-                [self.hierarchy.product(u) - operator.T @ (s * q), -s * (operator @ u + soft * s * q)]
+                [self.hierarchy.product(u) - operator.T @ p, own.rows * (own.lower @ u + own.corner @ p)]
             )
 
         def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            q = -inverse(x[n:] / s) / s
-            r = x[:n] + operator.T @ (s * q)
-            return np.concatenate([self.hierarchy.cycle(r) + coarse(r), q])
+            p = -own.inverse(x[n:] / own.rows)
+            r = x[:n] + operator.T @ p
+            return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / own.columns])
 
-        rhs = np.concatenate([-residual + self.operator.T @ fixed, -s * rows.residual[active]])
+        rhs = np.concatenate([-residual + self.operator.T @ fixed, -own.rows * rows.residual[active]])
         solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
         self.count.iterations += iterations
         if not done or not np.isfinite(solution).all():
             raise NotConverged(FAILED)
         dp = fixed
-        dp[active] = s * solution[n:]
+        dp[active] = own.columns * solution[n:]
         return solution[:n], dp
 
     def respond(self, force: NDArray[np.float64], springs: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -102,51 +86,26 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _pressures(self, soft: NDArray[np.float64], active: NDArray[np.bool_]) -> tuple[Apply, NDArray[np.float64]]:
-        """The preconditioner of the active pressures, and what they are divided by. soft: (n_active,) gap per pressure that
-        the rows add; with it residuals are measured in the root of energy."""
-        if not soft.any():
-            return schur_inverse(self.parts, active), np.full(len(soft), self.scale)
-        return soft_inverse(self.forward, self.diagonal, soft), np.sqrt(self.unit / (self.diagonal + soft))
-
-    def _rigid(self, operator: Any, inverse: Apply) -> Apply:
+    def _rigid(self, operator: Any, own: Conditions) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         if not self.motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        small = compliance(operator @ self.motions, inverse)
+        small = compliance(operator @ self.motions, own.inverse, -np.asarray(own.lower @ self.motions))
         return lambda r: np.asarray(self.motions @ (small @ (self.motions.T @ r)))
 
 
-def compliance(moved: NDArray[np.float64], inverse: Apply) -> NDArray[np.float64]:
+def compliance(
+    moved: NDArray[np.float64], inverse: Apply, seen: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
     """How far rigid motions yield (m, m) that only contact resists. moved: (n, m) weighted gaps by unit motions; inverse: of
-    the pressures' preconditioner."""
-    return np.asarray(np.linalg.pinv(moved.T @ np.column_stack([inverse(column) for column in moved.T])))
-
-
-def pressure_scale(system: System) -> float:
-    """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
-    operator = system.operator
-    rows = np.flatnonzero(np.diff(operator.indptr))
-    largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
-    return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
+    the pressures' preconditioner; seen: (n, m) what the rows give for unit motions, the gaps where left out."""
+    answers = np.column_stack([inverse(column) for column in (moved if seen is None else seen).T])
+    return np.asarray(np.linalg.pinv(moved.T @ answers, rcond=LOOSE))
 
 
 def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], count: Count) -> System:
-    """The system with its linear systems solved iteratively; ``count`` goes on counting.
-
-    Raises InputError for pairs with the constraint function, whose rows this preconditioner does not know."""
-    smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-    if smooth:
-        raise InputError(
-            f"solve.linear: \"amg\" does not know the constraint function of contact '{smooth[0]}'; choose law = "
-            '"complementarity", or linear = "direct"'
-        )
-    scale = pressure_scale(system)
-    parts = interfaces(system.pairs)
-    forward = schur(parts)
-    solver = Iterative(
-        system.operator, hierarchy, parts, motions, scale, count, forward, schur_diagonal(parts, system.operator.shape[0]),
-        float(np.median(system.stiffness.diagonal())),
-    )  # fmt: skip
-    predict = predictor(forward, np.asarray(system.operator @ motions))
+    """The system with its linear systems solved iteratively; ``count`` goes on counting."""
+    pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
+    solver = Iterative(system.operator, hierarchy, pressures, motions, count)
+    predict = predictor(pressures.forward, np.asarray(system.operator @ motions))
     return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)

@@ -19,6 +19,7 @@ from abut.solvers.condensed import condense
 from abut.solvers.direct import solver_name
 from abut.solvers.iterative import Count, iterate
 from abut.solvers.multigrid import Hierarchy, hierarchy
+from abut.solvers.schur import foresight
 
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
@@ -66,7 +67,7 @@ def chosen(
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not coupled and find_spec("pyamg") is not None and not any(pair.smooth or pair.redundant for pair in pairs)
+    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 
@@ -97,6 +98,7 @@ def _iterative(system: System, levels: Hierarchy, loose: NDArray[np.float64], co
 
 
 def _direct(system: System, loose: NDArray[np.float64]) -> Prepared:
+    system = replace(system, predict=foresight(system.pairs, np.asarray(system.operator @ loose)))
     condensed = condense(system, loose)
     name = f"direct ({solver_name()})"
 

@@ -71,7 +71,8 @@ class System:
     """What stays the same over all iterations and steps.
 
     load: (n_free, n_histories) by each history of the model, theory (F9); operator: all pairs stacked, (n, n_free).
-    complete: adds to an active set that lets a body go the multipliers closest to contact; pulled_off: the motion, in
+    complete: (active, gap, weights) -> the set, with the multipliers closest to contact where it lets a body go that the
+    loads at such weights move; pulled_off: the motion, in
     words, that the loads at such weights cause though contact pushes wherever it can, empty where there is none. step:
     (rows, residual of equilibrium, pressure, accuracy) -> (du, dp), the residual reduced by ``accuracy`` or, where
     ``exact``, to rounding; factorise: the same in two, rows first, then (residual of equilibrium, of the rows) -> (du, dp)
@@ -86,7 +87,7 @@ class System:
     load: NDArray[np.float64]
     pairs: Sequence[Pair]
     operator: Any
-    complete: Callable[[NDArray[np.bool_], NDArray[np.float64]], NDArray[np.bool_]]
+    complete: Callable[[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
     pulled_off: Callable[[NDArray[np.float64]], str]
     step: Step
     motions: NDArray[np.float64]
@@ -239,17 +240,20 @@ def report(
         iteration=count,
         active=int(state.active.sum()),
         changed=changed,
-        residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, internal, stage)),
+        residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, stage)),
         contact_residual=_relative(violation, largest_pressure(state, stage)),
         penetration=max(depth, default=0.0),
         seconds=seconds,
     )
 
 
-def largest_force(system: System, internal: NDArray[np.float64], stage: Stage) -> float:
-    """Largest nodal force of stresses (``internal``) and loads, now or in a step before."""
+def largest_force(system: System, state: Unknowns, internal: NDArray[np.float64], stage: Stage) -> float:
+    """Largest nodal force of stresses (``internal``), of loads and of single multipliers, now or in a step before. Where
+    displacements have been eliminated, those that are left see nothing of contact forces that balance each other on a body,
+    as round a press fit."""
     load = system.load @ stage.weights
-    return max(np.abs(internal).max(initial=0.0), np.abs(load).max(initial=0.0), stage.force, 1e-300)
+    push = system.join([weight(pair) for pair in system.pairs]) * state.pressure
+    return max(*(float(np.abs(forces).max(initial=0.0)) for forces in (internal, load, push)), stage.force, 1e-300)
 
 
 def _relative(violation: NDArray[np.float64], largest: float) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.solvers.constraint_function import finish_smooth
-from abut.solvers.exact import ROUGH, Aim, Solved, finer, settled, solve_set
+from abut.solvers.exact import STRIDE, Aim, Solved, finer, settled, solve_set
 from abut.solvers.interior_point import Programme, begin, iterate, softness
 from abut.solvers.newton import Outcome, Stage, System, Unknowns, active_laws, largest_pressure, report
 from abut.state import Iteration
@@ -96,7 +96,7 @@ def search(
 def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArray[np.bool_], aim: Aim) -> Solved | None:
     """Exact solutions, beginning with the active set of ``state``, while ever fewer multipliers change: the last of them,
     and the answer where its set stands still. None where none was possible."""
-    solved, before, accuracy, count = None, len(tied) + 1, ROUGH, 0
+    solved, fewest, accuracy, count, error = None, len(tied) + 1, STRIDE, 0, np.inf
     while count < SOLUTIONS and not log.full:
         try:
             following = solve_set(system, state, stage, tied, log.next, accuracy)
@@ -105,15 +105,15 @@ def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArra
         log.add(following.row)
         solved = following
         changed = int(solved.changed.sum())
-        if changed == 0 and settled(system, solved, aim):
+        if changed == 0 and settled(system, solved, aim, error):
             return solved
         if changed == 0:
-            state, accuracy = solved.state, finer(system, solved, aim)
+            state, accuracy, error = solved.state, finer(system, solved, aim), solved.error
             continue
-        if changed >= before:
+        if changed >= fewest:
             return solved
-        before, count = changed, count + 1
-        state, accuracy = replace(solved.state, active=solved.wanted), ROUGH
+        fewest, count, error = changed, count + 1, np.inf
+        state, accuracy = replace(solved.state, active=solved.wanted), STRIDE
     return solved
 
 

@@ -1,0 +1,93 @@
+"""Contact problems as quadratic programmes in the pressures alone, by dense matrices, and their solution by quadprog."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+import abut
+from abut.analysis.clock import Clock
+from abut.analysis.load_step import with_plain
+from abut.analysis.problem import Problem, problem
+from abut.solvers.active_set import System, start
+
+Array = NDArray[np.float64]
+SLACK = 1e-7  # share of the loads by which balance may be missed, as far as linprog solves
+
+
+@dataclass(frozen=True)
+class Programme:
+    """min p C p / 2 + gap p with moved^T p = load and p >= 0 where not tied. compliance C: (n, n); gap: (n,) without
+    pressure; moved: (n, m) gaps by rigid motions that supports leave free; load: (m,) work of the loads on them, the other
+    way round; size: sum of the loads."""
+
+    compliance: Array
+    gap: Array
+    moved: Array
+    load: Array
+    tied: NDArray[np.bool_]
+    size: float
+
+
+def assembled(model: abut.Model) -> Problem:
+    """Supports, stiffness and pairs of a model."""
+    return problem(model, lambda _: None, lambda _: None, Clock())
+
+
+def final(model: abut.Model, own: Problem, inside: NDArray[np.bool_]) -> System:
+    """The system with ordinary functions where the step that was solved had them (``abut.state.Saved.inside``)."""
+    return with_plain(model, own.held, own.system, inside) if inside.any() else own.system
+
+
+def programme(system: System) -> Programme:
+    """Of a system at the end of the ramp."""
+    factors = np.ones(system.load.shape[1])
+    motions, stiffness = system.motions, system.stiffness.toarray()
+    basis = np.linalg.svd(motions, full_matrices=False)[0]
+    stiffness += np.median(np.diagonal(stiffness)) * basis @ basis.T  # holds them, and nothing else where loads balance
+    operator, load = system.operator.toarray(), system.load @ factors
+    answers = np.linalg.solve(stiffness, np.column_stack([operator.T, load]))
+    compliance = operator @ answers[:, :-1]
+    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    gap = system.gap(start(system), factors) + operator @ answers[:, -1]
+    return Programme(
+        0.5 * (compliance + compliance.T), gap, operator @ motions, -motions.T @ load, tied, float(np.abs(load).sum())
+    )
+
+
+def solvable(own: Programme) -> bool:
+    """Whether some pressures balance the loads: the least imbalance of a linear programme is none."""
+    n, m = own.moved.shape
+    if not m or not own.size > 0.0:
+        return True
+    unit = np.linalg.norm(own.moved, axis=1)
+    rows = own.moved / np.where(unit > 0.0, unit, 1.0)[:, None]
+    load = own.load / own.size
+    ones = np.ones((m, 1))
+    answer = linprog(
+        np.append(np.zeros(n), 1.0), np.block([[rows.T, -ones], [-rows.T, -ones]]), np.concatenate([load, -load]),
+        bounds=[(None if t else 0.0, None) for t in own.tied] + [(0.0, None)],
+    )  # fmt: skip
+    assert answer.status == 0, answer.message
+    return bool(answer.fun < SLACK)
+
+
+def exact(own: Programme) -> Array:
+    """The pressures (n,) by quadprog's dual active set method (Goldfarb and Idnani 1983), scaled to a compliance with a unit
+    diagonal and to independent resultants of unit size."""
+    import quadprog
+
+    size = 1.0 / np.sqrt(np.diagonal(own.compliance))
+    basis, unit, turn = np.linalg.svd(own.moved * size[:, None], full_matrices=False)
+    held = unit > 1e-10 * unit.max(initial=0.0)
+    wanted = (turn @ own.load)[held] / unit[held]
+    pushing = np.flatnonzero(~own.tied)
+    conditions = np.column_stack([basis[:, held], np.eye(len(size))[:, pushing]])
+    bounds = np.concatenate([wanted, np.zeros(len(pushing))])
+    answer = quadprog.solve_qp(
+        own.compliance * size[:, None] * size, -own.gap * size, conditions, bounds, int(held.sum())
+    )[0]
+    return np.asarray(answer * size)
