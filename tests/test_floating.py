@@ -54,16 +54,16 @@ def test_a_loose_roller_rests(path: str, monkeypatch: pytest.MonkeyPatch) -> Non
     """No pressure on it; it stays within its clearance and strains nowhere, and the others do as if it was not there."""
     if path == "sparse":
         monkeypatch.setattr(condensed, "LARGEST", 0)
-    model = replace(bearing(1.0), solve=abut.SolveOptions(linear="amg" if path == "amg" else "auto"))
+    model = replace(bearing(1e-3), solve=abut.SolveOptions(linear="amg" if path == "amg" else "auto"))
     solution = abut.solve(model)
     assert solution.converged
     found = {contact.name: contact for contact in solution.contacts}
     assert found["roller below"].force[1] == pytest.approx(-found["roller above"].force[1], rel=1e-6)
-    assert abs(found["roller above"].force[1]) == pytest.approx(1.0, rel=1e-6)
+    assert abs(found["roller above"].force[1]) == pytest.approx(1e-3, rel=1e-6)
     assert [found[f"loose {side}"].active for side in ("above", "below")] == [0, 0]
     own = solution.displacement[model.mesh.nodes_of("loose")]
     assert np.abs(own).max() < 0.02
-    assert np.ptp(own, axis=0).max() < 1e-9
+    assert np.ptp(own, axis=0).max() < 1e-9  # as a whole
 
 
 def test_a_second_load_presses_it() -> None:
