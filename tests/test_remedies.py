@@ -16,6 +16,7 @@ from abut.analysis.cures import cures
 from abut.analysis.remedies import Remedy, remedies, swap, unsettled
 from abut.io.results import summary, write
 from abut.mesh import make
+from abut.solvers import constraint_function
 from abut.state import Iteration, Solution, Step
 from assemblies import PLANE
 from test_overlap import ball_on_block, strip
@@ -110,6 +111,19 @@ def sharp() -> abut.Model:
     return replace(model, contacts=contacts)
 
 
+def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The constraint function without a line search, so that it fails at once."""
+    monkeypatch.setattr(constraint_function, "HALVINGS", 0)
+    monkeypatch.setattr(constraint_function, "TRIES", -1)
+    original = ball()
+    solution = abut.solve(replace(original, contacts=[replace(original.contacts[0], law="constraint-function")]))
+    assert not solution.converged
+    (remedy,) = remedies(solution)
+    assert remedy.action == "contact 'ball.round-block.top': law = \"complementarity\""
+    assert abut.solve(applied(solution.model, remedy)).converged
+
+
+@pytest.mark.long
 def test_complementarity_cures_the_constraint_function() -> None:
     solution = abut.solve(sharp())
     assert not solution.converged

@@ -117,8 +117,8 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
         names = ", ".join(f"'{contact.name}'" for contact in smooth)
         yield Remedy(
             f'contact{"s" if len(smooth) > 1 else ""} {names}: law = "complementarity"',
-            f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the active "
-            "set needs no smoothing",
+            f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
+            "active set needs no smoothing",
         )
 
 

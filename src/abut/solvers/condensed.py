@@ -273,7 +273,8 @@ def solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant
         backward = (miss / np.maximum(np.abs(scaled) @ np.abs(x) + np.abs(b), 1e-300)).max()
         regular = scipy.linalg.lapack.dgecon(factor[0], np.abs(scaled).sum(axis=0).max())[0] > RANK
     if not (backward <= SINGULAR and regular):
-        x = np.linalg.lstsq(scaled, b, rcond=RANK)[0]  # what nothing resists, and nothing moves, stays where it is
+        # What nothing resists, and nothing moves, stays where it is; by QR, an SVD of a large matrix takes for ever.
+        x = scipy.linalg.lstsq(scaled, b, cond=RANK, lapack_driver="gelsy", check_finite=False)[0]
         if not np.abs(scaled @ x - b).max() <= SINGULAR * np.abs(b).max():
             raise SingularModelError(NOT_UNIQUE)
     return np.asarray(columns * x)
