@@ -84,6 +84,20 @@ def ball() -> Any:
     return cases.model("hertz-hex8", 20_000)
 
 
+def lifted() -> Any:
+    """A beam lifted off its floor, whose active set only interior points find soon."""
+    from search_models import beam
+
+    return beam(50, "quad4")
+
+
+def loose() -> Any:
+    """A pin between two lugs, of which contact alone holds two."""
+    from search_models import pin
+
+    return pin(17, 0.05, 0.03)
+
+
 def example(path: str) -> Any:
     """Of the examples."""
     from abut.job import load_job
@@ -110,6 +124,8 @@ CASES: dict[str, Callable[[], Any]] = {
     "rigid": rigid,
     "hertz-line": lambda: example("hertz-line/quad8.toml"),
     "ball": ball,
+    "lifted": lifted,
+    "loose": loose,
     "pin-lug": lambda: example("pin-lug/job.toml"),
 }
 
@@ -148,6 +164,7 @@ def compare(name: str, team: Team) -> dict[str, Any]:
         "case": name,
         **worst,
         "converged": many.converged,
+        "solutions": [len(step.iterations) for step in many.steps],
         "solver": many.solver,
         "note": many.notes[-1],
         "cells": np.bincount(owner, minlength=team.size).tolist(),

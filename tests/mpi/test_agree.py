@@ -82,3 +82,13 @@ def test_hertz_and_the_pin(mpirun: Run, n: int) -> None:
     """Hertz's line by the constraint function; his ball (19 341 displacements) and the pin in its lug by multigrid."""
     found = compared(mpirun, n, ["hertz-line", "ball", "pin-lug"])
     assert all("gamg" in found[case]["solver"] for case in ("ball", "pin-lug"))
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("option", ["mumps", "gamg"])
+def test_search(mpirun: Run, n: int, option: str) -> None:
+    """Active sets that are hard to find, by interior points, in as few linear solutions as on one process."""
+    options = ["-pc_type", "gamg"] if option == "gamg" else []
+    for row in compared(mpirun, n, ["lifted", "loose"], *options).values():
+        assert option in row["solver"]
+        assert max(row["solutions"]) <= 20

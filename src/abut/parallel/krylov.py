@@ -55,6 +55,9 @@ class Conditions:
     inverse: Callable[[Vector], Vector] | None = None
 
 
+NONE = Conditions(None, None, None, np.zeros(0))  # of every process but the first
+
+
 def multigrid(store: Store, motions: Vector) -> str:
     """Set up and keep the preconditioner of the stiffness, and return PETSc's name of it. motions: (n_own, m) orthonormal
     rigid motions, this process's share."""
@@ -77,6 +80,7 @@ def multigrid(store: Store, motions: Vector) -> str:
     _unless_given(STIFFNESS, {**MULTIGRID, "mg_coarse_sub_pc_svd_zero_sing": f"{drop:.3e}"})
     solver.setFromOptions()
     solver.setUp()
+    solver.getPC().setReusePreconditioner(True)  # while springs are in the matrix
     store["stiffness solver"] = solver
     return str(solver.getPC().getType())
 
@@ -91,12 +95,12 @@ def iterate(
     from petsc4py import PETSc
 
     matrix = store["matrix"]
-    lower = _rows(matrix, n, None if conditions is None else conditions.lower)
+    own = conditions or NONE
+    lower = _rows(matrix, n, own.lower)
     operator = matrix
     if n:
-        operator = PETSc.Mat().createNest(
-            [[matrix, PETSc.Mat().createTranspose(lower)], [lower, None]], comm=matrix.comm
-        )
+        upper, corner = PETSc.Mat().createTranspose(lower), _square(matrix.comm, n, own.corner)
+        operator = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(operator)
@@ -104,20 +108,46 @@ def iterate(
     solver.setGMRESRestart(RESTART)
     solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
     solver.setFromOptions()
-    inverse = None if conditions is None else conditions.inverse
-    blocks = Blocks(store["stiffness solver"], lower, loose, small, inverse, solver.getType() == "minres")
+    blocks = Blocks(store["stiffness solver"], lower, loose, small, own.inverse, solver.getType() == "minres")
     solver.getPC().setType("python")
     solver.getPC().setPythonContext(blocks)
-    return _solve(solver, operator, share, conditions)
+    answer = _solve(solver, operator, share, own.rhs)
+    solver.destroy()  # now, not when Python finds the time: it holds many vectors
+    return answer
 
 
 def factorise(store: Store, n: int, symmetric: bool, share: Vector, conditions: Conditions | None) -> Answer:
     """Solve by a factorisation of the whole matrix, and refinement."""
+    keep_factors(store, n, symmetric, conditions)
+    answer = by_factors(store, share, (conditions or NONE).rhs)
+    drop_factors(store)
+    return answer
+
+
+def keep_factors(store: Store, n: int, symmetric: bool, conditions: Conditions | None) -> None:
+    """Prepare a factorisation of the whole matrix, for ``by_factors``, in place of the one before."""
+    drop_factors(store)
+    store["factors"] = _factors(store["matrix"], n, symmetric, conditions or NONE)
+
+
+def by_factors(store: Store, share: Vector, rhs: Vector) -> Answer:
+    """Solve with the factors that are kept. share: of the right-hand side; rhs: its rows of pressures, on process 0."""
+    solver, operator = store["factors"]
+    return _solve(solver, operator, share, rhs)
+
+
+def drop_factors(store: Store) -> None:
+    """Free their memory now, not when Python finds the time."""
+    if "factors" in store:
+        store.pop("factors")[0].destroy()
+
+
+def _factors(matrix: Any, n: int, symmetric: bool, own: Conditions) -> tuple[Any, Any]:
+    """PETSc's solver, and the matrix that it factorises at its first solution."""
     from petsc4py import PETSc
 
-    matrix = operator = store["matrix"]
+    operator = matrix
     if n:
-        own = conditions or Conditions(None, None, None, np.zeros(0))
         coupled, lower = _rows(matrix, n, own.coupled), _rows(matrix, n, own.lower)
         upper = coupled.transpose(PETSc.Mat())
         upper.scale(-1.0)
@@ -136,7 +166,7 @@ def factorise(store: Store, n: int, symmetric: bool, share: Vector, conditions: 
     preconditioner.setFactorSolverType(package)
     if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
         solver.setFromOptions()
-    return _solve(solver, operator, share, conditions)
+    return solver, operator
 
 
 def direct_solver() -> str:
@@ -176,10 +206,9 @@ class Blocks:
         y.array[:] = out
 
 
-def _solve(solver: Any, operator: Any, share: Vector, conditions: Conditions | None) -> Answer:
+def _solve(solver: Any, operator: Any, share: Vector, rhs: Vector) -> Answer:
     x, b = operator.createVecs()
-    own = np.zeros(0) if conditions is None else conditions.rhs
-    b.array[:] = np.concatenate([share, own])
+    b.array[:] = np.concatenate([share, rhs])
     solver.solve(b, x)
     size = b.norm()
     miss = b.duplicate()
@@ -187,12 +216,10 @@ def _solve(solver: Any, operator: Any, share: Vector, conditions: Conditions | N
     miss.axpy(-1.0, b)
     values = np.array(x.array_r)
     error = miss.norm() / size if size > 0.0 else 0.0
-    answer = Answer(
+    return Answer(
         values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason(),
         _ran_out(solver.getPC()),
     )  # fmt: skip
-    solver.destroy()  # now, not when Python finds the time: it holds many vectors, or factors
-    return answer
 
 
 def _ran_out(preconditioner: Any) -> bool:

@@ -10,16 +10,28 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
-from abut.parallel.krylov import FACTORS, Answer, Conditions, direct_solver, factorise, iterate, multigrid
+from abut.parallel.krylov import (
+    FACTORS,
+    Answer,
+    Conditions,
+    by_factors,
+    direct_solver,
+    factorise,
+    iterate,
+    keep_factors,
+    multigrid,
+)
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.team import Team
 from abut.solvers.active_set import Rows, System
 from abut.solvers.blocks import saddle
+from abut.solvers.conditions import conditions
 from abut.solvers.direct import SINGULAR
-from abut.solvers.iterative import Count, NotConverged, compliance, pressure_scale
+from abut.solvers.iterative import RESPONSE, Count, NotConverged, compliance
 from abut.solvers.linear import Prepared
-from abut.solvers.schur import Interface, interfaces, predictor, schur, schur_inverse
+from abut.solvers.newton import Solve
+from abut.solvers.schur import PressureBlock, foresight, predictor, pressure_block
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -31,35 +43,46 @@ class Iterative:
 
     matrix: Distributed
     operator: Any
-    parts: list[Interface]
+    pressures: PressureBlock
     motions: Vector
-    scale: float
     count: Count
 
     def step(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        s, fixed, active = self.scale, rows.fixed, ~rows.decoupled
-        operator = self.operator[active]
-        inverse = schur_inverse(self.parts, active)
-        layout = self.matrix.layout
+        fixed, active = rows.fixed, ~rows.decoupled
+        operator, own = self.operator[active], conditions(rows, self.operator, self.pressures)
+        s, inverse, layout = own.columns, own.inverse, self.matrix.layout
         small = compliance(operator @ self.motions, inverse) if self.motions.shape[1] else np.zeros((0, 0))
-        lower = spread(-s * operator, layout)
-        conditions = Conditions(
-            lower, lower, None, -s * rows.residual[active], lambda gap: inverse(gap / s) / s if len(gap) else gap
-        )
-        shares = layout.shares(np.column_stack([-residual + self.operator.T @ fixed, self.motions]))
-        answers = self.matrix.team.each(
-            iterate, accuracy, operator.shape[0], small,
-            own=[(v[:, 0], v[:, 1:], None if rank else conditions) for rank, (v,) in enumerate(shares)],
+        lower, corner = spread(sp.diags(s) @ own.lower, layout), sp.diags(s) @ own.corner @ sp.diags(s)
+        beside = Conditions(
+            lower, lower, corner.tocsr(), -s * rows.residual[active],
+            lambda gap: inverse(gap / s) / s if len(gap) else gap,
         )  # fmt: skip
-        self.count.iterations += answers[0].iterations
+        answers = self._solve(accuracy, -residual + self.operator.T @ fixed, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
         fixed[active] = s * answers[0].pressure
         return solution, fixed
+
+    def respond(self, force: Vector, springs: Vector) -> Vector:
+        """As ``abut.solvers.iterative.Iterative.respond``."""
+        motions = self.motions
+        small = np.asarray(np.linalg.pinv(motions.T @ (springs[:, None] * motions)))
+        with self.matrix.held(springs):
+            return displacement(self._solve(RESPONSE, force, small, None), self.matrix.layout)
+
+    def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
+        n = 0 if beside is None else len(beside.rhs)
+        shares = self.matrix.layout.shares(np.column_stack([rhs, self.motions]))
+        answers: list[Answer] = self.matrix.team.each(
+            iterate, accuracy, n, small,
+            own=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
+        )  # fmt: skip
+        self.count.iterations += answers[0].iterations
+        return answers
 
 
 @dataclass(frozen=True)
@@ -76,14 +99,38 @@ class Direct:
         if n == 0:
             return self._solve(0, True, -residual, None)[0], pressure
         s = saddle(self.unit, self.operator, rows, residual)
-        conditions = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
-        solution, q = self._solve(n, s.symmetric, s.rhs_u, conditions)
+        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+        solution, q = self._solve(n, s.symmetric, s.rhs_u, beside)
         return solution, s.pressure(q)
 
-    def _solve(self, n: int, symmetric: bool, rhs: Vector, conditions: Conditions | None) -> tuple[Vector, Vector]:
+    def factorise(self, rows: Rows) -> Solve:
+        """As ``abut.solvers.blocks.factorise``."""
+        layout, n = self.matrix.layout, len(rows.residual)
+        s = saddle(self.unit, self.operator, rows, np.zeros(self.matrix.shape[0]))
+        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+        team = self.matrix.team
+        team.each(keep_factors, n, s.symmetric, own=[(None if rank else beside,) for rank in range(team.size)])
+
+        def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
+            s = saddle(self.unit, self.operator, replace(rows, residual=of_law), residual)
+            shares = layout.shares(s.rhs_u)
+            own = [(share, np.zeros(0) if rank else s.rhs_p) for rank, (share,) in enumerate(shares)]
+            solution, q = self._checked(team.each(by_factors, own=own))
+            return solution, s.pressure(q)
+
+        return solve
+
+    def respond(self, force: Vector, springs: Vector) -> Vector:
+        """Displacements by forces where ``springs`` (n_free,) hold what supports do not."""
+        with self.matrix.held(springs):
+            return self._solve(0, True, force, None)[0]
+
+    def _solve(self, n: int, symmetric: bool, rhs: Vector, beside: Conditions | None) -> tuple[Vector, Vector]:
         shares = self.matrix.layout.shares(rhs)
-        own = [(share, None if rank else conditions) for rank, (share,) in enumerate(shares)]
-        answers = self.matrix.team.each(factorise, n, symmetric, own=own)
+        own = [(share, None if rank else beside) for rank, (share,) in enumerate(shares)]
+        return self._checked(self.matrix.team.each(factorise, n, symmetric, own=own))
+
+    def _checked(self, answers: list[Answer]) -> tuple[Vector, Vector]:
         if answers[0].memory:
             raise InputError(
                 "not enough memory for PETSc's direct solver; take more processes or machines, or a coarser mesh, or, in "
@@ -108,11 +155,17 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
 
 
 def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, count: Count) -> Prepared:
-    parts = interfaces(system.pairs)
-    solver = Iterative(matrix, system.operator, parts, loose, pressure_scale(system), count)
-    predict = predictor(schur(parts), np.asarray(system.operator @ loose))
+    pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
+    solver = Iterative(matrix, system.operator, pressures, loose, count)
+    predict = predictor(pressures.forward, np.asarray(system.operator @ loose))
     iterative = replace(
-        system, step=solver.step, factorise=None, softens=False, exact=False, accurate=ACCURATE, predict=predict
+        system,
+        step=solver.step,
+        factorise=None,
+        respond=solver.respond,
+        exact=False,
+        accurate=ACCURATE,
+        predict=predict,
     )
     name = f"PETSc Krylov with {kind}"
     return Prepared(
@@ -121,17 +174,19 @@ def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, co
     )  # fmt: skip
 
 
-def prepare_direct(matrix: Distributed, system: System) -> Prepared:
-    """Raises InputError where PETSc has no solver for several processes."""
+def prepare_direct(matrix: Distributed, system: System, loose: Vector) -> Prepared:
+    """loose: (n_free, m) rigid motions that supports leave free. Raises InputError where PETSc has no solver for several
+    processes."""
     name = direct_solver()
     if name == "petsc" and matrix.team.size > 1:
         raise InputError(
             "this PETSc has neither MUMPS nor SuperLU_DIST, so that it factorises on one process only; install one of them"
         )
     solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
+    predict = foresight(system.pairs, np.asarray(system.operator @ loose))
+    direct = replace(system, step=solver.step, factorise=solver.factorise, respond=solver.respond, predict=predict)
     return Prepared(
-        replace(system, step=solver.step, factorise=None), lambda outcome, _: outcome,
-        lambda other: prepare_direct(matrix, other),
+        direct, lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other, loose),
         f"PETSc direct ({name})", f"PETSc's direct solver {name}, {_processes(matrix.team)}",
     )  # fmt: skip
 

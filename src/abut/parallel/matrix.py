@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,6 +41,15 @@ class Distributed:
         """With a diagonal matrix added; the matrix itself changes."""
         self.team.each(_stiffen, own=self.layout.shares(springs.diagonal()))
         return self
+
+    @contextmanager
+    def held(self, springs: NDArray[np.float64]) -> Iterator[None]:
+        """With springs (n_free,) to the ground for a while."""
+        self.team.each(_hold, own=self.layout.shares(springs))
+        try:
+            yield
+        finally:
+            self.team.each(_release)
 
 
 def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np.int64], free: Any) -> None:
@@ -143,6 +154,15 @@ def _diagonal(store: Store) -> NDArray[np.float64]:
 
 def _stiffen(store: Store, springs: NDArray[np.float64]) -> None:
     _set_diagonal(store["matrix"], _local(store["matrix"]) + springs)
+
+
+def _hold(store: Store, springs: NDArray[np.float64]) -> None:
+    store["diagonal"] = _local(store["matrix"])
+    _set_diagonal(store["matrix"], store["diagonal"] + springs)
+
+
+def _release(store: Store) -> None:
+    _set_diagonal(store["matrix"], store.pop("diagonal"))
 
 
 def _product(store: Store, share: NDArray[np.float64]) -> NDArray[np.float64]:

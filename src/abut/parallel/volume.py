@@ -113,7 +113,7 @@ class Spread:
         """As in ``Volume``."""
         matrix: Distributed = system.stiffness
         if kind == "direct":
-            return prepare_direct(matrix, system)
+            return prepare_direct(matrix, system, loose)
         return prepare_iterative(matrix, system, held.free.T @ motions, loose)
 
 

@@ -79,7 +79,7 @@ def solve_step(
     foresight, doubtful = system.predict, False
     lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
-    finest = ROUGH
+    finest, before = ROUGH, np.inf
     accuracy = STRIDE if settle else ROUGH
     if state.active.all() and not settle:
         accuracy = 0.1 * system.accurate  # closed all over may well be the answer
@@ -96,12 +96,13 @@ def solve_step(
         active = state.active
         history.append(active)
         if not changed.any():
-            if settled(system, solved, aim):
+            if settled(system, solved, aim, before):
                 if aim == "set":
                     return Outcome(state, tuple(log.done), True, changed, laws)
                 return finish_smooth(system, state, stage, limit, log.done, observe)
-            accuracy = finer(system, solved, aim)
+            accuracy, before = finer(system, solved, aim), solved.error
             continue
+        before = np.inf
         if aim == "this set":
             break
         count = int(changed.sum())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +11,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.solvers.newton import Rows
-from abut.solvers.schur import Apply, Interface, schur_inverse, soft_inverse
+from abut.solvers.schur import Apply, PressureBlock, schur_inverse, soft_inverse
 
 ACCURACY, ITERATIONS = 0.1, 30  # of the pressures' preconditioner where rows are no multiples of the operator's
 FAINT = 1e-3  # share of the largest, below which how much a row looks at the gap counts as that
@@ -31,73 +30,46 @@ class Conditions:
     inverse: Apply
 
 
-def conditions(
-    law: Rows,
-    operator: Any,
-    parts: Sequence[Interface],
-    forward: Apply,
-    diagonal: NDArray[np.float64],
-    unit: float,
-    scale: float,
-) -> Conditions:
-    """Of the rows that are not decoupled.
-
-    operator: (n, n_free) B; forward, diagonal: of S, which stands for B K^-1 B^T; unit: size of the stiffness' entries;
-    scale: of pressures, theory (V2)."""
+def conditions(law: Rows, operator: Any, pressures: PressureBlock) -> Conditions:
+    """Of the rows that are not decoupled. operator: (n, n_free) B."""
     own = ~law.decoupled
     corner = sp.csr_matrix(law.by_pressure)[own][:, own]
     if not law.symmetric:
-        return _general(law.by_displacement[own], corner, operator[own], own, parts, forward, diagonal[own], unit)
+        return _general(law.by_displacement[own], corner, operator[own], own, pressures)
     soft = -corner.diagonal()
     if not soft.any():
-        sizes = np.full(len(soft), scale)
-        return Conditions(-operator[own], corner, sizes, sizes, schur_inverse(parts, own))
-    sizes = np.sqrt(unit / (diagonal[own] + soft))  # residuals are measured in the root of energy
-    return Conditions(-operator[own], corner, sizes, sizes, soft_inverse(forward, diagonal, soft))
+        sizes = np.full(len(soft), pressures.scale)
+        return Conditions(-operator[own], corner, sizes, sizes, schur_inverse(pressures.parts, own))
+    diagonal = pressures.diagonal
+    sizes = np.sqrt(pressures.unit / (diagonal[own] + soft))  # residuals are measured in the root of energy
+    return Conditions(-operator[own], corner, sizes, sizes, soft_inverse(pressures.forward, diagonal, soft))
 
 
-def _general(
-    lower: Any,
-    corner: Any,
-    operator: Any,
-    own: NDArray[np.bool_],
-    parts: Sequence[Interface],
-    forward: Apply,
-    diagonal: NDArray[np.float64],
-    unit: float,
-) -> Conditions:
+def _general(lower: Any, corner: Any, operator: Any, own: NDArray[np.bool_], pressures: PressureBlock) -> Conditions:
     """Rows that look at points, as the constraint function's do: a row is about ``share`` times that of the operator."""
     size = np.asarray(operator.multiply(operator).sum(axis=1)).ravel()
     share = np.asarray(lower.multiply(operator).sum(axis=1)).ravel() / np.where(size > 0.0, size, 1.0)
     looks = np.maximum(np.abs(share), FAINT * np.abs(share).max(initial=1e-300))
-    columns = np.sqrt(unit / (diagonal + np.abs(corner.diagonal()) / looks))
-    return Conditions(
-        lower, corner, columns, columns / looks, _mixed_inverse(share, corner, own, parts, forward, diagonal)
-    )
+    diagonal = pressures.diagonal[own]
+    columns = np.sqrt(pressures.unit / (diagonal + np.abs(corner.diagonal()) / looks))
+    return Conditions(lower, corner, columns, columns / looks, _mixed_inverse(share, corner, own, pressures))
 
 
-def _mixed_inverse(
-    share: NDArray[np.float64],
-    corner: Any,
-    own: NDArray[np.bool_],
-    parts: Sequence[Interface],
-    forward: Apply,
-    diagonal: NDArray[np.float64],
-) -> Apply:
+def _mixed_inverse(share: NDArray[np.float64], corner: Any, own: NDArray[np.bool_], pressures: PressureBlock) -> Apply:
     """That of -(share S + corner), by Krylov iterations to ``ACCURACY``. Rows that are mostly closed are taken for closed,
     the others for open, one after the other."""
     n, places = len(share), np.flatnonzero(own)
-    closed = np.abs(share) * diagonal > np.abs(corner.diagonal())
+    closed = np.abs(share) * pressures.diagonal[own] > np.abs(corner.diagonal())
     shut = np.zeros(len(own), dtype=bool)
     shut[places[closed]] = True
-    by_gap = schur_inverse(parts, shut)
+    by_gap = schur_inverse(pressures.parts, shut)
     beside = corner[closed][:, ~closed]
     by_pressure = spla.splu(corner[~closed][:, ~closed].tocsc()).solve if (~closed).any() else None
 
     def multiply(p: NDArray[np.float64]) -> NDArray[np.float64]:
         whole = np.zeros(len(own))
         whole[places] = p
-        return np.asarray(share * forward(whole)[places] + corner @ p)
+        return np.asarray(share * pressures.forward(whole)[places] + corner @ p)
 
     def split(r: NDArray[np.float64]) -> NDArray[np.float64]:
         p = np.zeros(n)

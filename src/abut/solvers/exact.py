@@ -28,6 +28,7 @@ TOLD, MOST = (
     3,
 )  # of equilibrium and of closed gaps, where a state tells which set comes next; solutions until there
 STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
+ROUNDING = 1e-8  # the same that may be left to rounding
 SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
 
@@ -73,9 +74,11 @@ def solve_set(
     return replace(solved, row=replace(row, contact_residual=max(row.contact_residual, solved.closure)))
 
 
-def settled(system: System, solved: Solved, aim: Aim) -> bool:
-    """Whether a set that stands still has been solved well enough."""
-    return system.exact or solved.error <= _wanted(system, aim)
+def settled(system: System, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
+    """Whether a set that stands still has been solved well enough. before: its error after the solution before this one:
+    what no longer falls is rounding."""
+    rounding = solved.error <= ROUNDING and solved.error > 0.5 * before
+    return system.exact or solved.error <= _wanted(system, aim) or rounding
 
 
 def finer(system: System, solved: Solved, aim: Aim) -> float:

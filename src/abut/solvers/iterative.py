@@ -3,7 +3,6 @@ interface's own operator for the pressures. Nothing but the interface's part cha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +13,7 @@ from abut.solvers.active_set import Rows, System
 from abut.solvers.conditions import Conditions, conditions
 from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import Apply, Interface, interfaces, predictor, schur, schur_diagonal
+from abut.solvers.schur import Apply, PressureBlock, predictor, pressure_block
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
@@ -35,18 +34,13 @@ class Count:
 
 @dataclass(frozen=True)
 class Iterative:
-    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see; scale: of pressures;
-    forward, diagonal: of S; unit: size of the stiffness' entries."""
+    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
 
     operator: Any
     hierarchy: Hierarchy
-    parts: Sequence[Interface]
+    pressures: PressureBlock
     motions: NDArray[np.float64]
-    scale: float
     count: Count
-    forward: Apply
-    diagonal: NDArray[np.float64]
-    unit: float
 
     def step(
         self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
@@ -55,7 +49,7 @@ class Iterative:
 
         Raises NotConverged."""
         fixed, active = rows.fixed, ~rows.decoupled
-        own = conditions(rows, self.operator, self.parts, self.forward, self.diagonal, self.unit, self.scale)
+        own = conditions(rows, self.operator, self.pressures)
         operator, n = self.operator[active], len(residual)
         coarse = self._rigid(operator, own)
 
@@ -109,22 +103,9 @@ def compliance(
     return np.asarray(np.linalg.pinv(moved.T @ answers, rcond=LOOSE))
 
 
-def pressure_scale(system: System) -> float:
-    """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
-    operator = system.operator
-    rows = np.flatnonzero(np.diff(operator.indptr))
-    largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
-    return float(np.median(system.stiffness.diagonal()) / np.median(largest)) if len(largest) else 1.0
-
-
 def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], count: Count) -> System:
     """The system with its linear systems solved iteratively; ``count`` goes on counting."""
-    scale = pressure_scale(system)
-    parts = interfaces(system.pairs)
-    forward = schur(parts)
-    solver = Iterative(
-        system.operator, hierarchy, parts, motions, scale, count, forward, schur_diagonal(parts, system.operator.shape[0]),
-        float(np.median(system.stiffness.diagonal())),
-    )  # fmt: skip
-    predict = predictor(forward, np.asarray(system.operator @ motions))
+    pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
+    solver = Iterative(system.operator, hierarchy, pressures, motions, count)
+    predict = predictor(pressures.forward, np.asarray(system.operator @ motions))
     return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)

@@ -131,6 +131,32 @@ def soft_inverse(forward: Apply, diagonal: NDArray[np.float64], softness: NDArra
     return apply
 
 
+@dataclass(frozen=True)
+class PressureBlock:
+    """What preconditions pressures. forward, diagonal: of S on all rows; scale: of pressures, theory (V2); unit: size of the
+    stiffness' entries."""
+
+    parts: Sequence[Interface]
+    forward: Apply
+    diagonal: NDArray[np.float64]
+    scale: float
+    unit: float
+
+
+def pressure_block(pairs: Sequence[Pair], operator: Any, diagonal: NDArray[np.float64]) -> PressureBlock:
+    """operator: (n, n_free) of all pairs; diagonal: (n_free,) of the stiffness."""
+    parts, unit = interfaces(pairs), float(np.median(diagonal))
+    own = schur_diagonal(parts, operator.shape[0])
+    return PressureBlock(parts, schur(parts), own, pressure_scale(operator, unit), unit)
+
+
+def pressure_scale(operator: Any, unit: float) -> float:
+    """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
+    rows = np.flatnonzero(np.diff(operator.indptr))
+    largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
+    return float(unit / np.median(largest)) if len(largest) else 1.0
+
+
 def predictor(forward: Apply, moved: NDArray[np.float64]) -> Predict:
     """A guess at the next active set: contact of half spaces, g = g0 + S (p - p0) + C a, solved on the interface alone.
 

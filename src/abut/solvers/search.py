@@ -17,7 +17,7 @@ from abut.solvers.interior_point import Programme, begin, iterate, softness
 from abut.solvers.newton import Outcome, Stage, System, Unknowns, active_laws, largest_pressure, report
 from abut.state import Iteration
 
-SOLUTIONS = 3  # exact ones at a time, while ever fewer multipliers change
+SOLUTIONS, HALVED = 3, 0.5  # exact ones at a time, while ever fewer multipliers change; more while these halve
 SHARE = 0.02  # of the multipliers that may be undecided, or change, for exact solutions to be worth a try
 FLOOR = 1e-13  # of the mean product of gaps and pressures over the largest pressure squared
 ROUNDING = 1e-6  # violation of the law over the largest pressure that is left to rounding at the floor
@@ -96,8 +96,8 @@ def search(
 def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArray[np.bool_], aim: Aim) -> Solved | None:
     """Exact solutions, beginning with the active set of ``state``, while ever fewer multipliers change: the last of them,
     and the answer where its set stands still. None where none was possible."""
-    solved, before, accuracy, count = None, len(tied) + 1, STRIDE, 0
-    while count < SOLUTIONS and not log.full:
+    solved, fewest, accuracy, count, error = None, len(tied) + 1, STRIDE, 0, np.inf
+    while not log.full:
         try:
             following = solve_set(system, state, stage, tied, log.next, accuracy)
         except SingularModelError:
@@ -105,14 +105,14 @@ def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArra
         log.add(following.row)
         solved = following
         changed = int(solved.changed.sum())
-        if changed == 0 and settled(system, solved, aim):
+        if changed == 0 and settled(system, solved, aim, error):
             return solved
         if changed == 0:
-            state, accuracy = solved.state, finer(system, solved, aim)
+            state, accuracy, error = solved.state, finer(system, solved, aim), solved.error
             continue
-        if changed >= before:
+        if changed >= fewest or (count + 1 >= SOLUTIONS and changed > HALVED * fewest):
             return solved
-        before, count = changed, count + 1
+        fewest, count, error = changed, count + 1, np.inf
         state, accuracy = replace(solved.state, active=solved.wanted), STRIDE
     return solved
 
