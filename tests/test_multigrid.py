@@ -161,9 +161,46 @@ def test_falls_back_on_the_direct_solver(monkeypatch: pytest.MonkeyPatch) -> Non
     assert fallen.contacts[0].pressure == pytest.approx(direct.contacts[0].pressure, rel=1e-12, nan_ok=True)
 
 
-def test_constraint_function_is_refused() -> None:
-    with pytest.raises(abut.InputError, match='"amg" does not know the constraint function'):
-        abut.solve(replace(blocks(4, law="constraint-function"), solve=abut.SolveOptions(linear="amg")))
+@pytest.mark.parametrize("cell", ["hex8", "tet10"])
+def test_constraint_function(cell: str) -> None:
+    """The same answer in as many iterations, give or take two that stop a little short of the limit."""
+    taken = []
+    for law in ("constraint-function", "complementarity"):
+        iterative, direct = both(blocks(5, cell, law=law, pressure="P1"))
+        assert "multigrid" in iterative.solver
+        assert np.nanmax(np.abs(iterative.contacts[0].pressure - direct.contacts[0].pressure)) < (
+            AGREE * direct.contacts[0].max_pressure
+        )
+        taken.append([len(solution.steps[0].iterations) for solution in (iterative, direct)])
+    iterative_more, direct_more = np.subtract(*taken)
+    assert direct_more > 3
+    assert abs(iterative_more - direct_more) <= 2
+
+
+def test_constraint_function_on_a_body_that_only_contact_holds() -> None:
+    """Beside a tie, whose rows are those of the other law; forces do no work on what is left to slide."""
+    mesh = join(
+        {
+            "lower": box((0, 10), (0, 10), (0, 6), (4, 4, 3)),
+            "upper": box((2, 8), (2, 8), (6, 11), (3, 3, 2)),
+            "cap": box((2, 8), (2, 8), (11, 13), (4, 4, 1)),
+        }
+    )
+    contacts = [
+        abut.Contact("upper.bottom", "lower.top", law="constraint-function"),
+        abut.Contact("cap.bottom", "upper.top", kind="tied"),
+    ]
+    model = abut.Model(
+        mesh,
+        [abut.Solid(body, STEEL) for body in mesh.bodies],
+        [abut.Support("lower.bottom", x=0, y=0, z=0)],
+        [abut.Pressure("cap.top", 3.0), abut.Force("cap.left", (0.0, 0.0, -20.0))],
+        contacts,
+    )
+    iterative, direct = both(model)
+    assert "multigrid" in iterative.solver
+    for a, b in zip(iterative.contacts, direct.contacts):
+        assert np.nanmax(np.abs(a.pressure - b.pressure)) < AGREE * b.max_pressure
 
 
 @pytest.mark.long

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,10 +12,14 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.remedies import Remedy, remedies, unsettled
+from abut.analysis.cures import cures
+from abut.analysis.remedies import Remedy, remedies, swap, unsettled
 from abut.io.results import summary, write
 from abut.mesh import make
+from abut.solvers import constraint_function
 from abut.state import Iteration, Solution, Step
+from assemblies import PLANE
+from test_overlap import ball_on_block, strip
 
 
 def model(
@@ -53,59 +58,132 @@ def failed(model: abut.Model, rows: list[tuple[int, int]], residual: float = 1e-
     return replace(solution, steps=(step,), solver=solver or solution.solver)
 
 
-def actions(solution: Solution) -> list[str]:
-    found = remedies(solution)
-    assert len(found) == 3
-    assert all(isinstance(remedy, Remedy) and remedy.reason for remedy in found)
-    return [remedy.action for remedy in found]
+def applied(model: abut.Model, remedy: Remedy) -> abut.Model:
+    """The model with a remedy as it is written: a key and its value, of the solver or of a contact."""
+    where, _, change = remedy.action.rpartition("': ")
+    names = re.findall("'([^']*)'", where + "'")
+    if change.startswith("solve."):
+        key, value = change.removeprefix("solve.").split(" = ")
+        return replace(model, solve=replace(model.solve, **{key: int(value)}))
+    if change.startswith("swap the sides"):
+        _, contactor, _, target, _ = change.split('"')
+        new = {"contactor": contactor, "target": target}
+    else:
+        key, value = change.split(" = ")
+        new = {key: value.strip('"')}
+    return replace(model, contacts=[replace(c, **new) if c.name in names else c for c in model.contacts])
 
 
 CYCLE = [(3, 2), (4, 2), (3, 2), (4, 2), (3, 2)]
 
 
-def test_contactor_finer_than_target() -> None:
-    found = actions(failed(model(upper=12, lower=2), CYCLE))
-    assert found[0] == 'contact \'c\': swap the sides (contactor = "lower.top", target = "upper.bottom")'
-    assert found[1] == "contact 'c': refine 'lower.top' 6 times"  # facets of 1/12 against 1/2
+def ball(**solve: Any) -> abut.Model:
+    """A ball that touches in a point starts far from where it ends."""
+    mesh = make.join(
+        {
+            "ball": make.half_disc(centre=[0, 1], cells=8, cell="quad4"),
+            "block": make.rectangle(x=[-1, 1], y=[-1, 0], cells=[16, 8], cell="quad4"),
+        }
+    )
+    return abut.Model(
+        mesh,
+        plane="strain",
+        solids=[abut.Solid("ball", abut.LinearElastic(1.0, 0.3)), abut.Solid("block", abut.LinearElastic(1.0, 0.3))],
+        supports=[abut.Support("block.bottom", x=0, y=0), abut.Support("ball.flat", x=0, y=-0.02)],
+        contacts=[abut.Contact("ball.round", "block.top")],
+        solve=abut.SolveOptions(**solve),
+    )
 
 
-def test_contactor_stiffer_than_target() -> None:
-    first = remedies(failed(model(young=(2e5, 1e3)), CYCLE))[0]
-    assert "swap the sides" in first.action
-    assert "200 times as stiff" in first.reason
-    assert "finer" not in first.reason
+def test_more_iterations_cure_a_limit_that_is_too_low() -> None:
+    solution = abut.solve(ball(max_iterations=2))
+    assert not solution.converged
+    assert unsettled(solution.steps[-1])
+    (remedy,) = remedies(solution)
+    assert remedy.action == "solve.max_iterations = 50"
+    assert abut.solve(applied(solution.model, remedy)).converged
 
 
-def test_softer_coarser_contactor_is_left_where_it_is() -> None:
-    assert not any("swap" in action for action in actions(failed(model(young=(1e3, 2e5), upper=2), CYCLE)))
+def sharp() -> abut.Model:
+    """Rollers between plates: one of the few assemblies on which the constraint function fails (1 of 234 tried)."""
+    model = PLANE["balls"](np.random.default_rng(151))
+    contacts = [replace(c, law="constraint-function", epsilon=1e-14) for c in model.contacts]
+    return replace(model, contacts=contacts)
 
 
-def test_constraint_function() -> None:
-    found = actions(failed(model(law="constraint-function"), [(4, 0)] * 5))
-    assert found[0] == "contact 'c': law = \"complementarity\""
-    assert not any('law = "constraint-function"' in action for action in found)
+def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The constraint function without a line search, so that it fails at once."""
+    monkeypatch.setattr(constraint_function, "HALVINGS", 0)
+    monkeypatch.setattr(constraint_function, "TRIES", -1)
+    original = ball()
+    solution = abut.solve(replace(original, contacts=[replace(original.contacts[0], law="constraint-function")]))
+    assert not solution.converged
+    (remedy,) = remedies(solution)
+    assert remedy.action == "contact 'ball.round-block.top': law = \"complementarity\""
+    assert abut.solve(applied(solution.model, remedy)).converged
 
 
-def test_unstable_pressure() -> None:
-    assert "contact 'c': pressure = \"auto\"" in actions(failed(model(pressure="P0"), CYCLE))
+@pytest.mark.long
+def test_complementarity_cures_the_constraint_function() -> None:
+    solution = abut.solve(sharp())
+    assert not solution.converged
+    found = remedies(solution)
+    assert found[0].action.endswith('law = "complementarity"')
+    assert abut.solve(applied(solution.model, found[0])).converged
 
 
-def test_contact_that_moves_far() -> None:
-    found = remedies(failed(model(), [(5, 0), (1, 4), (4, 3), (1, 3)]))
-    assert found[0].action == "solve.steps = 4"
-    assert "80 % of the interface" in found[0].reason  # 4 of 5 multipliers
+def overlapping(kind: str) -> tuple[abut.Model, str]:
+    """A model whose surfaces overlap unseen, and what is to cure it first."""
+    if kind == "pressure":
+        return strip(pressure="P1"), 'pressure = "auto"'
+    model = ball_on_block("block.top", "ball.round", 4)
+    if kind == "swap":
+        return model, "swap the sides"
+    return rigid_ball(), 'law = "constraint-function"'
 
 
-def test_limit_reached_while_settling() -> None:
-    found = actions(failed(model(), [(4, 4), (4, 3), (3, 2), (3, 1)]))
-    assert "solve.max_iterations = 200" in found
+def rigid_ball() -> abut.Model:
+    """The block carries the pressure because the ball is rigid: its sides cannot be swapped."""
+    model = ball_on_block("block.top", "ball.round", 4)
+    return replace(
+        model,
+        solids=[solid for solid in model.solids if solid.body == "block"],
+        supports=[support for support in model.supports if support.on == "block.bottom"],
+        rigid=[abut.Rigid("ball", x=0.0, y=-0.002, rz=0.0)],
+    )
 
 
-def test_large_residual() -> None:
-    found = actions(failed(model(), [(4, 0)], residual=1e-3, facets=(), solver="multigrid (PyAMG)"))
-    assert found[0].startswith("check the units")
-    assert found[1] == 'solve.linear = "direct"'
-    assert found[2].startswith("add supports")
+@pytest.mark.parametrize("kind", ["pressure", "swap", "law"])
+def test_what_is_advised_where_surfaces_overlap_cures_it(kind: str) -> None:
+    def fails(solution: abut.Solution) -> bool:
+        return any(check.name == "overlap" and not check.passed for check in solution.certificate)
+
+    model, expected = overlapping(kind)
+    solution = abut.solve(model)
+    assert fails(solution)
+    (remedy,) = (remedy for remedy in remedies(solution) if expected in remedy.action)
+    assert not fails(abut.solve(applied(model, remedy)))
+
+
+def test_refining_cures_overlap() -> None:
+    """The contact is 0.08 wide and hides in facets of 0.22; with facets of 0.03 it shows."""
+    solution = abut.solve(ball_on_block("block.top", "ball.round", 4))
+    assert any("refine both surfaces" in remedy.action for remedy in remedies(solution))
+    finer = abut.solve(ball_on_block("block.top", "ball.round", 32))
+    assert all(check.passed for check in finer.certificate if check.name == "overlap")
+
+
+def test_no_sides_are_swapped_that_the_model_refuses() -> None:
+    """A rigid side; the underside of a bridge, which several pillars touch and which can carry one pressure only."""
+    rigid = abut.solve(rigid_ball())
+    assert swap(rigid, rigid.model.contacts[0]) == ""
+    assert "swap" not in "".join(str(remedy) for remedy in remedies(rigid))
+    bridge = abut.solve(PLANE["bridge"](np.random.default_rng(1)))
+    pillar, load = bridge.model.contacts[0], bridge.model.contacts[-1]
+    assert swap(bridge, pillar) == ""
+    assert swap(bridge, load) == f'swap the sides (contactor = "{load.target}", target = "{load.contactor}")'
+    for advice in cures(bridge):
+        assert f'contactor = "{pillar.target}"' not in advice[1]
 
 
 def test_none_where_nothing_failed() -> None:
@@ -126,33 +204,9 @@ def test_place_is_named_with_nodes_and_coordinates(tmp_path: Path) -> None:
     write(solution, tmp_path)
     written = json.loads((tmp_path / "summary.json").read_text())
     assert written["steps"][-1]["unsettled"][0]["nodes"] == place.nodes.tolist()
-    assert len(written["remedies"]) == 3
+    assert written["remedies"] == []
     from test_restart import arrays
 
     shown = dict(arrays(tmp_path / "contact_c_0001.vtu"))
     assert shown["unsettled"].sum() == 2
     assert shown["unsettled"][shown["side"] == 1].sum() == 0
-
-
-def test_real_failure_names_what_really_helps() -> None:
-    """A ball that touches in a point starts far from where it ends: with one iteration it is said to be still settling, or
-    moving; with more iterations it converges."""
-    mesh = make.join(
-        {
-            "ball": make.half_disc(centre=[0, 1], cells=8, cell="quad4"),
-            "block": make.rectangle(x=[-1, 1], y=[-1, 0], cells=[16, 8], cell="quad4"),
-        }
-    )
-    ball = abut.Model(
-        mesh,
-        plane="strain",
-        solids=[abut.Solid("ball", abut.LinearElastic(1.0, 0.3)), abut.Solid("block", abut.LinearElastic(1.0, 0.3))],
-        supports=[abut.Support("block.bottom", x=0, y=0), abut.Support("ball.flat", x=0, y=-0.02)],
-        contacts=[abut.Contact("ball.round", "block.top")],
-        solve=abut.SolveOptions(max_iterations=2),
-    )
-    solution = abut.solve(ball)
-    assert not solution.converged
-    assert any(a.startswith(("solve.max_iterations", "solve.steps")) for a in actions(solution))
-    assert unsettled(solution.steps[-1])
-    assert abut.solve(replace(ball, solve=abut.SolveOptions())).converged

@@ -78,3 +78,52 @@ def test_direct_solver_that_does_not_fit_says_so(law: str, monkeypatch: pytest.M
     monkeypatch.setattr(direct, "available_memory", lambda: 1e4)
     with pytest.raises(abut.InputError, match=r'the direct solver needs about .* GB .* choose linear = "amg"'):
         abut.solve(pressed_block(law))
+
+
+def bordered(units: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A system as contact makes them, gaps by pressures and by motions, with a well known solution; ``units``: of the
+    pressures over those of the motions. matrix (9, 9), solution (9,), sizes of the unknowns (9,)."""
+    rng = np.random.default_rng(seed)
+    root, motions = rng.normal(size=(6, 6)), rng.normal(size=(6, 3))
+    matrix = np.block([[-(root @ root.T + np.eye(6)), motions], [motions.T, np.zeros((3, 3))]])
+    sizes = np.concatenate([np.full(6, units), np.ones(3)])
+    return matrix / sizes[:, None] / sizes, rng.uniform(1.0, 2.0, 9) * sizes, sizes
+
+
+@pytest.mark.parametrize("units", [1e-9, 1.0, 1e6, 1e12])
+def test_units_do_not_matter_to_dense_systems(units: float) -> None:
+    """One pass over columns and rows left the two kinds of unknowns so far apart that a joint in metres was taken for
+    singular: now the accuracy is that of the system in good units."""
+    matrix, solution, sizes = bordered(units)
+    found = condensed.solve_dense(matrix, matrix @ solution, False)
+    assert np.abs((found - solution) / sizes).max() < 1e-12
+
+
+def test_small_right_hand_sides_are_no_sign_of_a_singular_matrix() -> None:
+    """What a cancellation of large terms leaves is met as well as it can be: to rounding of the terms."""
+    rng = np.random.default_rng(1)
+    matrix = np.vander(np.linspace(0.1, 1.0, 9))  # condition 1e8
+    large = rng.uniform(1.0, 2.0, 9)
+    small = matrix @ large - np.linalg.norm(matrix) * 1e-16
+    assert np.abs(condensed.solve_dense(matrix, small, False) - large).max() < 1e-6
+
+
+def test_singular_dense_systems() -> None:
+    """The smallest solution where there is one, an error where there is none."""
+    matrix, solution, _ = bordered(1.0)
+    matrix[:6, 8] = matrix[8, :6] = 0.0  # a motion that nothing resists
+    matrix[:6, 7] = matrix[7, :6] = matrix[:6, 6]  # and one that does what another does
+    rhs = matrix @ solution
+    found = condensed.solve_dense(matrix, rhs, False)
+    assert np.abs(matrix @ found - rhs).max() < 1e-10
+    with pytest.raises(abut.SingularModelError, match="no unique solution"):
+        condensed.solve_dense(matrix, rhs + np.eye(9)[7], False)
+
+
+def test_motions_that_rows_let_go() -> None:
+    """Rows that see only the first of three motions, in two units."""
+    rows = np.outer([1e-3, 2e-3, 1e-9], [3.0, 4.0, 0.0])
+    loose, held = condensed.let_go(rows, np.array([1e-3, 2e-3, 1e-9]))
+    assert np.abs(held[:, 0]) == pytest.approx([0.6, 0.8, 0.0])
+    assert np.abs(rows @ loose).max() < 1e-15
+    assert loose.T @ loose == pytest.approx(np.eye(2))

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.errors import InputError
 from abut.interface.coupling import surface_degree
 from abut.interface.geometry import facet_sizes
-from abut.mesh.surface import Surface
-from abut.model import LAWS, METHODS, Contact
-from abut.sides import code, words
-from abut.state import ContactResult, Solution, Step
+from abut.model import LAWS, METHODS, Contact, SolveOptions
+from abut.sides import code
+from abut.state import Solution, Step
 
 COUNT = 3
-FINER, STIFFER = (
-    0.8,
-    1.5,
-)  # contactor's facet size over the target's, Young's modulus likewise, that tell the sides apart
-LARGE_RESIDUAL = 1e-6  # of equilibrium, which a sound matrix leaves at rounding level
-MOVED = 0.25  # change of the contact within a step, over all multipliers, from which on it moves a lot
-UNSTABLE = ("P0", "P1-discontinuous", "P2-discontinuous")  # docs/verification/inf-sup.md
+FINER = 0.8  # facet size of one side over the other's that tells them apart
+MORE = 4  # times the iterations, and as many as are allowed without asking at least
 
 
 @dataclass(frozen=True)
@@ -65,33 +60,23 @@ def unsettled(step: Step) -> list[Place]:
 
 
 def remedies(solution: Solution) -> tuple[Remedy, ...]:
-    """Three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces that
-    overlap; else none."""
-    if solution.converged:
-        return tuple(_by_overlap(solution))[:COUNT]
-    every = [*_by_residual(solution), *_by_contact(solution), *_by_course(solution), *_always(solution)]
-    first = {remedy.action: remedy for remedy in reversed(every)}
-    return tuple(first[action] for action in dict.fromkeys(remedy.action for remedy in every))[:COUNT]
+    """At most three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces
+    that overlap; else none. There are no others than those that have been seen to help: the search for the contact ends
+    whatever the mesh, the load steps and the choice of the sides are."""
+    found = _by_overlap(solution) if solution.converged else (*_by_law(solution), *_by_limit(solution))
+    return tuple(found)[:COUNT]
 
 
-def _by_residual(solution: Solution) -> Iterator[Remedy]:
-    residual = solution.steps[-1].iterations[-1].residual
-    if residual <= LARGE_RESIDUAL:
-        return
-    yield Remedy(
-        "check the units of Young's moduli, loads and mesh",
-        f"equilibrium is missed by {residual:.1e} of the forces, as where stiffnesses lie too far apart or the matrix is "
-        "nearly singular",
-    )
-    if "multigrid" in solution.solver:
-        yield Remedy(
-            'solve.linear = "direct"',
-            f"multigrid left {residual:.1e} of the forces out of balance; a factorisation does not mind the shape of cells",
-        )
-    yield Remedy(
-        "add supports that hold every body by themselves",
-        "what contact alone holds is lost while the contact changes",
-    )
+def swap(solution: Solution, contact: Contact) -> str:
+    """To swap the sides of a contact, in words; empty where the model would be refused: the other side is rigid, or its
+    facets carry another contact's pressure."""
+    model = solution.model
+    other = replace(contact, contactor=contact.target, target=contact.contactor)
+    try:
+        replace(model, contacts=[other if own is contact else own for own in model.contacts])
+    except InputError:
+        return ""
+    return f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})"
 
 
 def _by_overlap(solution: Solution) -> Iterator[Remedy]:
@@ -109,9 +94,9 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
                 "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-        if coarse > 1.0 / FINER:
+        if coarse > 1.0 / FINER and (sides := swap(solution, contact)):
             yield Remedy(
-                f"{where}swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})",
+                f"{where}{sides}",
                 f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
             )
         yield Remedy(
@@ -126,96 +111,22 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
             )
 
 
-def _by_contact(solution: Solution) -> Iterator[Remedy]:
-    step = solution.steps[-1]
-    results = {_own(c.name): c for c in step.contacts}
-    for contact in solution.model.contacts:
-        if contact.name not in map(_own, step.cycling):
-            continue
-        where = f"contact '{contact.name}': "
-        if contact.method != METHODS[0]:
-            yield Remedy(
-                f"{where}leave method out",
-                f"{contact.method} lets single nodes jump from one target facet to the next; segment-to-segment does not",
-            )
-        if contact.law == LAWS[1]:
-            yield Remedy(
-                f'{where}law = "complementarity"',
-                f"the constraint function with epsilon = {contact.epsilon:g} is too sharp for Newton's method here; the "
-                "active set needs no smoothing",
-            )
-        if contact.pressure in UNSTABLE:
-            yield Remedy(
-                f'{where}pressure = "auto"',
-                f"{contact.pressure} can oscillate from facet to facet and then never settles",
-            )
-        yield from _by_sides(solution, contact, results[contact.name], where)
-
-
-def _own(name: str) -> str:
-    return name.removesuffix(" (second pass)")
-
-
-def _by_sides(solution: Solution, contact: Contact, result: ContactResult, where: str) -> Iterator[Remedy]:
-    """The contactor should be the softer side, and not much finer than the target."""
-    fine = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-    stiff = _young(solution, result.contactor) / _young(solution, result.target)
-    reasons = []
-    if fine < FINER:
-        reasons.append(
-            f"the contactor's facets are {fine:.2g} of the target's in size: its pressure sees the target's kinks"
-        )
-    if stiff > STIFFER:
-        reasons.append(f"the contactor is {stiff:.3g} times as stiff, and the softer side should carry the pressure")
-    if reasons:
+def _by_law(solution: Solution) -> Iterator[Remedy]:
+    """Of all contacts at once: what one of them does moves the others."""
+    smooth = [contact for contact in solution.model.contacts if contact.law == LAWS[1] and contact.kind != "tied"]
+    if smooth:
+        names = ", ".join(f"'{contact.name}'" for contact in smooth)
         yield Remedy(
-            f"{where}swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})",
-            "; ".join(reasons),
+            f'contact{"s" if len(smooth) > 1 else ""} {names}: law = "complementarity"',
+            f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
+            "active set needs no smoothing",
         )
-    if fine < FINER:
+
+
+def _by_limit(solution: Solution) -> Iterator[Remedy]:
+    limit, taken = solution.model.solve.max_iterations, len(solution.steps[-1].iterations)
+    if taken >= limit:
         yield Remedy(
-            f"{where}refine {words(contact.target)} {1.0 / fine:.2g} times",
-            "then its facets are no larger than the contactor's",
+            f"solve.max_iterations = {max(MORE * limit, SolveOptions().max_iterations)}",
+            f"the contact was still settling after the {limit} iterations that are allowed",
         )
-
-
-def _young(solution: Solution, surface: Surface) -> float:
-    """Largest Young's modulus behind a surface; a body without a material does not give way at all."""
-    young = {solid.body: solid.material.young for solid in solution.model.solids}
-    bodies = solution.model.mesh.bodies
-    own = [body for body, cells in bodies.items() if np.isin(surface.cells, cells).any()]
-    return max((young.get(body, np.inf) for body in own), default=np.inf)
-
-
-def _by_course(solution: Solution) -> Iterator[Remedy]:
-    """What the iterations themselves tell."""
-    step, solve = solution.steps[-1], solution.model.solve
-    changed = [row.changed for row in step.iterations]
-    active = [row.active for row in step.iterations]
-    multipliers = max(sum(c.multipliers for c in step.contacts), 1)
-    share = (max(active) - min(active)) / multipliers
-    moving = Remedy(
-        f"solve.steps = {4 * solve.steps}",
-        f"the contact changed on {100.0 * share:.0f} % of the interface within one step; smaller steps begin closer to "
-        "where they end",
-    )
-    if share > MOVED:
-        yield moving
-    if 0 < changed[-1] < min(changed[:-1], default=changed[-1] + 1):
-        yield Remedy(
-            f"solve.max_iterations = {4 * solve.max_iterations}",
-            f"the contact was still settling at the limit of {solve.max_iterations}: {changed[-1]} multipliers changed last",
-        )
-
-
-def _always(solution: Solution) -> Iterator[Remedy]:
-    """What is worth trying where nothing in particular stands out."""
-    solve = solution.model.solve
-    yield Remedy(f"solve.steps = {4 * solve.steps}", "smaller steps begin closer to where they end")
-    if solution.model.contacts and all(c.law == LAWS[0] for c in solution.model.contacts):
-        yield Remedy('law = "constraint-function"', "it is smooth where facets go in and out of contact for ever")
-    yield Remedy(f"solve.max_iterations = {4 * solve.max_iterations}", "the last iterations may only have been too few")
-    yield Remedy(
-        "a finer mesh where the contact does not settle",
-        "the array 'unsettled' of contact_*.vtu and summary.json show where",
-    )

@@ -96,19 +96,20 @@ def linearise_constraint_function(
     stiffness: NDArray[np.float64],
     epsilon: float,
     reference: float,
+    tension: float = TENSION_START,
 ) -> Linearisation:
     """int H_k (w(c g, l) + TENSION t(l)) = 0, evaluated at the integration points: theory (L6) (paper, eq. 21).
 
     test: (n_points, n) values of the pressure functions at the integration points; weight, gap: (n_points,);
     coefficients: (n,) of the pressure l;
     stiffness c: (n_points,) pressure per length, puts the gap on the scale of the pressure;
-    reference: the largest pressure, to which epsilon is relative.
+    reference: the largest pressure, to which epsilon is relative; tension: share of it below which tension counts less.
     The second term, t(l) = min(l, 0) but for a smooth start, theory (L7), is not in the paper: behind the edge of
     contact w = l, and zero means against every H_k leave room for a pressure that swings about zero.
     """
     pressure = test @ coefficients
     value, by_gap, by_pressure = constraint_function(stiffness * gap, pressure, epsilon * reference**2)
-    width = TENSION_START * reference
+    width = tension * reference
     pull = np.minimum(pressure, 0.0)
     value = value + TENSION * np.where(pull > -width, -0.5 * pull**2 / width, pull + 0.5 * width)
     by_pressure = by_pressure + TENSION * np.minimum(-pull / width, 1.0)

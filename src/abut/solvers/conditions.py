@@ -56,8 +56,8 @@ def _general(lower: Any, corner: Any, operator: Any, own: NDArray[np.bool_], pre
 
 
 def _mixed_inverse(share: NDArray[np.float64], corner: Any, own: NDArray[np.bool_], pressures: PressureBlock) -> Apply:
-    """That of -(share S + corner), by Krylov iterations to ``ACCURACY``. Rows that are mostly closed are taken for closed,
-    the others for open, one after the other."""
+    """That of -(share S + corner), theory (V22), by Krylov iterations to ``ACCURACY``. Rows that are mostly closed are
+    taken for closed, the others for open, one after the other."""
     n, places = len(share), np.flatnonzero(own)
     closed = np.abs(share) * pressures.diagonal[own] > np.abs(corner.diagonal())
     shut = np.zeros(len(own), dtype=bool)

@@ -142,7 +142,7 @@ def _analyse(solver: Any, matrix: Any, b: NDArray[np.float64]) -> None:
         solver.free_memory(everything=True)
         raise InputError(
             f"solve.linear: the direct solver needs about {needed / 1e9:.1f} GB, but {available / 1e9:.1f} GB of memory are "
-            'free; choose linear = "amg" (3D, law complementarity), a coarser mesh, or a larger machine'
+            'free; choose linear = "amg" (3D), a coarser mesh, or a larger machine'
         )
 
 

@@ -19,6 +19,8 @@ from abut.solvers.blocks import store_diagonal
 from abut.solvers.newton import Rows, Solve, System, Unknowns, equilibrium, internal_force
 
 BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
+CENTRAL = 1e-3  # of the mean product of gaps and pressures: what the smallest keeps ...
+SHORTER, TRIES = 0.8, 12  # ... by steps that many times shorter, so often at most
 UNKNOWN = 1e3  # softness where it would cost too much to find out
 UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
 Vector = NDArray[np.float64]
@@ -60,6 +62,12 @@ class Programme:
         """Mean product of gaps (as pressures) and pressures, theory (V17)."""
         free = ~self.tied
         return float((slack[free] * pressure[free] / self.scale[free]).mean())
+
+    def central(self, pressure: Vector, slack: Vector) -> bool:
+        """Whether no product is far smaller than the mean of all, which makes the steps after it short."""
+        free = ~self.tied
+        product = slack[free] * pressure[free] / self.scale[free]
+        return bool(product.min() >= CENTRAL * product.mean())
 
     def rows(self, state: Unknowns, softness: Vector, shift: Vector) -> Rows:
         """The rows of theory (V18)."""
@@ -167,6 +175,8 @@ def iterate(programme: Programme, here: Interior) -> Interior:
     centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
     du, dp, dg = direction(centring * mean * scale - closing * opening)
     length = min(1.0, BOUNDARY * _longest(p, dp, free), BOUNDARY * _longest(g, dg, free))
+    shorter = length * SHORTER ** np.arange(TRIES)
+    length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)
     state = replace(
         here.state, displacement=here.state.displacement + length * du, pressure=here.state.pressure + length * dp
     )

@@ -17,7 +17,7 @@ from abut.solvers.interior_point import Programme, begin, iterate, softness
 from abut.solvers.newton import Outcome, Stage, System, Unknowns, active_laws, largest_pressure, report
 from abut.state import Iteration
 
-SOLUTIONS = 3  # exact ones at a time, while ever fewer multipliers change
+SOLUTIONS, HALVED = 3, 0.5  # exact ones at a time, while ever fewer multipliers change; more while these halve
 SHARE = 0.02  # of the multipliers that may be undecided, or change, for exact solutions to be worth a try
 FLOOR = 1e-13  # of the mean product of gaps and pressures over the largest pressure squared
 ROUNDING = 1e-6  # violation of the law over the largest pressure that is left to rounding at the floor
@@ -97,7 +97,7 @@ def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArra
     """Exact solutions, beginning with the active set of ``state``, while ever fewer multipliers change: the last of them,
     and the answer where its set stands still. None where none was possible."""
     solved, fewest, accuracy, count, error = None, len(tied) + 1, STRIDE, 0, np.inf
-    while count < SOLUTIONS and not log.full:
+    while not log.full:
         try:
             following = solve_set(system, state, stage, tied, log.next, accuracy)
         except SingularModelError:
@@ -110,7 +110,7 @@ def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArra
         if changed == 0:
             state, accuracy, error = solved.state, finer(system, solved, aim), solved.error
             continue
-        if changed >= fewest:
+        if changed >= fewest or (count + 1 >= SOLUTIONS and changed > HALVED * fewest):
             return solved
         fewest, count, error = changed, count + 1, np.inf
         state, accuracy = replace(solved.state, active=solved.wanted), STRIDE
