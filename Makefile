@@ -1,4 +1,4 @@
-# make demo | make test | make mpi | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
+# make demo | make test | make exhaustive | make mpi | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -13,6 +13,9 @@ demo: .venv/installed-demo
 
 test: .venv/installed-test
 	$(BIN)/python -m pytest -n 2 --durations=10
+
+exhaustive: .venv/installed-test
+	$(BIN)/python -m pytest -n 2 -m exhaustive --durations=5
 
 # Many processes: petsc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
 MPI_PYTHON ?= /usr/bin/python3
@@ -52,7 +55,7 @@ build: .venv/ready
 	  -DPython_EXECUTABLE=$(abspath $(BIN)/python) -DCMAKE_LIBRARY_OUTPUT_DIRECTORY=$(CURDIR)/src/abut/_core
 	$(BIN)/cmake --build build/dev
 
-.PHONY: demo test mpi lint docs build bench
+.PHONY: demo test exhaustive mpi lint docs build bench
 
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from unittest import mock
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,8 @@ def solved(model: abut.Model) -> tuple[abut.Solution, Saved] | None:
         assert solution.converged
         return solution, kept[-1]
     assert "the loads pull it off its contact" in reason
-    assert not solvable(programme(assembled(model).system))
+    with mock.patch("abut.analysis.problem.require_balance"), mock.patch("abut.analysis.problem.require_unmoved"):
+        assert not solvable(programme(assembled(model).system))
     return None
 
 
@@ -90,13 +92,13 @@ def test_solid_assemblies(seed: int) -> None:
     drawn(SOLID, seed)
 
 
-@pytest.mark.long
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", range(300))
 def test_every_plane_assembly(seed: int) -> None:
     check(list(PLANE.values())[seed % len(PLANE)], seed, tuple(MILLIMETRES_TO))
 
 
-@pytest.mark.long
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", range(30))
 def test_every_solid_assembly(seed: int) -> None:
     check(list(SOLID.values())[seed % len(SOLID)], seed, tuple(MILLIMETRES_TO))
