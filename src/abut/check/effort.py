@@ -40,7 +40,7 @@ ELIMINATIONS = {
 DENSE, SOLUTION = 1.5e-10, 2e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
 LEVELS, CYCLE = 5e-8, 3e-9  # seconds an entry of the stiffness for setting multigrid up, and for one iteration
 FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins where the last ended
-KRYLOV, STRETCHED = 60, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
+KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
 START = 0.005
 
 
@@ -95,7 +95,7 @@ def seconds(own: Effort, solver: str) -> dict[str, float]:
         eliminated = own.multipliers <= LARGEST
         times = (1 + (ELIMINATIONS[degree] - 1) * own.steps if own.multipliers else 1) if eliminated else solutions
         solving = times * (ROW * own.displacements + FRONT * own.fronts)
-        solving += solutions * (SOLUTION + (DENSE * own.multipliers**3 if eliminated else 0.0))
+        solving += A_PAIR * own.pairs + solutions * (SOLUTION + (DENSE * own.multipliers**3 if eliminated else 0.0))
     return {
         "assembly": START + sum(ASSEMBLY[kind] * count for kind, count in own.cells.items()),
         "interface": own.cutting + A_PAIR * own.pairs + A_BODY * own.bodies,
