@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from unittest import mock
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest

@@ -160,7 +160,7 @@ def test_restart_with_more_steps(tmp_path: Path) -> None:
 
 
 def test_a_run_that_did_not_converge_goes_on_with_more_iterations(tmp_path: Path) -> None:
-    path = job(tmp_path, steps=2, max_iterations=2)
+    path = job(tmp_path, steps=2, max_iterations=1)
     status = main(["run", "--quiet", str(path)])
     done = json.loads((tmp_path / "results" / "summary.json").read_text())["steps"]
     assert (status, done[-1]["converged"]) == (3, False)

@@ -68,8 +68,7 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
 
 
 def swap(solution: Solution, contact: Contact) -> str:
-    """To swap the sides of a contact, in words; empty where the model would be refused: the other side is rigid, or its
-    facets carry another contact's pressure."""
+    """To swap the sides of a contact, in words; empty where the model would be refused, as with a rigid contactor."""
     model = solution.model
     other = replace(contact, contactor=contact.target, target=contact.contactor)
     try:
