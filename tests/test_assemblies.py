@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 import abut
 from abut.mesh import make
 from abut.state import Saved
-from assemblies import MILLIMETRES_TO, PLANE, in_units
+from assemblies import PLANE
 from assemblies_solid import SOLID
 from oracle import assembled, exact, final, programme, solvable
+from units import MILLIMETRES_TO, in_units
 
 pytest.importorskip("quadprog")
 
