@@ -57,4 +57,5 @@ build: .venv/ready
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py
 	$(BIN)/python bench/assembly.py
+	$(BIN)/python bench/search.py
 	$(BIN)/python bench/contact/run.py $(BENCH)
