@@ -61,4 +61,5 @@ bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py
 	$(BIN)/python bench/assembly.py
 	OMP_NUM_THREADS=1 $(BIN)/python bench/estimates.py
+	$(BIN)/python bench/search.py
 	$(BIN)/python bench/contact/run.py $(BENCH)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.solvers.constraint_function import finish_smooth
-from abut.solvers.exact import ROUGH, STRIDE, Aim, finer, settled, solve_set
+from abut.solvers.exact import ROUGH, STRIDE, TOLD, Aim, finer, settled, solve_set
 from abut.solvers.newton import (
     Laws,
     Outcome,
@@ -36,6 +36,8 @@ FEW = 0.05  # share of the active set below which changes are too few to foresee
 EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
+MISLED = 0.25  # share of the active set that changes, and more than before, where a set was foreseen wrongly
+SETTLING, SETTLED = 0.1, 6  # the same below which a set that was foreseen well may settle yet, until that row of a step
 HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
@@ -106,7 +108,7 @@ def solve_step(
         if aim == "this set":
             break
         count = int(changed.sum())
-        misled = lawful is not None and count > max(changes[-1], FEW * active.sum())
+        misled = lawful is not None and count > max(changes[-1], MISLED * active.sum())
         if misled and lawful is not None:  # back to what the law asked for, and no more foresight
             seen.add(active.tobytes())
             state, lawful, foresight, doubtful = replace(state, active=lawful), None, None, True
@@ -118,12 +120,14 @@ def solve_step(
         if foresight is not None and not share and (rows <= EARLY or count > FEW * active.sum()):
             guess = foresight(gap, state.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
-                lawful, wanted = wanted, guess
+                told = system.exact or solved.error <= TOLD
+                lawful, wanted = wanted if told else None, guess
         accuracy = finest
         stuck = np.array_equal(system.complete(wanted, gap, stage.weights) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
-        slow = repeated or hopeless(changes, rows) or (doubtful and count >= HALVED * changes[-2])
+        settling = foresight is not None and count <= SETTLING * active.sum() and rows < SETTLED
+        slow = repeated or (hopeless(changes, rows) and not settling) or (doubtful and count >= HALVED * changes[-2])
         doubtful = False
         if slow:
             _check_balance(system, stage)
