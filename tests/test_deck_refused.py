@@ -52,6 +52,69 @@ def test_large_displacements_are_refused_or_left_out(tmp_path):
     assert load(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM=NO")).ignored == ()
 
 
+def told(tmp_path, text):
+    """The lines of the error that reading ``text`` ends with, without the deck's path."""
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, text)
+    return str(caught.value).replace(str(tmp_path), "").split("\n  ")
+
+
+def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
+    """Cards refused, an element type, a material, a missing name, a number and a load, each where it stands, once."""
+    text = (
+        DECK.replace("*ELASTIC", "*ELASTIC, TYPE=ORTHO")
+        .replace("PRESSURE-OVERCLOSURE=HARD", "PRESSURE-OVERCLOSURE=SOFT")
+        .replace("*BOUNDARY", "*PLASTIC\n1., 0.\n*BOUNDARY")
+        .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, NLGEOM")
+        .replace("*STATIC", "*STATIC\n*CLOAD\n18, 4, 1.\n*BOUNDARY\n1, 9\n")
+    )
+    lines = text.splitlines()
+    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*PLASTIC: ", "*EQUATION: 2 terms",
+                "*STEP: NLGEOM", "*CLOAD: direction 4", "*BOUNDARY: directions 9"]  # fmt: skip
+    starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*PLASTIC", "*EQUATION", "*STEP", "18, 4", "1, 9"]
+    own = told(tmp_path, text)
+    assert len(own) == len(expected)
+    for i, (reason, want, start) in enumerate(zip(own, expected, starts)):
+        line = next(k for k, line in enumerate(lines, start=1) if line.startswith(start)) + (start == "*EQUATION")
+        assert reason.startswith(f"/deck.inp:{line}: {want}" if i == 0 else f"line {line}: {want}")
+    assert "--ignore" not in own[-1]  # not all of it can be left out
+
+
+def test_what_follows_from_a_missing_file_is_not_told(tmp_path):
+    rest = PAIR + HELD + PUSH.replace("*STEP", "*FRICTION\n.1\n*STEP")
+    own = told(tmp_path, "*INCLUDE, INPUT=mesh.inp\n*INCLUDE, INPUT=sets.inp\n" + rest)
+    assert [reason.split(": ", 1)[1] for reason in own[:2]] == [
+        "included file /mesh.inp does not exist",
+        "included file /sets.inp does not exist",
+    ]
+    assert len(own) == 3
+    assert "*FRICTION: " in own[2]  # and not that sets and surfaces are unknown
+
+
+def test_unknown_names_are_told_where_all_else_could_be_read(tmp_path):
+    own = told(tmp_path, DECK.replace("SLAVE, MASTER", "SLAVE, MASTR").replace("BOTTOM, 1, 3", "BOTOM, 1, 3"))
+    assert len(own) == 2
+    assert "did you mean 'MASTER'?" in own[0]
+    assert "did you mean 'BOTTOM'?" in own[1]
+
+
+def test_faults_of_the_model_come_at_once(tmp_path):
+    """Found after reading: a material, and a surface whose nodes make up no face."""
+    text = DECK.replace("1000., 0.", "-1000., 0.").replace(
+        "*SURFACE, NAME=SLAVE\n2, S1", "*SURFACE, NAME=SLAVE, TYPE=NODE\n18"
+    )
+    own = told(tmp_path, text)
+    assert len(own) == 2
+    assert "make up no face" in own[0]
+    assert "*MATERIAL 'EL'" in own[1]
+
+
+def test_no_more_than_a_screen_of_reasons(tmp_path):
+    own = told(tmp_path, DECK + "".join(f"*NSET, NSET=A{i}\nNONE\n" for i in range(30)))
+    assert len(own) == 21
+    assert own[-1] == "and 10 more"
+
+
 def test_all_refusals_come_at_once(tmp_path):
     text = DECK.replace("*STEP", "*FRICTION\n0.1,\n*PLASTIC\n1., 0.\n*STEP, NLGEOM")
     with pytest.raises(InputError) as caught:
@@ -130,7 +193,7 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("*DLOAD", "*NODE\n77, 1., 1., 1.\n*BOUNDARY\n77, 3, 3, 0.1\n*DLOAD", r"\*BOUNDARY: node 77 belongs to no element"),
         ("*DLOAD", "*BOUNDARY\n18, 5, 5, 0.1\n*DLOAD", r"\*BOUNDARY: node 18 cannot turn \(direction 5\)"),
         ("*STEP\n", "*INITIAL CONDITIONS, TYPE=STRESS\n1, 5.\n*STEP\n", "TYPE=STRESS is not supported"),
-        ("*STEP\n", "*MPC\nBEAM, 1, 2\n*STEP\n", "MPC of type BEAM is not supported"),
+        ("*STEP\n", "*MPC\nBEAM, 1, 2\n*STEP\n", "MPC: type BEAM is not supported"),
         ("*STEP\n", "*EQUATION\n3\n1,1,1.,2,1,-1.\n*STEP\n", "3 terms announced, but 2 given"),
     ],
 )  # fmt: skip
@@ -199,6 +262,7 @@ def test_members_that_are_missing_are_left_out_with_a_note(tmp_path):
         "*ELSET: element 9 of set 'E' does not exist: left out",
     ]
     assert len(job.model.loads) == 1
+    assert set(Mesh.read(tmp_path / "deck.inp").notes) == {note for note in job.notes if "left out" in note}
 
 
 def test_empty_surfaces_and_sets_are_faults_only_where_they_are_used(tmp_path):

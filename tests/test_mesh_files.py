@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 
 from abut.errors import InputError
+from abut.io.raw import RawMesh
 from abut.io.vtu import write_vtu
 from abut.mesh.make import box, cylinder, join, rectangle
 from abut.mesh.mesh import Mesh
+from abut.mesh.read import build
 from abut.mesh.write import write_mesh
 from abut.solids.elements import body_load
 
@@ -151,6 +153,14 @@ def test_faults_are_named_with_the_file(change: dict[str, str], message: str, tm
 def test_a_cell_in_two_bodies_is_refused() -> None:
     with pytest.raises(InputError, match="of 'group_2_1', 'group_2_2' stand in the mesh twice"):
         Mesh.read(DATA / "cell-in-two-groups.msh")
+
+
+def test_cells_outside_every_group_are_left_out_with_a_note(tmp_path: Path) -> None:
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    raw = RawMesh(points, {"body": {"tri3": np.array([[0, 1, 2]])}, "": {"tri3": np.array([[1, 3, 2]])}})
+    mesh = build(raw, "part.msh")
+    assert mesh.notes == ("part.msh: 1 cells outside every group of cells were left out",)
+    assert len(mesh.points) == 3
 
 
 def test_a_group_of_unused_points_is_refused(tmp_path: Path) -> None:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 @dataclass(frozen=True)
 class RawMesh:
     """points: (n, 3); groups: name -> cell type ("point" for single nodes) -> connectivity (cells, nodes) in the order
-    of ``abut.cells``. A cell may stand in several groups; the name "" holds cells without a group."""
+    of ``abut.cells``. A cell may stand in several groups; the name "" holds cells without a group. notes: what was left
+    out of the file, in words."""
 
     points: NDArray[np.float64]
     groups: Mapping[str, Mapping[str, NDArray[np.int64]]]
+    notes: tuple[str, ...] = ()

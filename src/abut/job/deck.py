@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from abut.io.abaqus.courses import Course, combine, courses, scaled, times, zero
 from abut.io.abaqus.elements import FACES
 from abut.io.abaqus.groups import Groups, Piece, pieces
 from abut.io.abaqus.pretension import cut
+from abut.io.abaqus.reasons import DeckError, Reasons
 from abut.io.abaqus.record import Deck, GeneralContact, Numbers, Pair
 from abut.job.deck_rigid import join, rigid_bodies
 from abut.mesh.check import check_mesh
@@ -33,6 +33,7 @@ from abut.model import (
     Model,
     NodalForce,
     Pressure,
+    Rigid,
     Solid,
     SolveOptions,
     Support,
@@ -62,8 +63,10 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
     deck = read_deck(path, ignore)
     try:
         return translate(deck)
+    except DeckError:
+        raise
     except InputError as error:
-        if str(error).startswith(str(path)) or re.match(r"\S.*?:\d+: \*", str(error)):  # its place is there already
+        if str(error).startswith(str(path)):
             raise
         raise InputError(f"{path}: {error}") from None
 
@@ -74,8 +77,9 @@ def translate(deck: Deck) -> Translation:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
         raise InputError("the deck has no *ELEMENT cards")
-    deck = cut(deck)
+    reasons = Reasons()
     plane = _plane(deck)
+    deck = cut(deck)
     notes = list(deck.notes)
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     groups = Groups(deck)
@@ -83,33 +87,43 @@ def translate(deck: Deck) -> Translation:
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
     moving = [name for own in stiff for name, piece in parts.items() if piece is own]
     hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])
-    contacts = [_contact(deck, groups, pair, hard, notes) for pair in deck.pairs]
-    rigid = rigid_bodies(deck, moving, plane)
-    bound = bonds(deck, groups, plane)
+    contacts: list[Contact] = []
+    for pair in deck.pairs:
+        with reasons.gathered():
+            contacts.append(_contact(deck, groups, pair, hard, notes))
+    solids: list[Solid] = []
+    for name, piece in parts.items():
+        with reasons.gathered():
+            if name not in moving:
+                solids.append(_solid(name, piece))
+    rigid: list[Rigid] = []
+    with reasons.gathered():
+        rigid = rigid_bodies(deck, moving, plane)
     notes += _idle(deck, groups)
-    thickness = _thickness(deck, plane, notes)
-    supports = _supports(bound, groups)
-    equations = [
-        Equation(
-            tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
-            *_history(bond.course),
-        )
-        for bond in bound.bonds
-    ]
-    loads: list[Load] = [
-        *_forces(bound, groups, plane, thickness),
-        *_pressures(deck, groups),
-        *_gravity(deck, parts, plane),
-        *_temperatures(deck, groups),
-    ]
+    thickness = 1.0
+    with reasons.gathered():
+        thickness = _thickness(deck, plane, notes)
+    supports: list[Support] = []
+    equations: list[Equation] = []
+    loads: list[Load] = []
+    with reasons.gathered():
+        bound = bonds(deck, groups, plane)
+        supports = _supports(bound, groups)
+        equations = _equations(bound, groups)
+        loads += _forces(bound, groups, plane, thickness)
+    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
+        with reasons.gathered():
+            loads += others
+    reasons.tell()
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(groups.raw(), deck.path)
     notes += mesh.notes
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
-        _check_sides(mesh, contact, pair)
-    solids = [_solid(name, piece) for name, piece in parts.items() if name not in moving]
+        with reasons.gathered():
+            _check_sides(mesh, contact, pair)
+    reasons.tell()
     if deck.general is not None:
         mesh, found = _general(deck.general, mesh, solids, contacts, notes)
         contacts += found
@@ -129,16 +143,16 @@ def translate(deck: Deck) -> Translation:
 
 def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
-    apart = {n for e in deck.equations for n, _, _ in e.terms} | {
-        n for r in deck.rigid for n in (r.reference, r.turning)
-    }
-    made = np.union1d(groups.used, np.array(sorted(apart), np.int64))
+    made = set(groups.used.tolist())
+    made |= {n for e in deck.equations for n, _, _ in e.terms}
+    made |= {n for r in deck.rigid for n in (r.reference, r.turning)}
+    given = set(deck.nodes.tolist())
     notes: dict[str, None] = {}
     for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):
-        idle = np.setdiff1d(value.numbers, made)
-        if value.kind == "boundary" and len(idle) == len(value.numbers):
-            what = "belongs to no element and no equation" if np.isin(idle[0], deck.nodes) else "does not exist"
-            notes[f"{value.place}: *BOUNDARY: node {idle[0]} {what}: the line holds nothing"] = None
+        if value.kind == "boundary" and made.isdisjoint(value.numbers.tolist()):
+            node = int(value.numbers[0])
+            what = "belongs to no element and no equation" if node in given else "does not exist"
+            notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
     return list(notes)
 
 
@@ -146,9 +160,10 @@ def _plane(deck: Deck) -> str | None:
     planes = {block.type.plane: block for block in deck.blocks}
     if len(planes) > 1:
         codes = " and ".join(sorted(block.code for block in planes.values()))
-        raise InputError(
-            f"{list(planes.values())[1].place}: *ELEMENT: elements {codes} in one deck: abut solves 3D, plane strain, "
-            "plane stress or axisymmetry, not two of them together; use one of the types"
+        raise DeckError(
+            list(planes.values())[1].place,
+            f"*ELEMENT: elements {codes} in one deck: abut solves 3D, plane strain, "
+            "plane stress or axisymmetry, not two of them together; use one of the types",
         )
     return next(iter(planes))
 
@@ -158,7 +173,7 @@ def _solid(name: str, piece: Piece) -> Solid:
     try:
         elastic = LinearElastic(material.young, material.poisson, material.density, material.expansion)
     except InputError as error:
-        raise InputError(f"*MATERIAL '{material.name}': {error}") from None
+        raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
     return Solid(name, elastic, integration=piece.integration)
 
 
@@ -169,9 +184,7 @@ def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
     values = {section.thickness: section for section in deck.sections}
     if len(values) > 1:
         place = next(reversed(values.values())).place
-        raise InputError(
-            f"{place}: *SOLID SECTION: sections of different thickness are not supported; give all the same"
-        )
+        raise DeckError(place, "*SOLID SECTION: sections of different thickness are not supported; give all the same")
     value = next(iter(values))
     if value != 1.0:
         notes.append(f"forces in the results are those of unit thickness: times {value:g} gives the deck's")
@@ -213,9 +226,10 @@ def _general(
     ]
     found = [f for f in find_contacts(mesh, solids) if set(f.bodies) not in named]
     if not found and not contacts:
-        raise InputError(
-            f"{general.place}: *CONTACT INCLUSIONS: no two bodies face each other within half a facet; name their surfaces "
-            "in *CONTACT PAIR"
+        raise DeckError(
+            general.place,
+            "*CONTACT INCLUSIONS: no two bodies face each other within half a facet; name their surfaces "
+            "in *CONTACT PAIR",
         )
     notes += [f"general contact: {f.note}" for f in found]
     return add_surfaces(mesh, found), [f.contact(kind="tied" if general.tied else "contact") for f in found]
@@ -227,9 +241,10 @@ def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     a, b = (own.reshape(-1, mesh.dim).sum(axis=0) for own in push)  # area times outward normal
     if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
         card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
-        raise InputError(
-            f"{pair.place}: {card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
-            "needs surfaces that face each other: choose other faces, or join the meshes"
+        raise DeckError(
+            pair.place,
+            f"{card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            "needs surfaces that face each other: choose other faces, or join the meshes",
         )
 
 
@@ -257,6 +272,16 @@ def _supports(bound: Bonds, groups: Groups) -> list[Support]:
     return result
 
 
+def _equations(bound: Bonds, groups: Groups) -> list[Equation]:
+    return [
+        Equation(
+            tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
+            *_history(bond.course),
+        )
+        for bond in bound.bonds
+    ]
+
+
 def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -> list[Load]:
     by_node: dict[tuple[int, Course | None], dict[int, float]] = {}
     for (node, axis), course in bound.forces.items():
@@ -273,25 +298,22 @@ def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -
     ]
 
 
-def _pressures(deck: Deck, groups: Groups) -> list[Load]:
+def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:
     alike: dict[Course, list[tuple[int, int]]] = {}
     kinds = {int(e): block.type.kind for block in deck.blocks for e in block.ids}
     for (element, face), course in courses(deck, "pressure").items():
         if not zero(course):
             number = int(element)
             alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
-    return [
-        Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
-        for i, (course, rows) in enumerate(alike.items(), start=1)
-    ]
+    for i, (course, rows) in enumerate(alike.items(), start=1):
+        yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
 
 
-def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Load]:
+def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> Iterator[Load]:
     alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
     for key, course in courses(deck, "gravity").items():
         if not zero(course):
             alike.setdefault((key[1:], course), []).append(int(key[0]))
-    result: list[Load] = []
     for (vector, course), elements in alike.items():
         place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
         size, amplitude = _history(course)
@@ -300,40 +322,35 @@ def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> list[Loa
             if not inside.any():
                 continue
             if not inside.all():
-                raise InputError(
-                    f"{place}: *DLOAD: gravity on a part of body '{name}' only; give it to all of the body"
-                )
+                raise DeckError(place, f"*DLOAD: gravity on a part of body '{name}' only; give it to all of the body")
             if piece.section.material.density == 0.0:
-                raise InputError(
-                    f"{place}: *DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'"
-                )
+                raise DeckError(place, f"*DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'")
             value = tuple(size * x for x in vector[: 2 if plane else 3])
-            result.append(Gravity(value, name, amplitude))
-    return result
+            yield Gravity(value, name, amplitude)
 
 
-def _temperatures(deck: Deck, groups: Groups) -> list[Load]:
+def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:
     """Changes from the initial temperature."""
     for step in deck.steps:
         for value in step.values:
             if value.kind == "temperature":
                 for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
-                    raise InputError(
-                        f"{value.place}: *TEMPERATURE: node {node} has no temperature to begin with; add "
-                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
+                    raise DeckError(
+                        value.place,
+                        f"*TEMPERATURE: node {node} has no temperature to begin with; add "
+                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
                     )
     alike: dict[Course, list[int]] = {}
     for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():
         change = combine([(1.0, course), (-deck.initial[int(node)], ((0.0, 1.0),))])
         if not zero(change):
             alike.setdefault(change, []).append(int(node))
-    result: list[Load] = []
+    count = 0
     for change, nodes in alike.items():
         own = np.intersect1d(np.array(nodes, np.int64), groups.used)
         if len(own):
-            on = groups.node_set(own, f"temperature-{len(result) + 1}")
-            result.append(Temperature(on, *_history(change)))
-    return result
+            count += 1
+            yield Temperature(groups.node_set(own, f"temperature-{count}"), *_history(change))
 
 
 def _options(deck: Deck) -> SolveOptions:

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from abut.errors import InputError
 from abut.io.abaqus.bonds import coordinates
 from abut.io.abaqus.courses import Course, courses, scaled, zero
 from abut.io.abaqus.faces import element_nodes
 from abut.io.abaqus.groups import Piece
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Deck, Numbers, RigidBody
 from abut.model import Amplitude, Rigid
 
@@ -21,17 +21,18 @@ def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Ri
     result = []
     held = courses(deck, "boundary") if deck.rigid else {}
     for name, body in zip(names, deck.rigid):
-        where = f"{body.place}: *RIGID BODY"
         _check_forces(deck, body)
         components = _components(held, body, plane)
         units = {scaled(course)[1] for course in components.values() if not zero(course)}
         if len(units) > 1:
-            raise InputError(f"{where}: its displacements and turns follow different amplitudes; give them one")
+            raise DeckError(
+                body.place, "*RIGID BODY: its displacements and turns follow different amplitudes; give them one"
+            )
         values = {name: scaled(course)[0] for name, course in components.items()}
         unit = next(iter(units), None)
         amplitude = None if unit is None else Amplitude(unit)
         if body.reference not in deck.nodes:
-            raise InputError(f"{where}: REF NODE {body.reference} does not exist; give it in *NODE")
+            raise DeckError(body.place, f"*RIGID BODY: REF NODE {body.reference} does not exist; give it in *NODE")
         reference = tuple(coordinates(deck, np.array([body.reference]))[0][: 2 if plane else 3].tolist())
         result.append(Rigid(name, reference, **values, amplitude=amplitude))
     return result
@@ -41,8 +42,9 @@ def _check_forces(deck: Deck, body: RigidBody) -> None:
     for step in deck.steps:
         for value in step.values:
             if value.kind == "force" and value.value and {body.reference, body.turning} & set(value.numbers.tolist()):
-                raise InputError(
-                    f"{value.place}: *CLOAD: forces on a rigid body are not supported; give its displacement with *BOUNDARY"
+                raise DeckError(
+                    value.place,
+                    "*CLOAD: forces on a rigid body are not supported; give its displacement with *BOUNDARY",
                 )
 
 
@@ -68,7 +70,6 @@ def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
     Raises InputError where a rigid body is not whole bodies."""
     free, rigid = list(parts), []
     for body in deck.rigid:
-        where = f"{body.place}: *RIGID BODY"
         own = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
         own = np.setdiff1d(own, [body.reference, body.turning])
         inside = [piece for piece in free if np.isin(_nodes(deck, piece.elements), own).all()]
@@ -76,9 +77,10 @@ def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
         left = np.setdiff1d(own, _nodes(deck, elements))
         if len(left) or not inside:
             which = f"node {left[0]} belongs to" if len(left) else "it is part of"
-            raise InputError(
-                f"{where}: {which} a body that is rigid in part only, or rigid already; abut makes whole bodies rigid: give "
-                "that part its own *SOLID SECTION, or hold its nodes with *BOUNDARY"
+            raise DeckError(
+                body.place,
+                f"*RIGID BODY: {which} a body that is rigid in part only, or rigid already; abut makes whole bodies rigid: "
+                "give that part its own *SOLID SECTION, or hold its nodes with *BOUNDARY",
             )
         rest = [piece for piece in free if not any(piece is other for other in inside)]
         name = inside[0].name if len(inside) == 1 else inside[0].section.name

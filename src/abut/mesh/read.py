@@ -50,8 +50,12 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
                 raise InputError(f"{where}: {kind} cells use points that the file does not have; write the mesh again")
     bodies = {n: {k: v for k, v in p.items() if dims.get(k) == top} for n, p in raw.groups.items()}
     bodies = {n: p for n, p in bodies.items() if p}
-    if "" in bodies and len(bodies) > 1:
-        bodies.pop("")  # cells outside every group are left out, as Gmsh itself does when it saves groups
+    notes = list(raw.notes)
+    if (
+        "" in bodies and len(bodies) > 1
+    ):  # cells outside every group are left out, as Gmsh itself does when it saves groups
+        count = sum(len(nodes) for nodes in bodies.pop("").values())
+        notes.append(f"{where}: {count} cells outside every group of cells were left out")
     elif "" in bodies:
         bodies = _components(bodies[""], len(raw.points))
     blocks, members = _blocks(bodies)
@@ -77,7 +81,7 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
                 "are not supported; for a solid give its volume a physical group, so that its cells are saved"
             )
         points = points[:, :2]
-    bare = turn_bodies(Mesh(np.ascontiguousarray(points), blocks, members))
+    bare = turn_bodies(Mesh(np.ascontiguousarray(points), blocks, members, notes=tuple(notes)))
     surfaces, node_sets = {}, {}
     for name, parts in raw.groups.items():
         if not name:

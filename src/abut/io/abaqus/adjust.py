@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.errors import InputError
 from abut.io.abaqus.faces import connectivity
 from abut.io.abaqus.groups import Groups
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Deck, Numbers, Pair
 
 Vector = NDArray[np.float64]
@@ -28,9 +28,10 @@ def distance(deck: Deck, groups: Groups, pair: Pair, nodes: Numbers) -> float:
     far = _distances(deck, groups, pair.master, slave)
     low, high = float(far[inside].max()), float(far[~inside].min())
     if not low < high:
-        raise InputError(
-            f"{pair.place}: *CONTACT PAIR: ADJUST: nodes of '{pair.slave}' outside the set are as close to "
-            f"'{pair.master}' as nodes in it, and abut adjusts all up to a distance; give ADJUST=distance"
+        raise DeckError(
+            pair.place,
+            f"*CONTACT PAIR: ADJUST: nodes of '{pair.slave}' outside the set are as close to "
+            f"'{pair.master}' as nodes in it, and abut adjusts all up to a distance; give ADJUST=distance",
         )
     return 0.5 * (low + high)
 

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.errors import InputError
-from abut.io.abaqus.cards import Place
 from abut.io.abaqus.courses import Course, combine, courses, zero
 from abut.io.abaqus.faces import connectivity
 from abut.io.abaqus.groups import Groups
+from abut.io.abaqus.reasons import DeckError, Place
 from abut.io.abaqus.record import CyclicSymmetry, Deck, Numbers, Transform
 
 Vector = NDArray[np.float64]
@@ -31,7 +30,7 @@ class Bond:
 
     terms: Mapping[Point, float]
     course: Course
-    place: Place | str
+    place: Place
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
     named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
     local = _local_axes(deck, named)
-    supports, oblique = _supports({p: c for p, c in held.items() if p[0] in used}, local, axes)
+    supports, oblique = _supports(deck, {p: c for p, c in held.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
     equations = [Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations]
     for symmetry in deck.cyclic:
@@ -109,8 +108,9 @@ def _axes(transform: Transform, x: Vector) -> Vector:
         third = b - a
         first = (x - a) - (x - a) @ third / (third @ third) * third
     if np.linalg.norm(third) == 0.0 or np.linalg.norm(first) <= 1e-9 * np.abs(x - a).max(initial=1e-300):
-        raise InputError(
-            f"{transform.place}: *TRANSFORM: no axes follow from the two points at {x.tolist()}; leave nodes on the axis out"
+        raise DeckError(
+            transform.place,
+            f"*TRANSFORM: no axes follow from the two points at {x.tolist()}; leave nodes on the axis out",
         )
     first, third = first / np.linalg.norm(first), third / np.linalg.norm(third)
     return _clean(np.stack([first, np.cross(third, first), third]))
@@ -122,7 +122,7 @@ def _clean(rows: Vector) -> Vector:
 
 
 def _supports(
-    held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
+    deck: Deck, held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
 ) -> tuple[dict[Point, Course], list[Bond]]:
     """Supports along the global axes, and equations for those across."""
     supports: dict[Point, Course] = {}
@@ -145,7 +145,9 @@ def _supports(
                 if k < axes:
                     supports[node, k] = combine([(float(rows[d, k]), course)])
                 continue
-            oblique.append(Bond({(node, int(k)): float(rows[d, k]) for k in along}, course, f"support of node {node}"))
+            oblique.append(
+                Bond({(node, int(k)): float(rows[d, k]) for k in along}, course, _place(deck, "boundary", (node, 0)))
+            )
     return supports, oblique
 
 
@@ -187,9 +189,10 @@ def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     (distance, match), turn = found[best], _clean(tried[best])
     if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
         worst = int(nodes[symmetry.slave][int(distance.argmax())])
-        raise InputError(
-            f"{symmetry.place}: *CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
-            f"'{symmetry.master}' one sector on; mesh both sides alike"
+        raise DeckError(
+            symmetry.place,
+            f"*CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
+            f"'{symmetry.master}' one sector on; mesh both sides alike",
         )
     result = []
     for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
@@ -247,15 +250,22 @@ def _without_virtual(
     return equations, pushed
 
 
-def _nothing(deck: Deck, kind: str, point: Point, why: str) -> InputError:
-    """The error of a value that would have no effect, with the card and line that give it."""
+def _place(deck: Deck, kind: str, point: Point, moving: bool = False) -> Place:
+    """Of the first line that gives a node a value; ``moving``: one in the point's direction that is not zero."""
     every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
-    place = next(
-        v.place for v in every if v.kind == kind and point[0] in v.numbers and point[1] + 1 in v.directions and v.value
+    return next(
+        v.place
+        for v in every
+        if v.kind == kind and point[0] in v.numbers and (not moving or (point[1] + 1 in v.directions and v.value))
     )
+
+
+def _nothing(deck: Deck, kind: str, point: Point, why: str) -> DeckError:
+    """The error of a value that would have no effect, with the card and line that give it."""
     card = "*CLOAD" if kind == "force" else "*BOUNDARY"
-    return InputError(
-        f"{place}: {card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *EQUATION)"
+    return DeckError(
+        _place(deck, kind, point, moving=True),
+        f"{card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *EQUATION)",
     )
 
 
@@ -276,5 +286,5 @@ def _reduced(bond: Bond, known: Mapping[Point, Course], axes: int) -> Bond | Non
     if terms:
         return replace(bond, terms=terms)
     if max(abs(v) for _, v in bond.course) > TINY * max(size, max(abs(v) for c in known.values() for _, v in c)):
-        raise InputError(f"{bond.place}: the equation contradicts the supports of its nodes; take one of them out")
+        raise DeckError(bond.place, "the equation contradicts the supports of its nodes; take one of them out")
     return None

@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from abut.errors import InputError
+from abut.io.abaqus.reasons import DeckError, Place, Reasons, UnknownName
 
 DEEPEST = 20  # includes within includes
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where something stands."""
-
-    file: str
-    line: int
-
-    def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
 
 
 @dataclass(frozen=True)
@@ -34,8 +24,11 @@ class Line:
     def text(self, i: int) -> str:
         return self.fields[i] if i < len(self.fields) else ""
 
-    def error(self, message: str) -> InputError:
-        return InputError(f"{self.place}: {self.card}: {message}")
+    def error(self, message: str) -> DeckError:
+        return DeckError(self.place, f"{self.card}: {message}")
+
+    def unknown(self, message: str) -> DeckError:
+        return UnknownName(self.place, f"{self.card}: {message}")
 
     def number(self, i: int, what: str, default: float | None = None) -> float:
         """Field i as a finite number. Raises InputError for anything else, and where it is empty without a default."""
@@ -71,8 +64,15 @@ class Card:
     lines: tuple[Line, ...]
     place: Place
 
-    def error(self, message: str) -> InputError:
-        return InputError(f"{self.place}: {self.title}: {message}")
+    def error(self, message: str) -> DeckError:
+        return DeckError(self.place, f"{self.title}: {message}")
+
+    def unknown(self, message: str) -> DeckError:
+        return UnknownName(self.place, f"{self.title}: {message}")
+
+    def refusal(self, message: str, option: str) -> DeckError:
+        """option: what ``--ignore`` takes, "" where that makes no sense."""
+        return DeckError(self.place, f"{self.title}: {message}", option)
 
     def get(self, name: str, default: str | None = None) -> str | None:
         """The value of a parameter, None where it is left out or has none."""
@@ -92,13 +92,19 @@ class Card:
     def first(self, what: str) -> Line:
         """The first data line. Raises InputError where there is none."""
         if not self.lines:
-            raise self.error(f"its data line is missing: expected {what}")
+            raise self.unknown(f"its data line is missing: expected {what}")
         return self.lines[0]
 
 
 def key(name: str) -> str:
     """Names of cards and parameters are the same in any case and with any blanks."""
     return "".join(name.upper().split())
+
+
+def of(cards: Iterable[Card], name: str) -> Iterator[Card]:
+    """The cards with a name."""
+    own = key(name)
+    return (card for card in cards if card.key == own)
 
 
 def as_float(text: str) -> float | None:
@@ -121,11 +127,11 @@ def as_integer(text: str) -> int | None:
 Opens = Callable[[str, Mapping[str, str | None]], bool]
 
 
-def read_cards(path: Path, opens: Opens) -> tuple[Card, ...]:
+def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
     """All cards of a deck, includes in their place. ``opens``: whether a card, by key and parameters, has its data read from
-    the file that INPUT names.
+    the file that INPUT names; ``reasons`` gets the files that do not exist.
 
-    Raises InputError, with file and line, for files that cannot be read and lines that are neither card nor data.
+    Raises InputError, with file and line, for a deck that cannot be read and lines that are neither card nor data.
     """
     cards: list[Card] = []
     head: tuple[str, str, dict[str, str | None], Place] | None = None
@@ -138,7 +144,7 @@ def read_cards(path: Path, opens: Opens) -> tuple[Card, ...]:
             cards.append(Card(head[0], head[1], head[2], tuple(data), head[3]))
         data = []
 
-    for text, place in _lines(path, (), opens):
+    for text, place in _lines(path, (), opens, reasons):
         if pending:  # the card goes on after a comma at the end of its line
             text = pending + text
             pending = ""
@@ -152,13 +158,13 @@ def read_cards(path: Path, opens: Opens) -> tuple[Card, ...]:
             head = (*_parse(text, begun), begun)
             continue
         if head is None:
-            raise InputError(f"{place}: a data line before the first card; decks begin with a card such as *NODE")
+            raise DeckError(place, "a data line before the first card; decks begin with a card such as *NODE")
         data.append(Line(tuple(part.strip() for part in text.split(",")), place, head[1]))
     if pending:
         close()
         head = (*_parse(pending.rstrip(","), begun), begun)
     close()
-    if not cards:
+    if not cards and not reasons.found:
         raise InputError(f"{path}: no card in the file; is it an Abaqus or CalculiX deck?")
     return tuple(cards)
 
@@ -168,7 +174,7 @@ def _parse(text: str, place: Place) -> tuple[str, str, dict[str, str | None]]:
     parts = _split(text.rstrip(","))
     name = parts[0].lstrip("*").strip()
     if not name:
-        raise InputError(f"{place}: a star without the name of a card; comments begin with two stars")
+        raise DeckError(place, "a star without the name of a card; comments begin with two stars")
     parameters: dict[str, str | None] = {}
     for part in parts[1:]:
         own, equals, value = part.partition("=")
@@ -194,7 +200,7 @@ def _split(text: str) -> list[str]:
     return parts
 
 
-def _lines(path: Path, above: tuple[Path, ...], opens: Opens) -> Iterator[tuple[str, Place]]:
+def _lines(path: Path, above: tuple[Path, ...], opens: Opens, reasons: Reasons) -> Iterator[tuple[str, Place]]:
     """Lines that say something, those of included files in their place."""
     held = card = ""  # a card to include from may go on over several lines, as any other
     for number, raw in enumerate(_text(path).splitlines(), start=1):
@@ -208,8 +214,8 @@ def _lines(path: Path, above: tuple[Path, ...], opens: Opens) -> Iterator[tuple[
                 name, title, parameters = _parse(held, place)
                 held = ""
                 if name != "INCLUDE" or not parameters.get("INPUT"):
-                    raise InputError(f"{place}: {title}: the file is missing; write *INCLUDE, INPUT=file")
-                yield from _included(path, str(parameters["INPUT"]), place, above, opens)
+                    raise DeckError(place, f"{title}: the file is missing; write *INCLUDE, INPUT=file")
+                yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)
             continue
         yield text, place
         if card or text.startswith("*"):
@@ -218,19 +224,21 @@ def _lines(path: Path, above: tuple[Path, ...], opens: Opens) -> Iterator[tuple[
             if "INPUT" in key(card):
                 name, _, parameters = _parse(card, place)
                 if parameters.get("INPUT") and opens(name, parameters):
-                    yield from _included(path, str(parameters["INPUT"]), place, above, opens)
+                    yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)
             card = ""
 
 
 def _included(
-    path: Path, file: str, place: Place, above: tuple[Path, ...], opens: Opens
+    path: Path, file: str, place: Place, above: tuple[Path, ...], opens: Opens, reasons: Reasons
 ) -> Iterator[tuple[str, Place]]:
     inner = path.parent / file
     if inner in (*above, path) or len(above) >= DEEPEST:
-        raise InputError(f"{place}: the file {file} includes itself; take the *INCLUDE out")
+        raise DeckError(place, f"the file {file} includes itself; take the *INCLUDE out")
     if not inner.is_file():
-        raise InputError(f"{place}: included file {inner} does not exist")
-    yield from _lines(inner, (*above, path), opens)
+        missing = DeckError(place, f"included file {inner} does not exist")
+        reasons.add(missing, defines=True)
+        return
+    yield from _lines(inner, (*above, path), opens, reasons)
 
 
 def _text(path: Path) -> str:

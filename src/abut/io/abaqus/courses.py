@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
 
-from abut.errors import InputError
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Deck, Prescribed, Step
 
 Course = tuple[tuple[float, float], ...]  # (time, value), linear between, constant outside
@@ -70,10 +70,10 @@ def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0)
     return {own: _tidy([(t / total, v) for t, v in points]) for own, points in state.items()}
 
 
-def _error(value: Prescribed, what: str) -> InputError:
-    return InputError(
-        f"{value.place}: *BOUNDARY: {what}; supports that come or go between steps are not supported: make a deck for "
-        "each state"
+def _error(value: Prescribed, what: str) -> DeckError:
+    return DeckError(
+        value.place,
+        f"*BOUNDARY: {what}; supports that come or go between steps are not supported: make a deck for each state",
     )
 
 
@@ -99,9 +99,10 @@ def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
                 result[own] = (value, value.value)
                 continue
             if before[0].amplitude != value.amplitude:
-                raise InputError(
-                    f"{value.place}: {int(own[0])} has a load with another amplitude in the same place ({before[0].place}); "
-                    "give both one amplitude, or add them up in one"
+                raise DeckError(
+                    value.place,
+                    f"{int(own[0])} has a load with another amplitude in the same place ({before[0].place}); "
+                    "give both one amplitude, or add them up in one",
                 )
             result[own] = (value, before[1] + value.value)
     return result

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.errors import InputError
 from abut.io.abaqus.elements import FACES
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Block, Deck, Faces, Numbers
 
 Rows = NDArray[np.int64]  # (n, 2)
@@ -49,7 +49,7 @@ def surface_rows(deck: Deck, surface: Faces, free: FreeFaces) -> Rows:
 
     Raises InputError for nodes that make up no face."""
     if surface.empty:
-        raise InputError(f"{surface.place}: *SURFACE: surface '{surface.name}' is empty; give it faces, or nodes")
+        raise DeckError(surface.place, f"*SURFACE: surface '{surface.name}' is empty; give it faces, or nodes")
     if surface.nodes is not None:
         return _of_nodes(deck, surface, surface.nodes, free)
     parts = [np.empty((0, 2), np.int64)]
@@ -64,7 +64,7 @@ def surface_rows(deck: Deck, surface: Faces, free: FreeFaces) -> Rows:
             parts.append(np.stack([own, np.full(len(own), FACES[block.type.kind][face - 1])], axis=1))
     rows = np.unique(np.concatenate(parts), axis=0)
     if not len(rows):
-        raise InputError(f"{surface.place}: *SURFACE: surface '{surface.name}' has no faces; check its elements")
+        raise DeckError(surface.place, f"*SURFACE: surface '{surface.name}' has no faces; check its elements")
     return rows
 
 
@@ -77,9 +77,10 @@ def _of_nodes(deck: Deck, surface: Faces, nodes: Numbers, free: FreeFaces) -> Ro
         hit = (inside | (slots >= free.corners[:, None])).all(axis=1)
     left = np.setdiff1d(nodes, free.nodes[hit])
     if len(left):
-        raise InputError(
-            f"{surface.place}: *SURFACE: node {left[0]}{f' and {len(left) - 1} more' if len(left) > 1 else ''} of surface "
-            f"'{surface.name}' make up no face of an element, and abut needs faces; list faces (TYPE=ELEMENT)"
+        raise DeckError(
+            surface.place,
+            f"*SURFACE: node {left[0]}{f' and {len(left) - 1} more' if len(left) > 1 else ''} of surface "
+            f"'{surface.name}' make up no face of an element, and abut needs faces; list faces (TYPE=ELEMENT)",
         )
     return free.rows[hit]
 

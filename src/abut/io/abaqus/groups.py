@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from abut.errors import InputError
 from abut.io.abaqus.faces import FreeFaces, Rows, connectivity, element_nodes, free_faces, surface_rows
 from abut.io.abaqus.reader import read_mesh_only
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Deck, Numbers, Section
 from abut.io.raw import RawMesh
 
@@ -33,7 +34,8 @@ def pieces(deck: Deck) -> tuple[Piece, ...]:
     left = np.setdiff1d(every, np.concatenate([np.empty(0, np.int64), *(s.elements for s in deck.sections)]))
     if len(left):
         more = f" and {len(left) - 1} more" if len(left) > 1 else ""
-        raise InputError(f"{deck.path}: element {left[0]}{more} without *SOLID SECTION; give their set a section")
+        place = next(block.place for block in deck.blocks if left[0] in block.ids)
+        raise DeckError(place, f"*ELEMENT: element {left[0]}{more} without *SOLID SECTION; give their set a section")
     part = _parts(deck)
     result: list[Piece] = []
     for section in deck.sections:
@@ -170,4 +172,4 @@ def read_abaqus(path: Path) -> RawMesh:
         own = np.intersect1d(nodes, groups.used)
         if len(own):
             groups.new_node_set(own, name)
-    return groups.raw()
+    return replace(groups.raw(), notes=deck.notes)

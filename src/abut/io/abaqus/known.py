@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from abut.errors import InputError, nearest
 from abut.io.abaqus.cards import Card, key
 from abut.io.abaqus.elements import ELEMENTS, refusal
+from abut.io.abaqus.reasons import DeckError, Reasons
 
 # Cards that are read, with the parameters that are read or change nothing in small-displacement statics.
 READ: dict[str, tuple[str, ...]] = {
@@ -141,11 +142,13 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
     ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
 }
+GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
+    key(name) for name in ("ASSEMBLY", "ELCOPY", "ELGEN", "INSTANCE", "NCOPY", "NFILL", "NGEN", "PART", "SYSTEM")
+}
 NEEDED = {  # leaving these out would leave no deck
-    key(name)
-    for name in ("ASSEMBLY", "BEAM SECTION", "ELCOPY", "ELGEN", "INSTANCE", "MEMBRANE SECTION", "NCOPY", "NFILL", "NGEN",
-                 "PART", "SHELL SECTION", "SYSTEM")
-}  # fmt: skip
+    *GENERATED,
+    *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
+}
 
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
@@ -162,18 +165,20 @@ def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
 
 @dataclass(frozen=True)
 class Sifted:
-    """cards: those to read; quiet: titles of those without effect; ignored: what was left out because the user said so."""
+    """cards: those to read; quiet: titles of those without effect; ignored: what was left out because the user said so;
+    plain: whether numbers of nodes and elements mean the same everywhere, and none are generated."""
 
     cards: tuple[Card, ...]
     quiet: tuple[str, ...]
     ignored: tuple[str, ...]
+    plain: bool
 
 
-def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
-    """The cards to read. ``ignore`` names cards and parameters to leave out although they change the result.
+def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) -> Sifted:
+    """The cards to read. ``ignore`` names cards and parameters to leave out although they change the result; ``reasons``
+    gets the cards, parameters and element types that abut does not honour.
 
-    Raises InputError for cards, parameters and element types that abut does not honour, all of them with place and cure,
-    and for names in ``ignore`` that are no card or must be read."""
+    Raises InputError for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
     left = _without_steps(tuple(cards), asked)
     _check_asked(ignore, left)
@@ -181,7 +186,7 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
     kept: list[Card] = []
     quiet: dict[str, None] = {}
     ignored: dict[str, list[str]] = {}
-    found: dict[str, _Refusal] = {}
+    found: dict[str, DeckError] = {}
     changing = ""  # what belongs to a *CHANGE ... card: *CHANGE SURFACE BEHAVIOR is followed by *SURFACE BEHAVIOR
     for card in left:
         if isinstance(card, Card) and card.key.startswith("CHANGE"):
@@ -195,19 +200,22 @@ def sift(cards: Iterable[Card], ignore: Collection[str] = ()) -> Sifted:
             quiet[card.title] = None
         elif card.key in _READ:
             _parameters(card, asked, ignored, found)
-            own = {name: value for name, value in card.parameters.items() if name in _READ[card.key]}
-            kept.append(Card(card.key, card.title, own, card.lines, card.place))
             code = key(card.get("TYPE") or "")
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
-                found.setdefault(f"ELEMENT {code}", _Refusal(card, refusal(code), ""))
+                found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
+                continue
+            own = {name: value for name, value in card.parameters.items() if name in _READ[card.key]}
+            kept.append(Card(card.key, card.title, own, card.lines, card.place))
         elif card.key in asked:
             ignored.setdefault(card.title, []).append(str(card.place))
         else:
             _, reason = _REFUSED.get(card.key, ("", "abut does not know this card; take it out if it is not needed"))
             pointless = card.key in NEEDED or (card.key in _PROCEDURES and not static)
-            found.setdefault(card.key, _Refusal(card, reason, "" if pointless else card.title[1:]))
-    _refuse(list(found.values()))
-    return Sifted(tuple(kept), tuple(quiet), tuple(f"{what} ({_places(at)})" for what, at in ignored.items()))
+            found.setdefault(card.key, card.refusal(reason, "" if pointless else card.title[1:]))
+    for what, error in found.items():
+        reasons.add(error, defines=what.startswith("ELEMENT "))
+    told = tuple(f"{what} ({_places(at)})" for what, at in ignored.items())
+    return Sifted(tuple(kept), tuple(quiet), told, not GENERATED & found.keys())
 
 
 def _places(places: list[str]) -> str:
@@ -219,29 +227,6 @@ class _Step:
     """A step that is left out, for its procedure."""
 
     procedure: Card
-
-
-@dataclass(frozen=True)
-class _Refusal:
-    card: Card
-    reason: str
-    name: str  # what --ignore would take, "" where leaving it out makes no sense
-
-
-def _refuse(found: list[_Refusal]) -> None:
-    """One error for all that is refused, each with its place."""
-    if not found:
-        return
-    texts, file = [], ""
-    for r in found:
-        place = r.card.place
-        texts.append(f"{f'line {place.line}' if place.file == file else place}: {r.card.title}: {r.reason}")
-        file = place.file
-    options = " ".join(dict.fromkeys(f"--ignore {_quoted(r.name)}" for r in found if r.name))
-    cure = (
-        "" if not all(r.name for r in found) else f"; to solve without {'it' if len(found) == 1 else 'them'}: {options}"
-    )
-    raise InputError("\n  ".join(texts) + cure)
 
 
 def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | _Step, ...]:
@@ -268,7 +253,7 @@ def _step(step: list[Card], asked: set[str]) -> list[Card | _Step]:
     return list(step)
 
 
-def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], found: dict[str, _Refusal]) -> None:
+def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], found: dict[str, DeckError]) -> None:
     """Sort out the parameters that are not read."""
     for name, value in card.parameters.items():
         if name in _READ[card.key] or (name == "NLGEOM" and value is not None and key(value) == "NO"):
@@ -277,7 +262,7 @@ def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], foun
             ignored.setdefault(f"{name} of {card.title}", []).append(str(card.place))
         else:
             reason = _PARAMETERS.get((_name(card), name), "abut does not know this parameter")
-            found.setdefault(f"{card.key} {name}", _Refusal(card, f"{name}: {reason}", name))
+            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", name))
 
 
 def _name(card: Card) -> str:
@@ -294,7 +279,3 @@ def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> No
             raise InputError(f"--ignore {name}: abut reads *{name.upper()}, which cannot be left out")
         if own not in _REFUSED.keys() | present | parameters | _QUIET:
             raise InputError(f"--ignore {name}: no such card{nearest(name.upper(), [*REFUSED, 'NLGEOM'])}")
-
-
-def _quoted(name: str) -> str:
-    return f'"{name}"' if " " in name else name

@@ -9,8 +9,9 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.errors import nearest
-from abut.io.abaqus.cards import Card, Line, Place, as_integer, key
+from abut.io.abaqus.cards import Card, Line, as_integer, key
 from abut.io.abaqus.elements import ELEMENTS, FACES, refusal
+from abut.io.abaqus.reasons import Place, Reasons
 from abut.io.abaqus.record import Block, Faces, Numbers
 
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
@@ -39,13 +40,13 @@ class Names:
         if number is not None:
             return np.array([number], dtype=np.int64)
         if text.upper() not in self.sets:
-            raise line.error(f"no {what} set named {text!r}{nearest(text, self.spelled.values())}")
+            raise line.unknown(f"no {what} set named {text!r}{nearest(text, self.spelled.values())}")
         return self.sets[text.upper()]
 
 
 @dataclass(frozen=True)
 class MeshCards:
-    """What the mesh cards say; see ``record.Deck``."""
+    """What the mesh cards say; see ``record.Deck``. numbers: of all nodes; kinds: cell type of each element."""
 
     nodes: Numbers
     points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -53,49 +54,71 @@ class MeshCards:
     node_sets: Names
     element_sets: Names
     surfaces: Mapping[str, Faces]
+    numbers: frozenset[int]
+    kinds: Mapping[int, str]
     virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
 
     def existing(self, line: Line, i: int) -> Numbers:
         """The nodes that field i of a line names. Raises InputError for none, and for a number that no node has."""
         nodes = self.node_sets.resolve(line, i, "node")
         if not len(nodes):
-            raise line.error(f"node set '{line.text(i)}' is empty")
-        if len(nodes) == 1 and not np.isin(nodes, self.nodes).all() and int(nodes[0]) not in self.virtual:
-            raise line.error(f"node {nodes[0]} does not exist; give it in *NODE")
+            raise line.unknown(f"node set '{line.text(i)}' is empty")
+        if len(nodes) == 1 and int(nodes[0]) not in self.numbers and int(nodes[0]) not in self.virtual:
+            raise line.unknown(f"node {nodes[0]} does not exist; give it in *NODE")
         return nodes
 
 
-def mesh_cards(cards: Iterable[Card], notes: list[str]) -> MeshCards:
-    """Read the mesh cards: nodes, elements, then sets and surfaces in their order; ``notes`` gets what was left out. Raises
-    InputError with place and cure."""
+def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> MeshCards:
+    """Read the mesh cards: nodes, elements, then sets and surfaces in their order; ``notes`` gets what was left out,
+    ``reasons`` what is wrong."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
     node_sets, element_sets, surfaces = Names(), Names(), {}
     cards = tuple(cards)
     named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
     virtual = frozenset(number for number in named if number is not None)
-    for card in (c for c in cards if c.key == "NODE"):
-        own = _nodes(card, nodes)
-        if card.get("NSET"):
-            node_sets.add(card.need("NSET"), own)
-    for card in (c for c in cards if c.key == "ELEMENT"):
-        own = _elements(card, elements, nodes)
-        if card.get("ELSET"):
-            element_sets.add(card.need("ELSET"), own)
-    for card in cards:
-        if card.key == "NSET":
+
+    def read(card: Card) -> None:
+        if card.key == "NODE":
+            own = _nodes(card, nodes)
+            if card.get("NSET"):
+                node_sets.add(card.need("NSET"), own)
+        elif card.key == "ELEMENT":
+            own = _elements(card, elements, nodes)
+            if card.get("ELSET"):
+                element_sets.add(card.need("ELSET"), own)
+        elif card.key == "NSET":
             own = _set(card, "node", node_sets, element_sets, elements)
-            node_sets.add(card.need("NSET"), _present(card, "node", own, {*nodes, *virtual}, notes))
+            node_sets.add(card.need("NSET"), _present(card, "node", own, there, notes))
         elif card.key == "ELSET":
             own = _set(card, "element", element_sets, element_sets, elements)
             element_sets.add(card.need("ELSET"), _present(card, "element", own, elements, notes))
-        elif card.key == "SURFACE":
+        else:
             surface = _surface(card, node_sets, element_sets, elements)
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
+
+    there: Collection[int] = ()
+    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET", "SURFACE")):
+        there = {*nodes, *virtual}
+        for card in cards:
+            if card.key in keys:
+                with reasons.gathered(defines=True):
+                    read(card)
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
-    places = {key(card.need("TYPE")): card.place for card in reversed(cards) if card.key == "ELEMENT"}
-    return MeshCards(ids, points, _blocks(elements, places), node_sets, element_sets, _named(surfaces), virtual)
+    places = {key(card.get("TYPE") or ""): card.place for card in reversed(cards) if card.key == "ELEMENT"}
+    kinds = {number: ELEMENTS[code].kind for number, (code, _) in elements.items()}
+    return MeshCards(
+        ids,
+        points,
+        _blocks(elements, places),
+        node_sets,
+        element_sets,
+        _named(surfaces),
+        frozenset(nodes),
+        kinds,
+        virtual,
+    )
 
 
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
@@ -134,7 +157,7 @@ def _elements(
             raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
         for node in numbers[1:]:
             if node not in nodes:
-                raise start.error(f"element {numbers[0]}: node {node} does not exist; give it in *NODE")
+                raise start.unknown(f"element {numbers[0]}: node {node} does not exist; give it in *NODE")
         if numbers[0] in elements:
             raise start.error(f"element {numbers[0]} is given twice; give each element its own number")
         elements[numbers[0]] = (code, tuple(numbers[1:]))
@@ -167,7 +190,7 @@ def _set(
     if what == "node" and card.get("ELSET"):
         name = card.need("ELSET")
         if name.upper() not in element_sets.sets:
-            raise card.error(f"no element set named {name!r}{nearest(name, element_sets.spelled.values())}")
+            raise card.unknown(f"no element set named {name!r}{nearest(name, element_sets.spelled.values())}")
         members = element_sets.sets[name.upper()].tolist()
         return np.unique(np.array([n for e in members for n in elements[e][1]], dtype=np.int64))
     parts: list[Numbers] = [np.empty(0, np.int64)]
@@ -211,7 +234,7 @@ def _surface(
         members = element_sets.resolve(line, 0, "element")
         for number in members.tolist():
             if number not in elements:
-                raise line.error(f"element {number} does not exist")
+                raise line.unknown(f"element {number} does not exist")
         face = 0
         if line.text(1):
             label = line.text(1).upper()

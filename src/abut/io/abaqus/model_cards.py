@@ -1,21 +1,23 @@
-"""Materials, sections, contact, ties, equations, rigid bodies and symmetry of a deck."""
+"""Materials, sections, equations, rigid bodies, symmetry and pre-tension of a deck."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import takewhile
 
 import numpy as np
 
 from abut.errors import nearest
-from abut.io.abaqus.cards import Card, Line, as_float, as_integer, key
+from abut.io.abaqus.cards import Card, Line, as_float, as_integer, key, of
+from abut.io.abaqus.contact_cards import sides
 from abut.io.abaqus.mesh_cards import MeshCards
+from abut.io.abaqus.reasons import Reasons
 from abut.io.abaqus.record import (
     CyclicSymmetry,
     Equation,
-    GeneralContact,
     Material,
     Numbers,
-    Pair,
     PreTension,
     RigidBody,
     Section,
@@ -23,40 +25,37 @@ from abut.io.abaqus.record import (
 )
 
 EMPTY = np.empty(0, np.int64)
-OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
 
 
-def of(cards: Iterable[Card], name: str) -> Iterator[Card]:
-    """The cards with a name."""
-    own = key(name)
-    return (card for card in cards if card.key == own)
-
-
-def materials(cards: Sequence[Card]) -> dict[str, Material]:
-    """Materials by name in capitals. Raises InputError for what is not isotropic with one row of numbers."""
-    result = {}
+def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
+    """Materials by name in capitals; ``reasons`` gets what is not isotropic with one row of numbers."""
+    result: dict[str, Material] = {}
     for i, card in enumerate(cards):
-        if card.key != "MATERIAL":
-            continue
-        options: dict[str, Card] = {}
-        for option in cards[i + 1 :]:
-            if option.key not in ("ELASTIC", "DENSITY", "EXPANSION"):
-                break
-            options[option.key] = option
-        name = card.need("NAME")
-        if "ELASTIC" not in options:
-            raise card.error(f"material '{name}' has no *ELASTIC; give Young's modulus and Poisson's ratio")
-        elastic = _row(options["ELASTIC"], 2, "Young's modulus and Poisson's ratio")
-        poisson = elastic.number(1, "Poisson's ratio", 0.0)
-        density = _row(options["DENSITY"], 1, "density").number(0, "density") if "DENSITY" in options else 0.0
-        expansion = 0.0
-        if "EXPANSION" in options:
-            expansion = _row(options["EXPANSION"], 1, "thermal expansion").number(0, "thermal expansion")
-        result[name.upper()] = Material(name, elastic.number(0, "Young's modulus"), poisson, density, expansion)
+        if card.key == "MATERIAL":
+            with reasons.gathered(defines=True):
+                material = _material(card, cards[i + 1 :])
+                result[material.name.upper()] = material
     return result
 
 
-def _row(card: Card, columns: int, what: str) -> Line:
+def _material(card: Card, following: Sequence[Card]) -> Material:
+    options = {
+        option.key: option
+        for option in takewhile(lambda own: own.key in ("ELASTIC", "DENSITY", "EXPANSION"), following)
+    }
+    name = card.need("NAME")
+    if "ELASTIC" not in options:
+        raise card.error(f"material '{name}' has no *ELASTIC; give Young's modulus and Poisson's ratio")
+    elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
+    poisson = elastic.number(1, "Poisson's ratio", 0.0)
+    density = _row(options["DENSITY"], "density").number(0, "density") if "DENSITY" in options else 0.0
+    expansion = 0.0
+    if "EXPANSION" in options:
+        expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
+    return Material(name, elastic.number(0, "Young's modulus"), poisson, density, expansion, card.place)
+
+
+def _row(card: Card, what: str) -> Line:
     kind = key(card.get("TYPE", "ISO") or "")
     if kind not in ("ISO", "ISOTROPIC"):
         raise card.error(f"TYPE={kind} is not supported; abut's solids are isotropic")
@@ -69,152 +68,66 @@ def _row(card: Card, columns: int, what: str) -> Line:
     return line
 
 
-def sections(cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None) -> tuple[Section, ...]:
+def sections(
+    cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None, reasons: Reasons
+) -> tuple[Section, ...]:
     """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
     in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     for card in of(cards, "SOLID SECTION"):
-        name, material = card.need("ELSET"), card.need("MATERIAL")
-        if name.upper() not in mesh.element_sets.sets:
-            raise card.error(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
-        if known is not None and material.upper() not in known:
-            raise card.error(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
-        if card.has("NODAL THICKNESS"):
-            raise card.error(
-                "NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness"
-            )
-        thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
-        if not thickness > 0.0:
-            raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
-        elements = mesh.element_sets.sets[name.upper()]
-        result = [Section(s.name, np.setdiff1d(s.elements, elements), s.material, s.thickness, s.place) for s in result]
-        spelled = mesh.element_sets.spelled[name.upper()]
-        own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0)
-        result.append(Section(spelled, elements, own, thickness, card.place))
+        with reasons.gathered():
+            own = _section(card, mesh, known)
+            result = [replace(s, elements=np.setdiff1d(s.elements, own.elements)) for s in result]
+            result.append(own)
     return tuple(s for s in result if len(s.elements))
 
 
-def pairs(cards: Sequence[Card], mesh: MeshCards) -> tuple[Pair, ...]:
-    """Contact pairs and ties in the order of the deck."""
-    overclosures = _overclosures(cards)
-    clearances = {(card.need("SLAVE").upper(), card.need("MASTER").upper()): card for card in of(cards, "CLEARANCE")}
-    result: list[Pair] = []
-    for card in cards:
-        if card.key == "TIE" and not card.has("CYCLIC SYMMETRY"):
-            for i, (line, slave, master) in enumerate(_sides(card, mesh)):
-                name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
-                result.append(Pair(name, slave, master, True, "TIED", "all", None, line.place))
-        elif card.key == "CONTACTPAIR":
-            interaction = card.need("INTERACTION")
-            if interaction.upper() not in overclosures:
-                raise card.error(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, overclosures)}")
-            overclosure = overclosures[interaction.upper()]
-            for line, slave, master in _sides(card, mesh):
-                given = clearances.pop((slave.upper(), master.upper()), None)
-                clearance = None
-                if given is not None:
-                    clearance = as_float(given.need("VALUE"))
-                    if clearance is None:
-                        raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
-                tied = overclosure == "TIED"
-                name = f"{slave}-{master}"
-                result.append(Pair(name, slave, master, tied, overclosure, _adjust(card, mesh), clearance, line.place))
-    for (slave, master), card in clearances.items():
-        raise card.error(f"no *CONTACT PAIR of slave {slave} and master {master}")
-    return tuple(result)
+def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) -> Section:
+    name, material = card.need("ELSET"), card.need("MATERIAL")
+    if name.upper() not in mesh.element_sets.sets:
+        raise card.unknown(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
+    if known is not None and material.upper() not in known:
+        raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
+    if card.has("NODAL THICKNESS"):
+        raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
+    thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
+    if not thickness > 0.0:
+        raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
+    elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
+    own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0, card.place)
+    return Section(spelled, elements, own, thickness, card.place)
 
 
-def general_contact(cards: Sequence[Card]) -> GeneralContact | None:
-    """Contact of everything outside, if the deck asks for it, with the interaction given to all of it."""
-    overclosures = _overclosures(cards)
-    found: Card | None = None
-    for card in of(cards, "CONTACT INCLUSIONS"):
-        if not card.has("ALL EXTERIOR"):
-            raise card.error("only ALL EXTERIOR is supported; name single surfaces in *CONTACT PAIR")
-        found = card
-    overclosure = "HARD"
-    for card in of(cards, "CONTACT PROPERTY ASSIGNMENT"):
-        for line in card.lines:
-            if line.text(0) or line.text(1):
-                raise line.error("an interaction for single surfaces is not supported; name them in *CONTACT PAIR")
-            name = line.text(2)
-            if name.upper() not in overclosures:
-                raise line.error(f"no *SURFACE INTERACTION named {name!r}{nearest(name, overclosures)}")
-            overclosure = overclosures[name.upper()]
-    if found is None:
-        for card in of(cards, "CONTACT"):
-            raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
-    return None if found is None else GeneralContact(overclosure, found.place)
-
-
-def _sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
-    """Names of slave and master surface, line by line."""
-    card.first("slave and master surface")
-    for line in card.lines:
-        names = []
-        for i, what in enumerate(("slave", "master")):
-            text = line.text(i)
-            if text.upper() not in mesh.surfaces:
-                spelled = [surface.name for surface in mesh.surfaces.values()]
-                raise line.error(f"no {what} surface named {text!r}{nearest(text, spelled)}")
-            names.append(mesh.surfaces[text.upper()].name)
-        yield line, names[0], names[1]
-
-
-def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
-    text = card.get("ADJUST")
-    if text is None:
-        return 0.0
-    value = as_float(text)
-    if value is not None:
-        if value < 0.0:
-            raise card.error(f"ADJUST: expected a distance >= 0 or a node set, got {text}")
-        return value
-    if text.upper() not in mesh.node_sets.sets:
-        raise card.error(f"ADJUST: no node set named {text!r}{nearest(text, mesh.node_sets.spelled.values())}")
-    return mesh.node_sets.sets[text.upper()]
-
-
-def _overclosures(cards: Sequence[Card]) -> dict[str, str]:
-    """How pressure follows overclosure, by interaction."""
-    result: dict[str, str] = {}
-    current = ""
-    for card in cards:
-        if card.key == "SURFACEINTERACTION":
-            current = card.need("NAME").upper()
-            result[current] = "HARD"
-        elif card.key == "SURFACEBEHAVIOR":
-            if not current:
-                raise card.error("it must follow a *SURFACE INTERACTION")
-            overclosure = key(card.get("PRESSURE-OVERCLOSURE", "HARD") or "HARD")
-            if overclosure not in OVERCLOSURES:
-                raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
-            result[current] = overclosure
-    return result
-
-
-def equations(cards: Sequence[Card], mesh: MeshCards) -> tuple[Equation, ...]:
+def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:
     """*EQUATION, and *MPC that say that displacements are equal."""
     result: list[Equation] = []
     for card in of(cards, "EQUATION"):
-        lines = list(card.lines)
-        while lines:
-            head = lines.pop(0)
-            count = head.integer(0, "number of terms")
-            fields: list[tuple[Line, int]] = []
-            while len(fields) < 3 * count:
-                if not lines:
-                    raise head.error(f"{count} terms announced, but {len(fields) // 3} given; add the missing lines")
-                line = lines.pop(0)
-                last = len(line.fields) - (line.fields[-1] == "")
-                fields += [(line, i) for i in range(last)]
-            if len(fields) > 3 * count:
-                raise head.error(f"{count} terms announced, but more entries follow; check the lines")
-            result += _equations(head, fields, mesh)
+        with reasons.gathered():
+            for head, fields in _terms(card):
+                result += _equations(head, fields, mesh)
     for card in of(cards, "MPC"):
-        for line in card.lines:
-            result += _multipoint(line, mesh)
+        with reasons.gathered():
+            for line in card.lines:
+                result += _multipoint(line, mesh)
     return tuple(result)
+
+
+def _terms(card: Card) -> Iterator[tuple[Line, list[tuple[Line, int]]]]:
+    """For each equation of a card its first line, and the entries (line, field) of its terms."""
+    lines = list(card.lines)
+    while lines:
+        head = lines.pop(0)
+        count = head.integer(0, "number of terms")
+        fields: list[tuple[Line, int]] = []
+        while len(fields) < 3 * count:
+            if not lines:
+                raise head.error(f"{count} terms announced, but {len(fields) // 3} given; add the missing lines")
+            line = lines.pop(0)
+            last = len(line.fields) - (line.fields[-1] == "")
+            fields += [(line, i) for i in range(last)]
+        if len(fields) > 3 * count:
+            raise head.error(f"{count} terms announced, but more entries follow; check the lines")
+        yield head, fields
 
 
 def _equations(head: Line, fields: list[tuple[Line, int]], mesh: MeshCards) -> list[Equation]:
@@ -247,7 +160,7 @@ def _direction(line: Line, i: int) -> int:
 def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
     kind = key(line.text(0))
     if kind not in ("TIE", "PIN"):
-        raise line.error(f"*MPC of type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
+        raise line.error(f"type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
     a, b = (mesh.existing(line, i) for i in (1, 2))
     if len(b) == 1:
         b = np.repeat(b, len(a))
@@ -256,26 +169,27 @@ def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
     return [Equation(((int(n), d, 1.0), (int(m), d, -1.0)), line.place) for n, m in zip(a, b) for d in (1, 2, 3)]
 
 
-def rigid_bodies(cards: Sequence[Card], mesh: MeshCards) -> tuple[RigidBody, ...]:
+def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[RigidBody, ...]:
     result = []
     for card in of(cards, "RIGID BODY"):
-        nodes, elements = EMPTY, EMPTY
-        if card.get("NSET"):
-            nodes = _named(card, "NSET", mesh.node_sets.sets, "node")
-        elif card.get("ELSET"):
-            elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
-        else:
-            raise card.error("give the body's nodes (NSET) or elements (ELSET)")
-        reference = _node(card, "REF NODE", card.need("REF NODE"))
-        turning = _node(card, "ROT NODE", card.need("ROT NODE")) if card.has("ROT NODE") else 0
-        result.append(RigidBody(nodes, elements, reference, turning, card.place))
+        with reasons.gathered():
+            nodes, elements = EMPTY, EMPTY
+            if card.get("NSET"):
+                nodes = _named(card, "NSET", mesh.node_sets.sets, "node")
+            elif card.get("ELSET"):
+                elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
+            else:
+                raise card.error("give the body's nodes (NSET) or elements (ELSET)")
+            reference = _node(card, "REF NODE", card.need("REF NODE"))
+            turning = _node(card, "ROT NODE", card.need("ROT NODE")) if card.has("ROT NODE") else 0
+            result.append(RigidBody(nodes, elements, reference, turning, card.place))
     return tuple(result)
 
 
 def _named(card: Card, parameter: str, sets: Mapping[str, Numbers], what: str) -> Numbers:
     name = card.need(parameter)
     if name.upper() not in sets:
-        raise card.error(f"no {what} set named {name!r}{nearest(name.upper(), sets)}")
+        raise card.unknown(f"no {what} set named {name!r}{nearest(name.upper(), sets)}")
     return sets[name.upper()]
 
 
@@ -286,14 +200,15 @@ def _node(card: Card, parameter: str, text: str) -> int:
     return number
 
 
-def transforms(cards: Sequence[Card], mesh: MeshCards) -> tuple[Transform, ...]:
+def transforms(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Transform, ...]:
     result = []
     for card in of(cards, "TRANSFORM"):
-        kind = key(card.get("TYPE", "R") or "R")
-        if kind not in ("R", "C"):
-            raise card.error(f"TYPE={kind} is not supported; R (rectangular) and C (cylindrical) are")
-        a, b = two_points(card.first("two points"))
-        result.append(Transform(_named(card, "NSET", mesh.node_sets.sets, "node"), kind, a, b, card.place))
+        with reasons.gathered():
+            kind = key(card.get("TYPE", "R") or "R")
+            if kind not in ("R", "C"):
+                raise card.error(f"TYPE={kind} is not supported; R (rectangular) and C (cylindrical) are")
+            a, b = two_points(card.first("two points"))
+            result.append(Transform(_named(card, "NSET", mesh.node_sets.sets, "node"), kind, a, b, card.place))
     return tuple(result)
 
 
@@ -306,37 +221,47 @@ def two_points(line: Line) -> tuple[tuple[float, float, float], tuple[float, flo
     return a, b
 
 
-def cyclic_symmetry(cards: Sequence[Card], mesh: MeshCards) -> tuple[CyclicSymmetry, ...]:
-    ties = {card.need("NAME").upper(): card for card in of(cards, "TIE") if card.has("CYCLIC SYMMETRY")}
+def cyclic_symmetry(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[CyclicSymmetry, ...]:
+    ties: dict[str, Card] = {}
+    for card in of(cards, "TIE"):
+        with reasons.gathered():
+            if card.has("CYCLIC SYMMETRY"):
+                ties[card.need("NAME").upper()] = card
     result = []
     for card in of(cards, "CYCLIC SYMMETRY MODEL"):
-        name = card.get("TIE") or next(iter(ties), "")
-        tie = ties.pop(name.upper(), None)
-        if tie is None:
-            raise card.error(f"no *TIE, CYCLIC SYMMETRY named {name!r}; give one, and name it once")
-        sectors = as_float(card.need("N"))
-        if sectors is None or sectors < 2.0:
-            raise card.error(f"N: expected the number of sectors in the whole turn, >= 2, got {card.need('N')!r}")
-        a, b = two_points(card.first("two points of the axis"))
-        _, slave, master = next(_sides(tie, mesh))
-        result.append(CyclicSymmetry(sectors, slave, master, a, b, card.place))
+        with reasons.gathered():
+            name = card.get("TIE") or next(iter(ties), "")
+            tie = ties.pop(name.upper(), None)
+            if tie is None:
+                raise card.unknown(f"no *TIE, CYCLIC SYMMETRY named {name!r}; give one, and name it once")
+            sectors = as_float(card.need("N"))
+            if sectors is None or sectors < 2.0:
+                raise card.error(f"N: expected the number of sectors in the whole turn, >= 2, got {card.need('N')!r}")
+            a, b = two_points(card.first("two points of the axis"))
+            _, slave, master = next(sides(tie, mesh))
+            result.append(CyclicSymmetry(sectors, slave, master, a, b, card.place))
     for tie in ties.values():
-        raise tie.error("a *TIE, CYCLIC SYMMETRY without a *CYCLIC SYMMETRY MODEL that names it; add one")
+        reasons.add(tie.error("a *TIE, CYCLIC SYMMETRY without a *CYCLIC SYMMETRY MODEL that names it; add one"))
     return tuple(result)
 
 
-def pretension_sections(cards: Sequence[Card], mesh: MeshCards) -> tuple[PreTension, ...]:
+def pretension_sections(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[PreTension, ...]:
     result = []
     for card in of(cards, "PRE-TENSION SECTION"):
-        name = card.need("SURFACE")
-        if name.upper() not in mesh.surfaces:
-            raise card.error(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
-        normal = None
-        if card.lines:
-            line = card.lines[0]
-            normal = (line.number(0, "normal", 0.0), line.number(1, "normal", 0.0), line.number(2, "normal", 0.0))
-            if normal == (0.0, 0.0, 0.0):
-                raise line.error("the normal is zero; leave the line out for the surface's own")
-        node = _node(card, "NODE", card.need("NODE"))
-        result.append(PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place))
+        with reasons.gathered():
+            result.append(_pretension(card, mesh))
     return tuple(result)
+
+
+def _pretension(card: Card, mesh: MeshCards) -> PreTension:
+    name = card.need("SURFACE")
+    if name.upper() not in mesh.surfaces:
+        raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
+    normal = None
+    if card.lines:
+        line = card.lines[0]
+        normal = (line.number(0, "normal", 0.0), line.number(1, "normal", 0.0), line.number(2, "normal", 0.0))
+        if normal == (0.0, 0.0, 0.0):
+            raise line.error("the normal is zero; leave the line out for the surface's own")
+    node = _node(card, "NODE", card.need("NODE"))
+    return PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.errors import InputError
 from abut.io.abaqus.faces import connectivity, free_faces, surface_rows
+from abut.io.abaqus.reasons import DeckError
 from abut.io.abaqus.record import Block, Deck, Equation, Numbers, PreTension
 
 
@@ -22,14 +22,16 @@ def cut(deck: Deck) -> Deck:
 
 
 def _cut(deck: Deck, section: PreTension) -> Deck:
-    where = f"{section.place}: *PRE-TENSION SECTION"
     surface = deck.surfaces[section.surface]
     if surface.nodes is not None:
-        raise InputError(f"{where}: surface '{section.surface}' must list faces of elements (TYPE=ELEMENT)")
+        raise DeckError(
+            section.place,
+            f"*PRE-TENSION SECTION: surface '{section.surface}' must list faces of elements (TYPE=ELEMENT)",
+        )
     rows = surface_rows(deck, surface, free_faces(deck))
     facets = connectivity(deck, rows)
     nodes = np.unique(np.concatenate([n.ravel() for n in facets.values()]))
-    side = _side(deck, rows, nodes, where)
+    side = _side(deck, rows, nodes, section)
     first = int(max(deck.nodes.max(), section.node)) + 1
     double = first + np.arange(len(nodes))
     blocks = tuple(_moved(block, side, nodes, double) for block in deck.blocks)
@@ -72,7 +74,7 @@ def _normal(deck: Deck, facets: dict[str, Numbers]) -> NDArray[np.float64]:
     return np.asarray(total / np.linalg.norm(total))
 
 
-def _side(deck: Deck, rows: Numbers, nodes: Numbers, where: str) -> set[int]:
+def _side(deck: Deck, rows: Numbers, nodes: Numbers, section: PreTension) -> set[int]:
     """Elements at the cut on the side of the surface's own elements: those reached from them without crossing it."""
     touching: dict[tuple[int, ...], list[tuple[int, int]]] = {}
     for block in deck.blocks:
@@ -87,7 +89,10 @@ def _side(deck: Deck, rows: Numbers, nodes: Numbers, where: str) -> set[int]:
     for own in touching.values():
         if any(face in wall for face in own):
             if len(own) == 1:
-                raise InputError(f"{where}: element {own[0][0]} of its surface has no neighbour beyond the cut")
+                raise DeckError(
+                    section.place,
+                    f"*PRE-TENSION SECTION: element {own[0][0]} of its surface has no neighbour beyond the cut",
+                )
             beyond |= {element for element, local in own if (element, local) not in wall}
             continue
         for element, _ in own:
@@ -99,8 +104,10 @@ def _side(deck: Deck, rows: Numbers, nodes: Numbers, where: str) -> set[int]:
             reached.add(other)
             todo.append(other)
     if reached & beyond:
-        raise InputError(
-            f"{where}: its surface does not cut the body in two; it must go right through, faces on one side only"
+        raise DeckError(
+            section.place,
+            "*PRE-TENSION SECTION: its surface does not cut the body in two; it must go right through, with faces on one "
+            "side only",
         )
     return reached
 

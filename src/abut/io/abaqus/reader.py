@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from abut.io.abaqus.cards import Card, key, read_cards
+from abut.io.abaqus.cards import Card, as_float, key, read_cards
+from abut.io.abaqus.contact_cards import general_contact, pairs
 from abut.io.abaqus.known import NEEDED, opens, sift
 from abut.io.abaqus.mesh_cards import MeshCards, mesh_cards
 from abut.io.abaqus.model_cards import (
     cyclic_symmetry,
     equations,
-    general_contact,
     materials,
-    pairs,
     pretension_sections,
     rigid_bodies,
     sections,
     transforms,
 )
+from abut.io.abaqus.reasons import Reasons
 from abut.io.abaqus.record import Deck, Prescribed
 from abut.io.abaqus.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 
@@ -30,17 +30,21 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
 
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
-    sifted = sift(_without_void_friction(read_cards(path, opens), notes), ignore)
-    outside, groups = split_steps(sifted.cards)
-    mesh = mesh_cards(sifted.cards, notes)
-    known = amplitudes(sifted.cards)
-    pair_list = pairs(sifted.cards, mesh)
-    general = general_contact(sifted.cards)
+    reasons = Reasons()
+    sifted = sift(_without_void_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
+    if not sifted.plain:
+        reasons.tell()
+    cards = sifted.cards
+    outside, groups = split_steps(cards, reasons)
+    mesh = mesh_cards(cards, notes, reasons)
+    known = amplitudes(cards, reasons)
+    pair_list = pairs(cards, mesh, reasons)
+    general = general_contact(cards, reasons)
     named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
     for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
         if overclosure not in ("HARD", "TIED"):
             notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
-    return Deck(
+    deck = Deck(
         path=str(path),
         nodes=mesh.nodes,
         points=mesh.points,
@@ -48,52 +52,59 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         node_sets=mesh.node_sets.by_name(),
         element_sets=mesh.element_sets.by_name(),
         surfaces={surface.name: surface for surface in mesh.surfaces.values()},
-        sections=sections(sifted.cards, mesh, materials(sifted.cards)),
+        sections=sections(cards, mesh, materials(cards, reasons), reasons),
         pairs=pair_list,
         general=general,
-        equations=equations(sifted.cards, mesh),
-        rigid=rigid_bodies(sifted.cards, mesh),
-        transforms=transforms(sifted.cards, mesh),
-        cyclic=cyclic_symmetry(sifted.cards, mesh),
-        pretension=pretension_sections(sifted.cards, mesh),
-        fixed=_fixed(outside, mesh, notes),
-        initial=initial_temperature(sifted.cards, mesh),
+        equations=equations(cards, mesh, reasons),
+        rigid=rigid_bodies(cards, mesh, reasons),
+        transforms=transforms(cards, mesh, reasons),
+        cyclic=cyclic_symmetry(cards, mesh, reasons),
+        pretension=pretension_sections(cards, mesh, reasons),
+        fixed=_fixed(outside, mesh, notes, reasons),
+        initial=initial_temperature(cards, mesh, reasons),
         amplitudes=known,
-        steps=steps(groups, mesh, known),
+        steps=steps(groups, mesh, known, reasons),
         notes=tuple(notes),
         quiet=sifted.quiet,
         ignored=sifted.ignored,
     )
+    reasons.tell()
+    return deck
 
 
 def read_mesh_only(path: Path) -> Deck:
     """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
 
     Raises InputError as ``read_deck`` does, for these cards only."""
-    every = read_cards(path, opens)
-    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED]).cards
-    mesh = mesh_cards(cards, [])
+    reasons = Reasons()
+    every = read_cards(path, opens, reasons)
+    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
+    notes: list[str] = []
+    mesh = mesh_cards(cards, notes, reasons)
+    own = sections(cards, mesh, None, reasons)
+    reasons.tell()
     inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
     return Deck(
         str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
         {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
-        sections(cards, mesh, None),
-        (), None, (), (), (), (), (), (), {}, {}, (), (), (), (),
+        own,
+        (), None, (), (), (), (), (), (), {}, {}, (), tuple(notes), (), (),
     )  # fmt: skip
 
 
-def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str]) -> tuple[Prescribed, ...]:
+def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: Reasons) -> tuple[Prescribed, ...]:
     """Supports outside the steps."""
     result = []
     for card in outside:
-        if card.key in KIND and card.key != "BOUNDARY":
-            raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
-        if card.key != "BOUNDARY":
+        if card.key not in KIND:
             continue
-        for value in prescribed(card, mesh, {}):
-            if value.value != 0.0 and not any("outside the steps" in note for note in notes):
-                notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
-            result.append(value)
+        with reasons.gathered():
+            if card.key != "BOUNDARY":
+                raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
+            for value in prescribed(card, mesh, {}):
+                if value.value != 0.0 and not any("outside the steps" in note for note in notes):
+                    notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
+                result.append(value)
     return tuple(result)
 
 
@@ -110,11 +121,7 @@ def _without_void_friction(cards: Sequence[Card], notes: list[str]) -> list[Card
             if tied:
                 notes.append(f"{card.place}: *FRICTION of tied contact gives its stick stiffness; tied exactly instead")
                 continue
-            if (
-                card.lines
-                and not card.parameters
-                and all(line.text(0) and line.number(0, "mu") == 0.0 for line in card.lines)
-            ):
+            if card.lines and not card.parameters and all(as_float(line.text(0)) == 0.0 for line in card.lines):
                 continue
         result.append(card)
     return result

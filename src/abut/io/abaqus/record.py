@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.io.abaqus.cards import Place
 from abut.io.abaqus.elements import ElementType
+from abut.io.abaqus.reasons import Place
 
 Numbers = NDArray[np.int64]
 
@@ -46,6 +46,7 @@ class Material:
     poisson: float
     density: float
     expansion: float
+    place: Place
 
 
 @dataclass(frozen=True)
