@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
 MISLED = 0.25  # share of the active set that changes, and more than before, where a set was foreseen wrongly
 SETTLING, SETTLED = 0.1, 6  # the same below which a set that was foreseen well may settle yet, until that row of a step
+LAST = 12  # row of a step by which the violation should be gone, at its pace of the last three
 HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
 FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
@@ -78,6 +80,7 @@ def solve_step(
     history: list[NDArray[np.bool_]] = []
     log = Log(list(earlier), observe, len(earlier) + limit)
     changes: list[int] = []
+    violations: list[float] = []
     foresight, doubtful = system.predict, False
     lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
     share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
@@ -114,6 +117,7 @@ def solve_step(
             state, lawful, foresight, doubtful = replace(state, active=lawful), None, None, True
             continue
         changes.append(count)
+        violations.append(float(solved.violation.max()))
         gap = system.gap(state, stage.weights)
         rows = len(log.done) - len(earlier)
         lawful = None
@@ -127,6 +131,7 @@ def solve_step(
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
         settling = foresight is not None and count <= SETTLING * active.sum() and rows < SETTLED
+        settling = settling or closing(violations, rows)
         slow = repeated or (hopeless(changes, rows) and not settling) or (doubtful and count >= HALVED * changes[-2])
         doubtful = False
         if slow:
@@ -157,6 +162,15 @@ def hopeless(changes: Sequence[int], rows: int) -> bool:
         return False
     pace = np.log(changes[-1 - PATIENCE] / changes[-1]) / PATIENCE
     return stalled(changes) or bool(np.log(changes[-1]) > max(ROWS - rows, 1) * pace)
+
+
+def closing(violations: Sequence[float], rows: int) -> bool:
+    """Whether the law's largest violation falls so evenly that it will soon be gone: an edge of contact that goes back facet
+    by facet. rows: those of the step so far."""
+    last = violations[-1 - PATIENCE :]
+    if len(last) <= PATIENCE or any(after >= before for before, after in pairwise(last)):
+        return False
+    return rows + last[-1] * PATIENCE / (last[0] - last[-1]) <= LAST
 
 
 def _next_share(share: float, repeated: bool) -> float:
