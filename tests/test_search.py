@@ -22,8 +22,8 @@ from abut.solvers.active_set import Stage, solve_step, start
 from abut.solvers.linear import Prepared
 from abut.solvers.newton import Outcome
 from abut.solvers.search import Log, search
-from assemblies import MILLIMETRES_TO, in_units
 from search_models import HARD, STEEL, ball, beam, line, pin
+from units import MILLIMETRES_TO, in_units
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
 
