@@ -1,4 +1,4 @@
-"""Picture of docs/report.md: python docs/make/report.py (half a minute; needs Chromium, or its path as an argument)."""
+"""Picture of docs/report.md: python docs/make/report_picture.py [CHROMIUM] (half a minute; needs Chromium)."""
 
 from __future__ import annotations
 
