@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,9 @@ from abut.discretization.rigid import near_null
 from abut.mesh import make
 from abut.solvers import active_set, condensed, direct
 from abut.solvers.active_set import Stage, solve_step, start
+from abut.solvers.exact import ROUGH, solve_set
 from abut.solvers.linear import Prepared
-from abut.solvers.newton import Outcome
+from abut.solvers.newton import Outcome, active_laws
 from abut.solvers.search import Log, search
 from search_models import HARD, STEEL, ball, beam, line, pin
 from units import MILLIMETRES_TO, in_units
@@ -122,11 +124,18 @@ def searched(solver: Prepared, stage: Stage) -> Outcome:
 
 
 def peeled(solver: Prepared, stage: Stage) -> Outcome:
-    """One active set after the other, however many it takes."""
-    system = replace(solver.system, softens=False)
-    outcome = solve_step(system, start(system), stage, LONG, lambda _: None)
-    assert outcome.converged
-    return solver.finish(outcome, stage.weights)
+    """One active set after the other as the law asks for them, however many it takes: the search's slow twin."""
+    system = solver.system
+    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
+    state = start(system)
+    for number in range(1, LONG + 1):
+        solved = solve_set(system, state, stage, tied, number, ROUGH)
+        if not solved.changed.any():
+            none = np.zeros(len(tied), dtype=bool)
+            laws = partial(active_laws, weights=stage.weights)
+            return solver.finish(Outcome(solved.state, (), True, none, laws), stage.weights)
+        state = replace(solved.state, active=solved.wanted)
+    raise AssertionError("not converged")
 
 
 def programme(own: Problem, stage: Stage) -> tuple[NDArray[np.float64], ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -63,3 +63,9 @@ def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int
         where = np.argwhere(np.abs(result) > LARGEST)[0].tolist()
         raise InputError(f"{name}: entry {where} is larger than {LARGEST:g}; check the units")
     return result
+
+
+def known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:
+    """Raise InputError for a name that is not among the known ones, with the nearest."""
+    if name not in known:
+        raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from abut import checks
 from abut.conditions import (
     COMPONENTS,
-    TURNS,
     Amplitude,
     BodyForce,
     Equation,
@@ -29,7 +27,8 @@ from abut.conditions import (
     Term,
     Traction,
 )
-from abut.errors import InputError, nearest
+from abut.consistency import check_equations, check_loads, check_rigid, check_supports
+from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.probe import Probe, check_probes
 from abut.sides import (
@@ -212,10 +211,12 @@ class Model:
         for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
-        self._check_rigid()
+        check_rigid(self.mesh, self.rigid)
         self._check_solids()
-        self._check_names()
-        self._check_equations()
+        check_supports(self.mesh, self.supports)
+        check_loads(self.mesh, self.loads, {body.body for body in self.rigid})
+        self._check_contacts()
+        check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
     @property
@@ -287,7 +288,7 @@ class Model:
     def _check_solids(self) -> None:
         seen: set[str] = set()
         for i, solid in enumerate(self.solids):
-            _known(solid.body, self.mesh.bodies, f"solids[{i}].body", "body")
+            checks.known(solid.body, self.mesh.bodies, f"solids[{i}].body", "body")
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
@@ -303,73 +304,11 @@ class Model:
         if not self.solids:
             raise InputError("solids: every body is rigid; at least one must deform")
 
-    def _check_rigid(self) -> None:
-        owner: dict[int, str] = {}
-        exist = ("y",) if self.mesh.axisymmetric else ("x", "y", "rz") if self.dim == 2 else (*COMPONENTS, *TURNS)
-        for i, rigid in enumerate(self.rigid):
-            _known(rigid.body, self.mesh.bodies, f"rigid[{i}].body", "body")
-            if rigid.reference is not None and len(rigid.reference) != self.dim:
-                raise InputError(f"rigid[{i}].reference: expected {self.dim} numbers, got {len(rigid.reference)}")
-            for name in (*COMPONENTS, *TURNS):
-                if name not in exist and getattr(rigid, name):
-                    plane = "axisymmetric" if self.mesh.axisymmetric else "2D"
-                    raise InputError(f"rigid[{i}].{name}: the model is {plane}; leave {name} out")
-            nodes = {int(n) for _, cells, _ in self.mesh.cells_of(rigid.body) for n in np.unique(cells)}
-            if rigid.body in owner.values():
-                raise InputError(f"rigid[{i}].body: body '{rigid.body}' is given twice; keep one of them")
-            shared = nodes & owner.keys()
-            if shared:
-                raise InputError(
-                    f"rigid[{i}].body: '{rigid.body}' and '{owner[min(shared)]}' are rigid and share points; make "
-                    "them one body"
-                )
-            owner |= dict.fromkeys(nodes, rigid.body)
-
-    def _check_equations(self) -> None:
-        for i, equation in enumerate(self.equations):
-            for j, term in enumerate(equation.terms):
-                where = f"equations[{i}].terms[{j}]"
-                if isinstance(term.on, str):
-                    _known(term.on, self.mesh.node_sets, f"{where}.on", "node set")
-                    if len(self.mesh.node_sets[term.on]) != 1:
-                        count = len(self.mesh.node_sets[term.on])
-                        raise InputError(f"{where}.on: node set '{term.on}' has {count} nodes; a term is for one")
-                elif not 0 <= term.on < len(self.mesh.points):
-                    raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(self.mesh.points)}, from 0")
-                if term.component not in COMPONENTS[: self.dim]:
-                    raise InputError(f"{where}.component: the model is 2D; z does not exist")
-
     def _kinds(self, body: str) -> list[str]:
         return sorted({kind for kind, _, _ in self.mesh.cells_of(body)})
 
-    def _check_names(self) -> None:
-        mesh = self.mesh
-        for i, support in enumerate(self.supports):
-            if support.normal is None:
-                _known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
-            else:
-                _known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
-            if self.dim == 2 and support.z is not None:
-                raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
-        rigid = {body.body for body in self.rigid}
-        for i, load in enumerate(self.loads):
-            if isinstance(load, (Gravity, BodyForce)):
-                if load.on is not None:
-                    _known(load.on, mesh.bodies, f"loads[{i}].on", "body")
-                if isinstance(load, Gravity) and load.on in rigid:
-                    raise InputError(
-                        f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force"
-                    )
-            else:
-                self._check_place(load, f"loads[{i}].on")
-                if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
-                    raise InputError(
-                        f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out"
-                    )
-            if isinstance(load, (Pressure, Temperature)) or callable(load.value):
-                continue
-            if len(load.value) != self.dim:
-                raise InputError(f"loads[{i}].value: expected {self.dim} components, got {len(load.value)}")
+    def _check_contacts(self) -> None:
+        mesh, rigid = self.mesh, {body.body for body in self.rigid}
         names: set[str] = set()
         for i, contact in enumerate(self.contacts):
             check_names(mesh, contact.contactor, f"contacts[{i}].contactor")
@@ -387,15 +326,6 @@ class Model:
             check_own(own, contact.contactor, contact.target, f"contacts[{i}]")
         check_twice([contact.name for contact in self.contacts], every)
 
-    def _check_place(self, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
-        mesh = self.mesh
-        if isinstance(load, NodalForce):
-            _known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
-        elif isinstance(load, Temperature):
-            _known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
-        else:
-            _known(load.on, mesh.surfaces, where, "surface")
-
     def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
         if rigid >= bodies_of(self.mesh, contact.target):
             raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
@@ -403,8 +333,3 @@ class Model:
             f"contacts[{i}].contactor: {words(contact.contactor)} is rigid; the pressure needs the displacements of its own "
             "side to be unique: swap contactor and target"
         )
-
-
-def _known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:
-    if name not in known:
-        raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")

@@ -41,7 +41,6 @@ MISLED = 0.25  # share of the active set that changes, and more than before, whe
 SETTLING, SETTLED = 0.1, 6  # the same below which a set that was foreseen well may settle yet, until that row of a step
 LAST = 12  # row of a step by which the violation should be gone, at its pace of the last three
 HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
-FIRST_SHARE, GROWTH = 0.3, 1.5  # of the largest violation: what changes its row after a cycle, theory (V9)
 
 
 def start(system: System) -> Unknowns:
@@ -83,7 +82,6 @@ def solve_step(
     violations: list[float] = []
     foresight, doubtful = system.predict, False
     lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
-    share = 0.0  # after a cycle only violations above this share of the largest change their row: theory (V9)
     finest, before = ROUGH, np.inf
     accuracy = STRIDE if settle else ROUGH
     if state.active.all() and not settle:
@@ -93,7 +91,7 @@ def solve_step(
             solved = solve_set(system, state, stage, tied, log.next, accuracy)
         except SingularModelError:
             _check_balance(system, stage)
-            if not system.softens or tied.all() or aim == "this set":
+            if tied.all() or aim == "this set":
                 raise
             return search(system, begin, stage, limit, log, tied, aim)
         log.add(solved.row)
@@ -121,7 +119,7 @@ def solve_step(
         gap = system.gap(state, stage.weights)
         rows = len(log.done) - len(earlier)
         lawful = None
-        if foresight is not None and not share and (rows <= EARLY or count > FEW * active.sum()):
+        if foresight is not None and (rows <= EARLY or count > FEW * active.sum()):
             guess = foresight(gap, state.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 told = system.exact or solved.error <= TOLD
@@ -139,12 +137,8 @@ def solve_step(
         if repeated and not stuck and not system.exact and finest > FINE:
             accuracy = finest = FINE  # sets may repeat because they were not solved well enough
             seen.clear()
-        elif slow and system.softens:
+        elif slow:
             return search(system, begin, stage, limit, log, tied, aim)
-        elif repeated or stalled(changes) or share:
-            share = _next_share(share, repeated)
-            strong = changed & (solved.violation >= share * solved.violation[changed].max())
-            wanted = np.where(strong, wanted, active)
         state = replace(state, active=wanted)
     recent = np.stack(history[-6:])
     cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | changed
@@ -166,17 +160,11 @@ def hopeless(changes: Sequence[int], rows: int) -> bool:
 
 def closing(violations: Sequence[float], rows: int) -> bool:
     """Whether the law's largest violation falls so evenly that it will soon be gone: an edge of contact that goes back facet
-    by facet. rows: those of the step so far."""
+    by facet, theory (V9). rows: those of the step so far."""
     last = violations[-1 - PATIENCE :]
     if len(last) <= PATIENCE or any(after >= before for before, after in pairwise(last)):
         return False
     return rows + last[-1] * PATIENCE / (last[0] - last[-1]) <= LAST
-
-
-def _next_share(share: float, repeated: bool) -> float:
-    if repeated:
-        return min(1.0, GROWTH * share) if share else FIRST_SHARE
-    return min(max(share, FIRST_SHARE), 1.0 / GROWTH)
 
 
 def _check_balance(system: System, stage: Stage) -> None:

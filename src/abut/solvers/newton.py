@@ -79,8 +79,8 @@ class System:
     as often as wanted, where the solver can; accurate: of equilibrium and of closed gaps, where it is not exact. predict:
     (gap, pressure, active, tied) -> a guess at the final active set, where one is cheap. compliance, opening: where
     displacements have been eliminated, the gaps that come of them, by pressures (n, n) and by each history (n,
-    n_histories). motions: (n_free, m) rigid motions that supports leave free. softens: whether ``step`` takes the rows of
-    theory (V18); respond: (forces, springs) -> displacements, (n_free,) all, roughly, by iterative solvers.
+    n_histories). motions: (n_free, m) rigid motions that supports leave free. respond: (forces, springs) -> displacements,
+    (n_free,) all, roughly, by iterative solvers.
     """
 
     stiffness: Any
@@ -92,7 +92,6 @@ class System:
     step: Step
     motions: NDArray[np.float64]
     factorise: Callable[[Rows], Solve] | None = None
-    softens: bool = True
     respond: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]] | None = None
     exact: bool = True
     accurate: float = ACCURATE
