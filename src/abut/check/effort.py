@@ -33,10 +33,7 @@ SEGMENT = {  # seconds a segment between flat facets, between curved ones
 A_PAIR, A_BODY = 8e-3, 4e-4  # seconds a pair and a body, whatever their size
 RESULT = 1.0e-6  # seconds a free displacement and step: stresses, checks
 ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
-ELIMINATIONS = {
-    1: 1,
-    2: 2,
-}  # of one step, by degree: pressures on quadratic facets are chosen anew within closed contact
+ELIMINATIONS = {1: 1, 2: 2}  # of a step, by degree: on quadratic facets functions change where contact is closed
 DENSE, SOLUTION = 1.5e-10, 2e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
 LEVELS, CYCLE = 5e-8, 3e-9  # seconds an entry of the stiffness for setting multigrid up, and for one iteration
 FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins where the last ended
