@@ -20,6 +20,7 @@ from abut.contact.pressure_space import (
     DUAL_P1,
     PressureSpace,
     inner_facets,
+    only,
     pressure_space,
     reduce,
     resolve,
@@ -68,8 +69,9 @@ class Pair:
     operator: (n, n_free) sparse; prescribed: (n, n_histories) change of the gap by prescribed displacements and offsets that
     follow a history, theory (F9); gap: (n,) weighted geometric gap with the constant offset; scale: (n,) weighted gap per
     pressure, weight h / E.
-    size: typical facet length; stiffness: E / size, pressure per length. For tied pairs the n rows hold all components
-    (dim in turn) and the gap is zero.
+    size: typical facet length; stiffness: E / size, pressure per length. index: (n_functions, c) the multiplier of each
+    function of ``space`` and component, -1 where there is none; components: the space of each component's multipliers, in
+    turn. Ties have all components (c = dim), along the axes, and a gap of zero; else c = 1, along the contactor's normal.
     """
 
     contact: Contact
@@ -84,6 +86,8 @@ class Pair:
     scale: NDArray[np.float64]
     size: float
     stiffness: float
+    index: NDArray[np.int64]
+    components: tuple[PressureSpace, ...]
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
     interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
@@ -93,6 +97,22 @@ class Pair:
     @property
     def tied(self) -> bool:
         return self.contact.kind == "tied"
+
+    @property
+    def weight(self) -> NDArray[np.float64]:
+        """int H_k of every multiplier, (n,)."""
+        return self.scale * self.stiffness
+
+    @property
+    def transfer(self) -> Any:
+        """(9 n_facets, n) sparse, multipliers -> facet-wise nodal values of whichever component each one is."""
+        return self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
+
+    def traction(self, multipliers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Facet-wise coefficients (9 n_facets, c) by component."""
+        ends = np.cumsum([len(own) for own in self.components])[:-1]
+        parts = np.split(multipliers, ends)
+        return np.column_stack([own.transfer @ part for own, part in zip(self.components, parts)])
 
     @property
     def redundant(self) -> bool:
@@ -176,8 +196,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
-        scale=space.weight / stiffness, size=size, stiffness=stiffness,
-        compliance=_compliance(model, contactor, target),
+        scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
+        components=(space,), compliance=_compliance(model, contactor, target),
         points=_points(coupling, space, held, modulus / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=_planes(contactor, border, beyond, held),
@@ -225,7 +245,8 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
     if points is not None and at is not None:
         points = replace(points, test=(at.pressure @ space.transfer).tocsr())
     return replace(
-        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(), points=points,
+        own, space=space, components=(space,), index=np.arange(len(space))[:, None], rows=rows,
+        operator=(rows @ held.free).tocsr(), points=points,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
@@ -294,16 +315,17 @@ def _tied(
     """All components of the displacement are tied, theory (L9). A multiplier component that supports hold at its node
     on the contactor follows its neighbour, direction by direction."""
     dim = contactor.dim
-    rows, weights, spaces = [], [], []
+    rows, spaces = [], []
+    index, first = np.full((len(space), dim), -1), 0
     for a in range(dim):
-        own = space
+        own, functions = space, np.arange(len(space))
         sits = space.node >= 0
         if sits.any():
             share = np.zeros(len(space))
             direction = np.broadcast_to(np.eye(dim)[a], (int(sits.sum()), dim))
             share[sits] = held.held_share(space.node[sits], direction)
             if (share < HELD).any():
-                own = reduce(space, coupling, share < HELD)
+                own, functions = reduce(space, coupling, share < HELD), np.flatnonzero(share < HELD)
         scalar = (own.transfer.T @ coupling.operator).tocsr()
         spread = sp.csr_matrix(
             (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dim * np.arange(scalar.shape[1]) + a)),
@@ -312,19 +334,15 @@ def _tied(
         component = (scalar @ spread).tocsr()
         keep = _row_norms(component @ held.free) > NO_EFFECT * own.weight
         rows.append(component[keep])
-        weights.append(own.weight[keep])
-        spaces.append((own.transfer.tocsc()[:, keep], a))
+        spaces.append(only(own, keep))
+        index[functions[keep], a] = first + np.arange(int(keep.sum()))
+        first += int(keep.sum())
     every = sp.vstack(rows).tocsr()
-    weight = np.concatenate(weights)
-    transfer = sp.hstack([t for t, _ in spaces]).tocsr()
-    component_of = np.concatenate([np.full(t.shape[1], a) for t, a in spaces])
-    vector_space = PressureSpace(
-        space.name, space.degree, transfer, transfer, weight, component_of, component_of, space.removed
-    )
+    weight = np.concatenate([own.weight for own in spaces])
     return Pair(
-        contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
+        contact, contactor, target, coupling, space, every, (every @ held.free).tocsr(),
         prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
-        stiffness=stiffness, compliance=compliance,
+        stiffness=stiffness, index=index, components=tuple(spaces), compliance=compliance,
     )  # fmt: skip
 
 
