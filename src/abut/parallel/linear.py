@@ -31,7 +31,7 @@ from abut.solvers.direct import SINGULAR
 from abut.solvers.iterative import RESPONSE, Count, NotConverged, compliance
 from abut.solvers.linear import Prepared
 from abut.solvers.newton import Solve
-from abut.solvers.schur import PressureBlock, foresight, predictor, pressure_block
+from abut.solvers.schur import PressureBlock, foresight, half_spaces, interfaces, pressure_block
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -157,7 +157,7 @@ def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loos
 def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, count: Count) -> Prepared:
     pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
     solver = Iterative(matrix, system.operator, pressures, loose, count)
-    predict = predictor(pressures.forward, np.asarray(system.operator @ loose))
+    predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ loose))
     iterative = replace(
         system,
         step=solver.step,
@@ -183,7 +183,7 @@ def prepare_direct(matrix: Distributed, system: System, loose: Vector) -> Prepar
             "this PETSc has neither MUMPS nor SuperLU_DIST, so that it factorises on one process only; install one of them"
         )
     solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
-    predict = foresight(system.pairs, np.asarray(system.operator @ loose))
+    predict = foresight(lambda: half_spaces(interfaces(system.pairs)), np.asarray(system.operator @ loose))
     direct = replace(system, step=solver.step, factorise=solver.factorise, respond=solver.respond, predict=predict)
     return Prepared(
         direct, lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other, loose),

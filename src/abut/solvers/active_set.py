@@ -33,8 +33,6 @@ __all__ = ["Laws", "Outcome", "Rows", "Stage", "System", "Unknowns", "following"
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once sets repeat
-FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
-EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
 MISLED = 0.25  # share of the active set that changes, and more than before, where a set was foreseen wrongly
@@ -119,7 +117,7 @@ def solve_step(
         gap = system.gap(state, stage.weights)
         rows = len(log.done) - len(earlier)
         lawful = None
-        if foresight is not None and (rows <= EARLY or count > FEW * active.sum()):
+        if foresight is not None:
             guess = foresight(gap, state.pressure, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
                 told = system.exact or solved.error <= TOLD

@@ -13,7 +13,7 @@ from abut.solvers.active_set import Rows, System
 from abut.solvers.conditions import Conditions, conditions
 from abut.solvers.krylov import fgmres
 from abut.solvers.multigrid import Hierarchy
-from abut.solvers.schur import Apply, PressureBlock, predictor, pressure_block
+from abut.solvers.schur import Apply, PressureBlock, foresight, pressure_block
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
@@ -107,5 +107,5 @@ def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], 
     """The system with its linear systems solved iteratively; ``count`` goes on counting."""
     pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
     solver = Iterative(system.operator, hierarchy, pressures, motions, count)
-    predict = predictor(pressures.forward, np.asarray(system.operator @ motions))
+    predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ motions))
     return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)

@@ -19,7 +19,7 @@ from abut.solvers.condensed import condense
 from abut.solvers.direct import solver_name
 from abut.solvers.iterative import Count, iterate
 from abut.solvers.multigrid import Hierarchy, hierarchy
-from abut.solvers.schur import foresight
+from abut.solvers.schur import foresight, half_spaces, interfaces
 
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 
@@ -98,7 +98,9 @@ def _iterative(system: System, levels: Hierarchy, loose: NDArray[np.float64], co
 
 
 def _direct(system: System, loose: NDArray[np.float64]) -> Prepared:
-    system = replace(system, predict=foresight(system.pairs, np.asarray(system.operator @ loose)))
+    pairs = system.pairs
+    predict = foresight(lambda: half_spaces(interfaces(pairs)), np.asarray(system.operator @ loose))
+    system = replace(system, predict=predict)
     condensed = condense(system, loose)
     name = f"direct ({solver_name()})"
 
