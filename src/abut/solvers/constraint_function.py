@@ -97,7 +97,7 @@ def _newton(
         system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
         for flag in (lambda pair: pair.tied, lambda pair: not pair.smooth)
     )
-    before, violation, tries = np.inf, np.zeros(len(state.active)), 0
+    before, violation, tries, unsettled = np.inf, np.zeros(len(state.active)), 0, True
     for _ in range(limit):
         clock = time.perf_counter()
         laws = smooth.laws(softness)
@@ -108,6 +108,9 @@ def _newton(
         try:
             following = advance(system, state, stage.weights, near, _accuracy(error, before))
         except SingularModelError:
+            if softness == HARDEST and error < TOLERANCE and not unsettled:
+                # A body that nothing presses on, and rounding, which is all that is left, would move it.
+                return Outcome(state, tuple(done), True, np.zeros(len(state.active), dtype=bool), laws)
             break
         following, found = _line_search(smooth, state, following, laws)
         before = error
