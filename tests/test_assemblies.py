@@ -17,7 +17,7 @@ from abut.mesh import make
 from abut.solution import Saved
 from assemblies import PLANE
 from assemblies_solid import SOLID
-from oracle import assembled, exact, final, programme, solvable
+from oracle import assembled, at_the_end, exact, programme, solvable
 from units import MILLIMETRES_TO, in_units
 
 pytest.importorskip("quadprog")
@@ -41,14 +41,14 @@ def solved(model: abut.Model) -> tuple[abut.Solution, Saved] | None:
         return solution, kept[-1]
     assert "the loads pull it off its contact" in reason
     with mock.patch("abut.problem.assembly.require_balance"), mock.patch("abut.problem.assembly.require_unmoved"):
-        assert not solvable(programme(assembled(model).system))
+        assert not solvable(programme(at_the_end(assembled(model))))
     return None
 
 
 def agrees_with_quadprog(model: abut.Model, saved: Saved) -> None:
     """The pressures of the last step against a method that shares nothing with ours but the matrices."""
     own = assembled(model)
-    expected = exact(programme(final(model, own, saved.inside)))
+    expected = exact(programme(at_the_end(own, saved.inside)))
     assert np.abs(saved.pressure - expected).max() <= SAME * np.abs(expected).max() + nothing(model)
 
 

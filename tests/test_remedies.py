@@ -14,7 +14,7 @@ import pytest
 import abut
 from abut.diagnosis.advice import Remedy, remedies, swap, unsettled
 from abut.mesh import make
-from abut.nonlinear import constraint_function
+from abut.nonlinear import smooth_laws
 from abut.output.results import summary, write
 from abut.solution import Iteration, Solution, Step
 from assemblies import PLANE
@@ -112,8 +112,8 @@ def sharp() -> abut.Model:
 
 def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """The constraint function without a line search, so that it fails at once."""
-    monkeypatch.setattr(constraint_function, "HALVINGS", 0)
-    monkeypatch.setattr(constraint_function, "TRIES", -1)
+    monkeypatch.setattr(smooth_laws, "HALVINGS", 0)
+    monkeypatch.setattr(smooth_laws, "TRIES", -1)
     original = ball()
     solution = abut.solve(replace(original, contacts=[replace(original.contacts[0], law="constraint-function")]))
     assert not solution.converged

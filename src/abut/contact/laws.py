@@ -123,6 +123,4 @@ class ConstraintFunction:
         value = value + TENSION * np.where(pull > -width, -0.5 * pull**2 / width, pull + 0.5 * width)
         by_pressure = by_pressure + TENSION * np.minimum(-pull / width, 1.0)
         closed = (pressure > scaled) & (pressure > 0.0)
-        return LawResult(
-            value[:, None], (self.stiffness * by_gap)[:, None, None], by_pressure[:, None, None], closed
-        )
+        return LawResult(value[:, None], (self.stiffness * by_gap)[:, None, None], by_pressure[:, None, None], closed)

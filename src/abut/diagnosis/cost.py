@@ -12,7 +12,7 @@ from abut.diagnosis.finding import Finding
 from abut.linear.choice import LARGE, chosen
 from abut.linear.direct import available_memory
 from abut.model import Model
-from abut.parallel.backend import LARGE as PETSC_LARGE
+from abut.parallel.linear import LARGE as PETSC_LARGE
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair
 

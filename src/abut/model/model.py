@@ -11,6 +11,7 @@ import numpy as np
 
 from abut import checks
 from abut.bodies.integration import INTEGRATIONS, check_integration
+from abut.contact.laws import Law
 from abut.contact.sides import (
     Names,
     Sides,
@@ -105,14 +106,15 @@ class Contact:
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
-    ``method``: the node-to-segment ones are there for comparison only."""
+    ``method``: the node-to-segment ones are there for comparison only. ``law``: "complementarity", "constraint-function" or
+    a law of your own (``abut.contact.laws.Law``)."""
 
     contactor: Names
     target: Names
     name: str = ""
     kind: str = "contact"
     pressure: str = "auto"
-    law: str = "complementarity"
+    law: str | Law = "complementarity"
     epsilon: float = 1e-12
     method: str = "segment-to-segment"
     integration: Integration = field(default_factory=Integration)
@@ -128,7 +130,8 @@ class Contact:
         where = f"contact '{self.name}'"
         checks.choice(self.kind, f"{where}: kind", ("contact", "tied"))
         checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
-        checks.choice(self.law, f"{where}: law", LAWS)
+        if isinstance(self.law, str) or not isinstance(self.law, Law):
+            checks.choice(self.law, f"{where}: law", LAWS)
         checks.choice(self.method, f"{where}: method", METHODS)
         if self.method != METHODS[0] and (self.kind, self.law, self.pressure) != ("contact", LAWS[0], "auto"):
             raise InputError(

@@ -13,8 +13,8 @@ from abut.linear.solver import Prepared
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
-from abut.problem.state import Largest, State
 from abut.solution import Iteration
+from abut.solution.state import Largest, State
 
 FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
 NO_PRESSURE = 1e-300

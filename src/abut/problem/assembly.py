@@ -16,7 +16,7 @@ from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, loads
-from abut.problem.problem import ContactProblem, stacked
+from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import DeadLoads, LinearBodies
 from abut.solution import Observer, Phase
@@ -73,6 +73,7 @@ def assemble(
         springs=springs,
         stiffness=reduced,
         motions=held.coordinates(held_by.free),
+        unit=unit_of(reduced),
     )
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")

@@ -106,7 +106,9 @@ class Pair:
     @property
     def transfer(self) -> Any:
         """(9 n_facets, n) sparse, multipliers -> facet-wise nodal values of whichever component each one is."""
-        return self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
+        return (
+            self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
+        )
 
     def traction(self, multipliers: NDArray[np.float64]) -> NDArray[np.float64]:
         """Facet-wise coefficients (9 n_facets, c) by component."""
@@ -121,7 +123,8 @@ class Pair:
 
     @property
     def smooth(self) -> bool:
-        return not self.tied and self.contact.law == "constraint-function"
+        """Whether the law is another one than complementarity, which Newton's method solves from its solution on."""
+        return not self.tied and self.contact.law != LAWS[0]
 
     def __len__(self) -> int:
         return int(self.operator.shape[0])

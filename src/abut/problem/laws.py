@@ -82,6 +82,21 @@ def in_the_mean(points: PairPoints, law: Law, gap: Vector, multipliers: Vector) 
     )
 
 
+def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bool_]) -> LawRows:
+    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V18).
+
+    gap, shift: (n,) weighted gaps; softness: (n,) gap per pressure, positive, or zero where a gap is to close."""
+    n = len(gap)
+    return LawRows(
+        residual=shift - gap,
+        closed=closed,
+        by_gap=-sp.identity(n, format="csr"),
+        by_pressure=sp.diags(-softness, format="csr"),
+        at_points=False,
+        decoupled=np.zeros(n, dtype=bool),
+    )
+
+
 def _spread(values: Vector, where: NDArray[np.int64]) -> Vector:
     """Values of multipliers by function and component, zero where there is no multiplier."""
     return np.where(where >= 0, values[np.maximum(where, 0)], 0.0) if len(values) else np.zeros(where.shape)

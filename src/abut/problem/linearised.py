@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.restraint import Restraint
-from abut.problem.state import State
+from abut.solution.state import State
 
 Vector = NDArray[np.float64]
 
@@ -43,13 +43,14 @@ class Linearised:
     """K q - B^T p = f, theory (F6), and weighted gaps g = B q + C p + g0, theory (F9), near a state: exactly where
     the problem is constant, so that K, B and C are the same objects at every state and a linear solver keeps its factors.
 
-    stiffness K: (n_free, n_free); load f: (n_free,); operator B: (n, n_free), all pairs stacked; offset g0: (n,);
-    compliance C: (n, n) where displacements have been condensed, theory (V4), else None; motions: (n_free, m) rigid motions
-    that supports leave free; restraint: what holds bodies where contact lets go; forces: (n_free of the whole problem,) f
-    before condensation.
+    factors: (n_histories,) of the histories at ``time``; stiffness K: (n_free, n_free); load f: (n_free,); operator B:
+    (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed, theory
+    (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where contact
+    lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
     """
 
     time: float
+    factors: Vector
     stiffness: Any
     load: Vector
     pairs: Sequence[Pair]
@@ -58,6 +59,7 @@ class Linearised:
     motions: NDArray[np.float64]
     restraint: Restraint
     forces: Vector
+    unit: float
     compliance: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
@@ -85,6 +87,11 @@ class Linearised:
     def weight(self) -> Vector:
         """(n,) int H_k."""
         return self.join([pair.weight for pair in self.pairs])
+
+    def same_matrices(self, other: Linearised) -> bool:
+        """Whether stiffness, operator and compliance are the very objects of another state's."""
+        mine, its = ((s.stiffness, s.operator, s.compliance) for s in (self, other))
+        return all(a is b for a, b in zip(mine, its))
 
     def internal(self, state: State) -> Vector:
         """K q: nodal forces of stresses on the free displacements; the longest product of all."""

@@ -18,8 +18,8 @@ from abut.problem.free_modes import Regularisation
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.restraint import Restraint
-from abut.problem.state import State, at_rest
 from abut.problem.terms import Motion, Share, Term
+from abut.solution.state import State, at_rest
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
@@ -64,7 +64,8 @@ class ContactProblem:
 
     terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
     (n, n_free) all of them stacked; restraint: what holds each body; springs: on motions that nothing resists; stiffness:
-    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid motions that supports leave free.
+    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid motions that supports leave free;
+    unit: size of the stiffness' entries, where it is constant.
     """
 
     model: Model
@@ -76,6 +77,7 @@ class ContactProblem:
     springs: Regularisation
     stiffness: Any
     motions: NDArray[np.float64]
+    unit: float = 0.0
 
     @property
     def constant(self) -> bool:
@@ -99,8 +101,9 @@ class ContactProblem:
     def linearise(self, before: State, now: State) -> Linearised:
         """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
         have no rounding."""
-        at = np.zeros(self.n_free) if self.constant else now.unknowns
-        shares = self._shares(before, now, at)
+        if self.constant:
+            before, now = (replace(state, unknowns=np.zeros(self.n_free)) for state in (before, now))
+        at, shares = now.unknowns, self._shares(before, now)
         force = self.held.free.T @ np.asarray(sum(share.force for share in shares))
         if self.constant:
             stiffness, load = self.stiffness, -force
@@ -108,16 +111,17 @@ class ContactProblem:
             tangents = [share.tangent.reduce(self.held) for share in shares if share.tangent is not None]
             stiffness = self.springs.added_to(sum(tangents[1:], tangents[0]))
             load = stiffness @ at - force - self.springs.forces(at)
+        factors = weights(self.model.histories, now.time)
         return Linearised(
-            now.time, stiffness, load, self.pairs, self.operator, self._offset(weights(self.model.histories, now.time)),
-            self.motions, self.restraint, load,
+            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors), self.motions,
+            self.restraint, load, self.unit or unit_of(stiffness),
         )  # fmt: skip
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
         if self.constant:
             return now
-        shares = self._shares(before, now, now.unknowns)
+        shares = self._shares(before, now)
         news = {term.name: s.history for term, s in zip(self.terms, shares) if s.history is not None}
         return replace(now, history=before.history.with_(news))
 
@@ -147,14 +151,11 @@ class ContactProblem:
         own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
         return np.concatenate(own) if own else np.zeros(0)
 
-    def _shares(self, before: State, now: State, at: NDArray[np.float64]) -> list[Share]:
-        """Of every term at free displacements ``at``."""
-        there, here = self.displacement(before), self.displacement(replace(now, unknowns=at))
+    def _shares(self, before: State, now: State) -> list[Share]:
+        """Of every term."""
+        there, here = self.displacement(before), self.displacement(now)
         return [
-            term.evaluate(
-                Motion(before.time, there, before.history.of(term.name)),
-                Motion(now.time, here, before.history.of(term.name)),
-            )
+            term.evaluate(*(Motion(s.time, u, before.history.of(term.name)) for s, u in ((before, there), (now, here))))
             for term in self.terms
         ]
 
@@ -162,3 +163,9 @@ class ContactProblem:
 def stacked(pairs: Sequence[Pair], n_free: int) -> Any:
     """The operators of all pairs, (n, n_free)."""
     return sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
+
+
+def unit_of(stiffness: Any) -> float:
+    """Size of a stiffness' entries."""
+    diagonal = stiffness.diagonal()
+    return float(np.median(diagonal)) if len(diagonal) else 1.0

@@ -81,9 +81,7 @@ class Restraint:
         motion = unheld(self.pairs, moves, works)
         return "" if motion is None else self._in_words(free @ motion, forces, driven=False)
 
-    def _in_words(
-        self, motion: NDArray[np.float64], forces: Sequence[NDArray[np.float64]], driven: bool
-    ) -> str:
+    def _in_words(self, motion: NDArray[np.float64], forces: Sequence[NDArray[np.float64]], driven: bool) -> str:
         """The motion (n_modes,), or a plain shift or turn that does as well: one that closes no contact, and on which forces
         (n_free,) do work if ``driven``, else none that turns it back."""
         plain = simple_motions(self.rigid, motion)
@@ -103,9 +101,7 @@ class Restraint:
         best = plain[:, stays][:, 0] if stays.any() else motion
         return describe(self.rigid, best[:, None], one_way=True)
 
-    def _moved(
-        self, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None
-    ) -> NDArray[np.float64] | None:
+    def _moved(self, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64] | None:
         """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
         pushes where it can; None where there is none."""
         free = free_motions([self.supports])

@@ -14,6 +14,7 @@ from abut.model import Model
 from abut.model.conditions import drives
 from abut.solution.contacts import Check, ContactResult
 from abut.solution.progress import Iteration
+from abut.solution.state import State
 
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
@@ -123,23 +124,14 @@ class Step:
 class Saved:
     """What it takes to go on after a converged step, and to have its results again.
 
-    displacement: (n_free,), pressure, active: (n,) the state; inside: (n,) where "dual-P1" has ordinary functions;
-    own_displacement, own_pressure: the same in the unknowns of
-    the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
-    largest_pressure: up to here, against which rounding is judged later.
+    state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
+    iterations: for the log.
     """
 
     number: int
-    factor: float
-    linear: str
-    largest_force: float
-    largest_pressure: float
-    displacement: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    active: NDArray[np.bool_]
+    state: State
     inside: NDArray[np.bool_]
-    own_displacement: NDArray[np.float64]
-    own_pressure: NDArray[np.float64]
+    linear: str
     iterations: tuple[Iteration, ...]
 
 
