@@ -80,11 +80,10 @@ def test_every_number_is_read(results: Quantities) -> None:
     assert not any("timings" in name or "versions" in name for name in (*numbers, *results.words))
 
 
-@pytest.mark.parametrize("share", [0.5, 0.9])  # no points are left; arrays are cut short
-def test_damaged_files_are_refused(tmp_path: Path, share: float) -> None:
+def test_damaged_files_are_refused(tmp_path: Path) -> None:
     folder = write(tmp_path / "damaged", SUMMARY)
     whole = (folder / "fields_0001.vtu").read_bytes()
-    (folder / "fields_0001.vtu").write_bytes(whole[: int(share * len(whole))])
+    (folder / "fields_0001.vtu").write_bytes(whole[: len(whole) // 2])
     with pytest.raises(ValueError, match="VTK cannot read it"):
         read(folder)
 

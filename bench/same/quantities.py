@@ -123,8 +123,8 @@ def read_vtu(path: Path) -> Iterator[Found]:
     reader.SetFileName(str(path))
     reader.Update()
     grid = reader.GetOutput()
-    if reader.GetErrorCode() or not grid.GetNumberOfPoints():
-        raise ValueError(f"{path}: VTK cannot read it, or it has no points")
+    if reader.GetErrorCode():
+        raise ValueError(f"{path}: VTK cannot read it")
     cells = grid.GetCells()
     yield "coordinates", vtk_to_numpy(grid.GetPoints().GetData())
     yield "connectivity", vtk_to_numpy(cells.GetConnectivityArray())
