@@ -123,7 +123,7 @@ def read_vtu(path: Path) -> Iterator[Found]:
     reader.SetFileName(str(path))
     reader.Update()
     grid = reader.GetOutput()
-    if reader.GetErrorCode():
+    if reader.GetErrorCode() or grid.GetPoints() is None:  # of some damage VTK only warns
         raise ValueError(f"{path}: VTK cannot read it")
     cells = grid.GetCells()
     yield "coordinates", vtk_to_numpy(grid.GetPoints().GetData())
