@@ -11,6 +11,7 @@ import numpy as np
 
 from abut import checks
 from abut.bodies.integration import INTEGRATIONS, check_integration
+from abut.bodies.solids import Solids
 from abut.contact.laws import Law
 from abut.contact.sides import (
     Names,
@@ -222,15 +223,11 @@ class Model:
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
-    @property
-    def materials(self) -> dict[str, LinearElastic]:
-        """Material of each solid body."""
-        return {solid.body: solid.material for solid in self.solids}
-
-    @property
-    def integration(self) -> dict[str, str]:
-        """Integration of each body."""
-        return {solid.body: solid.integration for solid in self.solids}
+    @cached_property
+    def deformable(self) -> Solids:
+        """The solids as their kernels see them."""
+        materials = {solid.body: solid.material for solid in self.solids}
+        return Solids(self.mesh, materials, self.plane, {solid.body: solid.integration for solid in self.solids})
 
     @property
     def dim(self) -> int:
