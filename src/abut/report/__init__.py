@@ -15,7 +15,8 @@ __all__ = ["Origin", "read_origin", "write_report"]
 def write_report(solution: Solution, path: str | Path, origin: Origin | None = None) -> Path:
     """Write the report of a solution to the HTML file ``path`` and return it.
 
-    origin: the job's name and text, and what theory says of it. Raises InputError where the file cannot be written."""
+    origin: the job's name and text, and what theory says of it. Raises InputError where the file cannot be written, and
+    AbutError in a source tree whose libraries of the report are not built (``make build``)."""
     path = Path(path)
     data = page(solution, origin or Origin(path.stem)).encode("utf-8")
 
