@@ -21,7 +21,7 @@ from abut.report import Origin, read_origin, write_report
 from abut.report.lines import pressure_lines
 from abut.report.origin import comparison
 from abut.report.scene import scene, thin
-from abut.report.skins import patch, skin
+from abut.report.surface_triangles import patch, skin
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 STEEL = abut.LinearElastic(1000.0, 0.3)
@@ -180,7 +180,7 @@ def test_trouble_comes_before_the_certificate(tmp_path: Path) -> None:
     """Where a run failed with facets and nodes, what to try, and what of a deck was left out."""
     from dataclasses import replace
 
-    from abut.analysis.remedies import remedies
+    from abut.diagnosis.advice import remedies
 
     solution = solution_of("quad4")
     step = replace(solution.steps[-1], converged=False, cycling={"blocks": np.array([1, 2])})
