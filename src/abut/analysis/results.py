@@ -30,9 +30,10 @@ from abut.contact.nodal_recovery import (
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.model import METHODS, Model
+from abut.model.offset import offsets
 from abut.problem.backend import Volume
 from abut.problem.constraints import Supports
-from abut.problem.contact_pairs import Pair, offsets
+from abut.problem.contact_pairs import Pair
 from abut.problem.loads import Loads
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.system import Outcome, Stage, System

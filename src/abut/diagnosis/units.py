@@ -6,6 +6,7 @@ import numpy as np
 
 from abut.contact.geometry import full_moments
 from abut.diagnosis.finding import Finding
+from abut.materials.softest import softest
 from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.model import Force, Gravity, Model, Pressure, Traction
@@ -66,7 +67,6 @@ def _moduli(model: Model) -> list[Finding]:
 
 def _loads(model: Model) -> list[Finding]:
     """The strain that a surface load makes in its own body: load per area over Young's modulus."""
-    young = {solid.body: solid.material.young for solid in model.solids}
     findings = []
     for i, load in enumerate(model.loads):
         if not isinstance(load, (Pressure, Traction, Force)) or callable(load.value):
@@ -74,10 +74,12 @@ def _loads(model: Model) -> list[Finding]:
         size = float(np.linalg.norm(load.value))
         if isinstance(load, Force):
             size /= float(full_moments(model.mesh.surface(load.on), 0)[:, 0].sum())
-        bodies = [b for b in bodies_at(model.mesh, model.mesh.surfaces[load.on][:, 0]) if b in young]
-        if not bodies or not size:
+        cells = model.mesh.surfaces[load.on][:, 0]
+        material = softest(model.mesh, model.materials, cells)
+        if material is None or not size:
             continue
-        strain = size / min(young[body] for body in bodies)
+        strain = size / material.young
+        body = next(b for b in bodies_at(model.mesh, cells) if model.materials.get(b) == material)
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
@@ -86,8 +88,8 @@ def _loads(model: Model) -> list[Finding]:
             Finding(
                 "warning" if large else "advice",
                 f"loads[{i}] on '{load.on}'",
-                f"{size:.3g} per area strains body '{bodies[0]}' (Young's modulus {min(young[b] for b in bodies):.3g}) by "
-                f"about {strain:.0e}, {says}",
+                f"{size:.3g} per area strains body '{body}' (Young's modulus {material.young:.3g}) by about {strain:.0e}, "
+                f"{says}",
                 "give load and Young's modulus in one unit, such as N and mm with MPa, or N and m with Pa",
             )
         )
