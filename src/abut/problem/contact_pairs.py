@@ -289,7 +289,8 @@ def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
 
 @dataclass(frozen=True)
 class _Scales:
-    """young: of the softer side, the scale of the law; compliance: of both sides together. Rigid sides have none."""
+    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together.
+    A rigid side has none."""
 
     young: float
     compliance: float
@@ -297,7 +298,5 @@ class _Scales:
 
 def _scales(model: Model, contactor: Surface, target: Surface) -> _Scales:
     both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
-    softer = min(both, key=contact_modulus)
-    if softer is None:
-        raise InputError(f"'{contactor.name}' and '{target.name}': both sides are rigid; one of them must deform")
-    return _Scales(softer.young, sum(2.0 / contact_modulus(material) for material in both))
+    young = min(material.young for material in both if material is not None)  # the model has refused two rigid sides
+    return _Scales(young, sum(2.0 / contact_modulus(material) for material in both))
