@@ -30,9 +30,7 @@ def shaft(cells: tuple[int, int]) -> abut.Mesh:
 def model(mesh: abut.Mesh, young: tuple[float, float], poisson: tuple[float, float] = (0.3, 0.3)) -> abut.Model:
     solids = [abut.Solid(body, abut.LinearElastic(e, nu)) for body, e, nu in zip("ab", young, poisson)]
     found = abut.find_contacts(mesh, solids)
-    return abut.Model(
-        abut.add_surfaces(mesh, found), solids, contacts=[own.contact() for own in found], plane="strain"
-    )
+    return abut.Model(abut.add_surfaces(mesh, found), solids, contacts=[own.contact() for own in found], plane="strain")
 
 
 def swapped(one: abut.Model, contact: abut.Contact) -> tuple[abut.Model, abut.Contact]:

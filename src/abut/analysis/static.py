@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from abut.analysis.results import step_result
 from abut.analysis.step_records import begin_after, check_order, restored, saved_step
 from abut.errors import SingularModelError
-from abut.linear.choice import Prepared, expected_seconds
+from abut.linear.choice import Prepared
+from abut.linear.cost_model import of_stiffness, preparing
 from abut.linear.iterative import NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
@@ -76,7 +77,7 @@ def solve(
     def linear_solver(kind: str) -> Prepared:
         what = "factorising" if kind == "direct" else "setting up multigrid for"
         size = f"{own.n_free:,}".replace(",", " ")
-        observe(Phase(f"{what} {size} displacements", expected_seconds(kind, own.n_free, model.dim)))
+        observe(Phase(f"{what} {size} displacements", preparing(of_stiffness(model.mesh, own.n_free), kind)))
         loose = held.coordinates(own.held_by.free)
         result = own.volume.prepare(kind, system, held, near_null(model.mesh, own.held_by.rigid), loose)
         note(result.note)

@@ -13,6 +13,7 @@ from abut.bodies.elements import averaged
 from abut.contact.coupling import Coupling
 from abut.errors import InputError
 from abut.linear.choice import Prepared, chosen
+from abut.linear.cost_model import LARGE_ON_MANY
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
@@ -23,11 +24,6 @@ from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
 from abut.parallel.team import Team
 from abut.problem.constraints import Supports
 from abut.problem.system import System
-
-LARGE = {
-    1: 5_000,
-    2: 5_000,
-}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 
 
 @dataclass(frozen=True)
@@ -105,7 +101,7 @@ class Spread:
                 "which multigrid cannot: leave -ksp_type and -pc_type out"
             )
         linear = "amg" if wants_iterations() else "auto"
-        return chosen(linear, len(system.load), system.pairs, self.model.mesh, held.coupled, LARGE)
+        return chosen(linear, len(system.load), system.pairs, self.model.mesh, held.coupled, LARGE_ON_MANY)
 
     def prepare(
         self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
