@@ -117,7 +117,7 @@ def translate(deck: Deck) -> Translation:
     reasons.tell()
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
-    mesh = build(groups.raw(), deck.path)
+    mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):

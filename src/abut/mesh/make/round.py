@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.errors import InputError
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.make.block import axis, grid
 from abut.mesh.make.grading import graded
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.mesh import Mesh
 from abut.mesh.promote import middles
 
 CROWDED = 0.3  # of the distances from the round sides of an octant: about the last fifth of the way to where they meet
