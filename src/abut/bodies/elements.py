@@ -179,7 +179,7 @@ def stress_sums(
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         add_stresses(
             points, moved, heat, np.ascontiguousarray(nodes, dtype=np.int32), np.ascontiguousarray(constants[cells]),
-            shapes, derivatives, weights, _to_nodes(kind, xi), plane == "axisymmetric", plane == "stress",
+            shapes, derivatives, weights, _to_nodes(kind, xi), mesh.axisymmetric, plane == "stress",
             rule == "b-bar", total, count,
         )  # fmt: skip
     return total, count

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from abut.contact.geometry import full_moments
@@ -33,36 +35,39 @@ def body_size(mesh: Mesh, body: str) -> float:
 
 def _sizes(model: Model) -> list[Finding]:
     size = {body: body_size(model.mesh, body) for body in model.mesh.bodies}
-    small, large = min(size, key=lambda b: size[b]), max(size, key=lambda b: size[b])
-    if not size[large] > UNLIKE * size[small]:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"bodies '{small}' and '{large}'",
-            f"one is {size[small]:.3g} in size, the other {size[large]:.3g}: is one meshed in metres, "
-            "the other in millimetres?",
-            "scale the coordinates of one of them by 1000",
-        )
-    ]
+    return _far_apart(
+        size,
+        UNLIKE,
+        lambda small, large, _: (
+            f"one is {small:.3g} in size, the other {large:.3g}: is one meshed in metres, the other in millimetres?"
+        ),
+        "scale the coordinates of one of them by 1000",
+    )
 
 
 def _moduli(model: Model) -> list[Finding]:
-    young = {solid.body: solid.material.young for solid in model.solids}
-    if not young:
+    return _far_apart(
+        {body: material.young for body, material in model.materials.items()},
+        STIFF,
+        lambda soft, stiff, ratio: (
+            f"Young's moduli {soft:.3g} and {stiff:.3g} differ {ratio:.0e} times: is one in Pa, the other in MPa?"
+        ),
+        "give both in one unit, force over the mesh's length squared",
+    )
+
+
+def _far_apart(
+    values: dict[str, float], limit: float, what: Callable[[float, float, float], str], cure: str
+) -> list[Finding]:
+    """A warning where the smallest and the largest value of all bodies are further apart than a factor; what: the text for
+    both and their ratio."""
+    if not values:
         return []
-    soft, stiff = min(young, key=lambda b: young[b]), max(young, key=lambda b: young[b])
-    if not young[stiff] > STIFF * young[soft]:
+    small, large = min(values, key=lambda b: values[b]), max(values, key=lambda b: values[b])
+    if not values[large] > limit * values[small]:
         return []
-    return [
-        Finding(
-            "warning",
-            f"bodies '{soft}' and '{stiff}'",
-            f"Young's moduli {young[soft]:.3g} and {young[stiff]:.3g} differ {young[stiff] / young[soft]:.0e} times: is one "
-            "in Pa, the other in MPa?",
-            "give both in one unit, force over the mesh's length squared",
-        )
-    ]
+    text = what(values[small], values[large], values[large] / values[small])
+    return [Finding("warning", f"bodies '{small}' and '{large}'", text, cure)]
 
 
 def _loads(model: Model) -> list[Finding]:
