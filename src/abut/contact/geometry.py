@@ -118,6 +118,12 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     return result
 
 
+def mean_normals(surface: Surface) -> NDArray[np.float64]:
+    """One unit normal a facet, the mean of those at its nodes, (n_facets, dim)."""
+    normal = nodal_normals(surface).sum(axis=1)
+    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
+
+
 def beside_others(surface: Surface) -> NDArray[np.bool_]:
     """Facets (n_facets,) that share a point with those of another part, with no crease between them."""
     result = np.zeros(len(surface), dtype=bool)

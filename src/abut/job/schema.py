@@ -95,43 +95,46 @@ class RigidTable(Table):
     amplitude: Points | None = None
 
 
-class PressureTable(Table):
-    kind: Literal["pressure"]
+class ScalarTable(Table):
+    """Something with a number at a place."""
+
+    kind: str
     on: str
     value: Number
     amplitude: Points | None = None
 
 
-class TractionTable(Table):
+class VectorTable(Table):
+    """Something with a vector at a place."""
+
+    kind: str
+    on: str
+    value: list[Number]
+    amplitude: Points | None = None
+
+
+class PressureTable(ScalarTable):
+    kind: Literal["pressure"]
+
+
+class TractionTable(VectorTable):
     kind: Literal["traction"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class ForceTable(Table):
+class ForceTable(VectorTable):
     kind: Literal["force"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class NodalForceTable(Table):
+class NodalForceTable(VectorTable):
     """force at each node of the set"""
 
     kind: Literal["nodal-force"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class TemperatureTable(Table):
+class TemperatureTable(ScalarTable):
     """change of temperature at the nodes, degrees"""
 
     kind: Literal["temperature"]
-    on: str
-    value: Number
-    amplitude: Points | None = None
 
 
 class GravityTable(Table):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
 from abut.linear.choice import chosen
+from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
 from abut.linear.iterative import RESPONSE, compliance
@@ -266,7 +267,7 @@ def choose(problem: ContactProblem) -> str:
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
     linear = "amg" if wants_iterations() else "auto"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE)
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
 
 def wants_factors() -> bool:
