@@ -101,6 +101,15 @@ def test_bodies_far_apart_and_gaps_that_nothing_closes() -> None:
     assert near.status == 0
 
 
+@pytest.mark.parametrize(("offset", "factor", "closes"), [(-0.6, 1.0, True), (0.6, -1.0, True), (-0.6, 0.5, False)])
+def test_offsets_that_come_with_time_close_gaps(offset: float, factor: float, closes: bool) -> None:
+    """Offset times the amplitude's factor counts where it closes the gap of 0.5 most; the supports move by 0.02."""
+    course = abut.Amplitude(((0.0, 0.0), (0.5, factor), (1.0, 0.0)))
+    contact = abut.Contact("upper.bottom", "lower.top", offset=offset, amplitude=course)
+    report = check(blocks(box(x=(2, 8), y=(2, 8), z=(10.5, 15), cells=(5, 5, 3)), contacts=[contact]))
+    assert closes != any("nothing closes the gap" in finding.what for finding in report.findings)
+
+
 def test_deep_overlap() -> None:
     """Deeper than half a facet: hardly meant; the offset that undoes it is named."""
     report = check(blocks(box(x=(2, 8), y=(2, 8), z=(9, 15), cells=(5, 5, 3))))

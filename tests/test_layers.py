@@ -22,6 +22,9 @@ LARGER = {  # still to be divided: file and function
     "analysis/results.py step_result",
     "analysis/static.py solve",
     "contact/coupling.py couple",
+    "cpp/cells.hpp shape",
+    "cpp/flatten.hpp flatten",
+    "cpp/segments.cpp couple",
     "nonlinear/active_set.py solve_step",
 }
 
