@@ -13,7 +13,7 @@ struct SurfaceView {
   const std::uint8_t *kinds;
   const std::int32_t *nodes;       // facets x 9
   const double *normals = nullptr; // facets x 9 x dim, contactor only
-  Facet<double> facet(std::size_t f) const;
+  Facet facet(std::size_t f) const;
 };
 
 // Rules with 1..n points: row n-1 of each table holds the rule with n points.
