@@ -5,6 +5,9 @@
 namespace abut {
 
 constexpr std::size_t FEW_FACETS = 200; // not worth a thread
+constexpr double STRICT = 1e-12;        // tolerance for affine facets: theory (Q4)
+constexpr double COARSE = 1e-10;        // tolerances from here up: fewer points do for the moments to be met
+constexpr int COARSE_POINTS = 8;
 
 namespace {
 
@@ -28,13 +31,13 @@ double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, con
       cross(tangent[0], tangent[1], normal);
       weight *= std::sqrt(dot(normal, normal, 3)) / dot(normal, own.plane.n, 3);
       for (int i = 0; i < f.nodes; ++i)
-        for (int j = 0; j < f.nodes; ++j)
+        for (int j = 0; j <= i; ++j)
           sum[i][j] += weight * n[i] * n[j];
     });
   }
   double error = 0;
   for (int i = 0; i < f.nodes; ++i)
-    for (int j = 0; j < f.nodes; ++j)
+    for (int j = 0; j <= i; ++j)
       error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
   return error / area;
 }
@@ -59,12 +62,12 @@ double moment_error_line(const Facet &f, const Rule &rule, const double (*exact)
       speed *= x[0];
     const double span = (f.x[1][0] - f.x[0][0]) * chord[0] + (f.x[1][1] - f.x[0][1]) * chord[1];
     for (int i = 0; i < f.nodes; ++i)
-      for (int j = 0; j < f.nodes; ++j)
+      for (int j = 0; j <= i; ++j)
         sum[i][j] += rule.wt[q] * span * speed * n[i] * n[j];
   }
   double error = 0;
   for (int i = 0; i < f.nodes; ++i)
-    for (int j = 0; j < f.nodes; ++j)
+    for (int j = 0; j <= i; ++j)
       error = std::max(error, std::abs(sum[i][j] - exact[i][j]));
   return error / length;
 }
@@ -107,19 +110,20 @@ double exact_moments(const Facet &facet, const Rule &fine, bool axisymmetric, do
       }
       area += weight;
       for (int i = 0; i < facet.nodes; ++i)
-        for (int j = 0; j < facet.nodes; ++j)
+        for (int j = 0; j <= i; ++j)
           exact[i][j] += weight * n[i] * n[j];
     }
   return area;
 }
 
 // The fewest points whose own moments meet the tolerance.
-int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const Rule &fine, double tolerance,
+int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
                   bool axisymmetric) {
   double exact[9][9] = {{0}};
-  const double area = exact_moments(facet, fine, axisymmetric, exact);
+  const int most = tolerance < COARSE ? int(exact_rules.count) : COARSE_POINTS;
+  const double area = exact_moments(facet, exact_rules.rule(most), axisymmetric, exact);
   const int last = int(rules.count);
-  int n = 1;
+  int n = tolerance < COARSE ? 1 : std::min(last, 3);
   if (facet.dim == 2) {
     while (n < last && !(moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance))
       ++n;
@@ -136,9 +140,8 @@ int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const R
 
 } // namespace
 
-void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
-          bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
-  const Rule fine = exact_rules.rule(int(exact_rules.count));
+void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules,
+          const double *tolerance, bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   // One number of subdivisions for all facets with curves: were a common edge one chord here and two there, segments
   // cut by the chords would overlap or leave out what lies between.
@@ -158,14 +161,14 @@ void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &e
     }
     int &known = affine_points[facet.kind];
     if (!known)
-      known = points_needed(facet, subdivisions[f], rules, fine, tolerance, axisymmetric);
+      known = points_needed(facet, subdivisions[f], rules, exact_rules, STRICT, axisymmetric);
     points[f] = known;
   }
   const std::size_t parts = others.size() < FEW_FACETS ? 1 : thread_count();
   run_parts(parts, [&](std::size_t part) {
     for (std::size_t i = part; i < others.size(); i += parts)
-      points[others[i]] =
-          points_needed(surface.facet(others[i]), subdivisions[others[i]], rules, fine, tolerance, axisymmetric);
+      points[others[i]] = points_needed(surface.facet(others[i]), subdivisions[others[i]], rules, exact_rules,
+                                        tolerance[others[i]], axisymmetric);
   });
 }
 

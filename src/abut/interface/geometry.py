@@ -19,6 +19,7 @@ from abut.mesh.surface import Surface
 
 CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge
 FLAT = 1e-9  # area element at a facet's node over the largest at its nodes, from which down the normal is lost
+PLANE = 1e-12  # of the largest coordinate: heights below are rounding
 
 _CORNER_XI = {
     1: np.array([[-1.0], [1.0]]),
@@ -116,6 +117,24 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     result = np.zeros_like(own)
     result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
     return result
+
+
+def turning_within(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """By how much the components of each facet's normals (n_facets, 9, dim) differ between its nodes, (n_facets,): about
+    the angle by which they turn."""
+    used = (surface.nodes >= 0)[..., None]
+    spread = np.where(used, normals, -np.inf).max(axis=1) - np.where(used, normals, np.inf).min(axis=1)
+    return np.asarray(spread.max(axis=1))
+
+
+def is_plane(surface: Surface) -> bool:
+    """Whether all nodes of a surface in 3D lie in one plane, to rounding."""
+    first = surface.points[surface.nodes[0, :3]]
+    normal = np.cross(first[1] - first[0], first[2] - first[0])
+    used = surface.nodes >= 0
+    height = (surface.points @ normal)[surface.nodes[used]]
+    size = np.abs(surface.points).max() * np.linalg.norm(normal)
+    return bool(np.ptp(height) <= PLANE * size)
 
 
 def beside_others(surface: Surface) -> NDArray[np.bool_]:
