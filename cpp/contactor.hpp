@@ -30,7 +30,7 @@ struct Contactor3 {
     }
     flatten(
         f, m, false,
-        [&](const double *xi) {
+        [&](const double *xi, int) {
           double x[3];
           facet.position.at(xi, x);
           return plane.flat(x);
@@ -71,11 +71,29 @@ struct Contactor3 {
       const Point2 next = start - t * Point2{dot(n, plane.e1, 3), dot(n, plane.e2, 3)};
       const Point2 moved = next - p;
       p = next;
-      if (dot2(moved, moved) < 1e-30 * (dot2(p, p) + 1e-300))
+      if (dot2(moved, moved) < 1e-28 * (dot2(p, p) + 1e-300))
         break;
     }
     return p;
   }
+};
+
+// The target's points in the plane of one contactor facet after another. Each is a point of several target facets.
+class Carried {
+public:
+  void begin() { ++facet_; }
+  template <class Carry> Point2 find(std::int32_t point, Carry carry) {
+    if (std::size_t(point) >= facet_of_.size())
+      facet_of_.resize(2 * std::size_t(point) + 1, 0), place_.resize(2 * std::size_t(point) + 1);
+    if (facet_of_[point] != facet_)
+      facet_of_[point] = facet_, place_[point] = carry();
+    return place_[point];
+  }
+
+private:
+  std::uint32_t facet_ = 0; // which one the places hold for
+  std::vector<std::uint32_t> facet_of_;
+  std::vector<Point2> place_;
 };
 
 } // namespace abut

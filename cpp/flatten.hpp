@@ -61,7 +61,8 @@ inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
   return curve;
 }
 
-// The pieces of a facet divided m x m, counter-clockwise; `to_plane` maps reference coordinates to the plane.
+// The pieces of a facet divided m x m, counter-clockwise; to_plane(xi, node) maps reference coordinates to the plane,
+// which are those of a node where m = 1 (-1 for none).
 // `reverse` turns the order (a target seen from the contactor). Back-facing pieces are
 // left out.
 template <class Map> void flatten(const Facet &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
@@ -77,11 +78,11 @@ template <class Map> void flatten(const Facet &f, int m, bool reverse, Map to_pl
     for (int i = 0; i < size; ++i) {
       const int k = reverse ? size - 1 - i : i, next = reverse ? (k + size - 1) % size : (k + 1) % size;
       grid(corner[k][0], corner[k][1], xi);
-      piece.p[i] = to_plane(xi);
+      piece.p[i] = to_plane(xi, m == 1 ? k : -1);
       if (!curved)
         continue;
       grid(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]), xi);
-      middle[i] = to_plane(xi);
+      middle[i] = to_plane(xi, m == 1 ? size + (reverse ? next : k) : -1);
     }
     if (signed_area(piece.p, size) <= 0)
       return;

@@ -208,13 +208,24 @@ void integrate_pieces(const Over &over, const Facet &t, const Segment &own,
     integrate_part(over, t, own, part, rule, sums);
 }
 
-void cut_facet(const Over &over, const Facet &t, int number, int subdivide, double reach,
+// What is asked of a target facet: its number, its points' numbers, how often it is divided.
+struct Asked {
+  int number;
+  const std::int32_t *points;
+  int subdivide;
+};
+
+void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reach, Carried &carried,
                std::vector<Segment> &out) {
   const Contactor3 &c = over.c;
   const std::size_t before = over.theirs.size();
   flatten(
-      t, subdivide, true,
-      [&](const double *eta) {
+      t, asked.subdivide, true,
+      [&](const double *eta, int node) {
+        if (node >= 0 && c.flat)
+          return c.plane.flat(t.x[node]);
+        if (node >= 0)
+          return carried.find(asked.points[node], [&] { return c.carry(t.x[node]); });
         double y[3];
         t.position.at(eta, y);
         return c.carry(y);
@@ -231,7 +242,7 @@ void cut_facet(const Over &over, const Facet &t, int number, int subdivide, doub
       if (!a.meets(b, 2))
         continue;
       Segment segment;
-      segment.target = number, segment.mine = mine, segment.theirs = own + int(theirs);
+      segment.target = asked.number, segment.mine = mine, segment.theirs = own + int(theirs);
       cut_pieces(over, t, segment, reach, out);
     }
 }
@@ -260,6 +271,7 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     std::vector<int> found;
     std::vector<Piece> pieces;
     std::vector<Segment> segments;
+    Carried carried;
     for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
       const Facet c = contactor.facet(f);
       Box swept = box_of(c);
@@ -301,8 +313,9 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
       } else {
         const Contactor3 own(c, subdivide_c[f]);
         const Over over{own, pieces};
+        carried.begin();
         for (int t : found)
-          cut_facet(over, targets[t], t, subdivide_t[t], options.reach, segments);
+          cut_facet(over, targets[t], {t, target.nodes + 9 * t, subdivide_t[t]}, options.reach, carried, segments);
         if (!options.hidden)
           find_hidden(over, targets, target.nodes, segments);
         each([&](const Facet &t, const Segment &own, const Rule &rule) {

@@ -120,11 +120,12 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
 
 
 def turning_within(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """By how much the components of each facet's normals (n_facets, 9, dim) differ between its nodes, (n_facets,): about
-    the angle by which they turn."""
-    used = (surface.nodes >= 0)[..., None]
-    spread = np.where(used, normals, -np.inf).max(axis=1) - np.where(used, normals, np.inf).min(axis=1)
-    return np.asarray(spread.max(axis=1))
+    """About the angle by which each facet's normals (n_facets, 9, dim) turn, (n_facets,): twice the largest distance of
+    those at its nodes from their mean. Padded normals are zero."""
+    used = surface.nodes >= 0
+    mean = normals.sum(axis=1) / used.sum(axis=1, keepdims=True)
+    away = normals - mean[:, None]
+    return 2.0 * np.sqrt(np.where(used, np.einsum("fna,fna->fn", away, away), 0.0).max(axis=1))
 
 
 def is_plane(surface: Surface) -> bool:

@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 
 MAX_POINTS = 16
 MOMENT_TOLERANCE = 1e-12  # of a plane facet's own int N_i N_j, relative to its area: theory (Q4)
-CURVED_TOLERANCE = 1e-2  # of a curved one's, times the fourth power of the angle by which its normals turn
+CURVED_TOLERANCE = 1e-2  # of a curved one's, times the fourth power of the angle by which its normals turn, and at most
+MOST_TOLERANCE = 1e-5
 
 
 def moment_tolerance(dim: int, turning: NDArray[np.float64]) -> NDArray[np.float64]:
     """How exactly each facet has to meet its own int N_i N_j, relative to its area, (n_facets,): theory (Q6).
 
-    turning: (n_facets,) by which the components of its normals differ between its nodes."""
+    turning: (n_facets,) angle by which its normals turn."""
     curved = CURVED_TOLERANCE * turning**4 if dim == 3 else np.zeros(len(turning))
-    return np.maximum(MOMENT_TOLERANCE, curved)
+    return np.clip(curved, MOMENT_TOLERANCE, MOST_TOLERANCE)
 
 
 def _gauss(n: int) -> tuple[NDArray[Any], ...]:
