@@ -132,6 +132,7 @@ struct Edge {
 // edge: only a closed boundary has an area that does not depend on the apex, and neighbours share links.
 struct Outline {
   int size = 0;
+  bool straight = true;
   std::array<Edge, 3 * MAX_CLIP> edge;
 
   template <class CurveOf> Outline(const Polygon &polygon, CurveOf curve_of) {
@@ -142,6 +143,7 @@ struct Outline {
         edge[size++] = {p, q, {0, 0}};
         continue;
       }
+      straight = false;
       const double t0 = curve->parameter(p), t1 = curve->parameter(q);
       const Point2 first = curve->at(t0), last = curve->at(t1);
       const double off = 1e-24 * dot2(curve->b - curve->a, curve->b - curve->a);
@@ -155,16 +157,25 @@ struct Outline {
   }
 };
 
-// Calls visit(point, weight) for a rule on every triangle between the first vertex and an edge: theory (S9), (Q1). The
-// bulges of the two edges at that vertex are blended into the first triangle and the last.
+// Calls visit(point, weight) for a rule on every triangle between an apex and an edge: theory (S9), (Q1). Polygons with
+// curved edges take the mean of their vertices, or, with `fan`, as straight ones their first vertex: half as many
+// triangles, but maps of higher degree, as the bulges of both edges there are blended into the first triangle and the
+// last.
 template <class CurveOf, class Visit>
-void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rule, Visit visit) {
+void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rule, bool fan, Visit visit) {
   const Outline outline(polygon, curve_of);
-  const Point2 apex = polygon.v[0].p, none{0, 0};
-  for (int i = 1; i + 1 < outline.size; ++i) {
+  Point2 apex = polygon.v[0].p;
+  const Point2 none{0, 0};
+  const bool around = !fan && !outline.straight;
+  if (around) {
+    apex = none;
+    for (int i = 0; i < polygon.size; ++i)
+      apex = apex + (1.0 / polygon.size) * polygon.v[i].p;
+  }
+  for (int i = around ? 0 : 1; i + (around ? 0 : 1) < outline.size; ++i) {
     const Edge &edge = outline.edge[i];
-    const Point2 first = i == 1 ? outline.edge[0].bulge : none;
-    const Point2 last = i + 2 == outline.size ? outline.edge[i + 1].bulge : none;
+    const Point2 first = !around && i == 1 ? outline.edge[0].bulge : none;
+    const Point2 last = !around && i + 2 == outline.size ? outline.edge[i + 1].bulge : none;
     for (int k = 0; k < rule.n; ++k) {
       const double t = rule.t[k];
       const Point2 on = edge.at(t) - apex, along = edge.slope(t), bulge = (1 - t) * first + t * last;

@@ -12,7 +12,7 @@ constexpr int COARSE_POINTS = 8;
 namespace {
 
 // Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area: theory (Q4).
-double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, const double (*exact)[9],
+double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, bool fan, const double (*exact)[9],
                     double area) {
   double sum[9][9] = {{0}};
   Spot<2> at;
@@ -22,7 +22,7 @@ double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, con
     for (int i = 0; i < piece.size; ++i)
       polygon.push({piece.p[i], 0, i});
     const auto curve_of = [&](const Vertex &v) { return &piece.curve[v.edge]; };
-    integrate_polygon(polygon, curve_of, rule, [&](Point2 p, double weight) {
+    integrate_polygon(polygon, curve_of, rule, fan, [&](Point2 p, double weight) {
       if (!own.locate(p, at))
         return;
       double x[3], tangent[2][3], n[MAX_FACET_NODES], normal[3];
@@ -120,10 +120,11 @@ double exact_moments(const Facet &facet, const Rule &fine, bool axisymmetric, do
 int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
                   bool axisymmetric) {
   double exact[9][9] = {{0}};
-  const int most = tolerance < COARSE ? int(exact_rules.count) : COARSE_POINTS;
+  const bool coarse = tolerance >= COARSE;
+  const int most = coarse ? COARSE_POINTS : int(exact_rules.count);
   const double area = exact_moments(facet, exact_rules.rule(most), axisymmetric, exact);
   const int last = int(rules.count);
-  int n = tolerance < COARSE ? 1 : std::min(last, 3);
+  int n = coarse ? std::min(last, 3) : 1;
   if (facet.dim == 2) {
     while (n < last && !(moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance))
       ++n;
@@ -133,7 +134,7 @@ int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const R
     for (int a = 0; a < 3; ++a)
       facet.normals[i][a] = 0;
   const Contactor3 own(facet, subdivisions);
-  while (n < last && !(moment_error(facet, own, rules.rule(n), exact, area) < tolerance))
+  while (n < last && !(moment_error(facet, own, rules.rule(n), coarse, exact, area) < tolerance))
     ++n;
   return n;
 }

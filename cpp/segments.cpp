@@ -174,7 +174,7 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
     at.begin(own.xi, own.eta); // integrals are the same with sights and without
   }
   integrate_polygon(
-      polygon, [&](const Vertex &v) { return over.curve(v); }, rule,
+      polygon, [&](const Vertex &v) { return over.curve(v); }, rule, !over.c.flat,
       [&](Point2 p, double weight) {
         if (weight == 0)
           return;

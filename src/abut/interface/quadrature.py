@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import roots_jacobi
 
 MAX_POINTS = 16
 MOMENT_TOLERANCE = 1e-12  # of a plane facet's own int N_i N_j, relative to its area: theory (Q4)
-CURVED_TOLERANCE = 1e-2  # of a curved one's, times the fourth power of the angle by which its normals turn, and at most
+CURVED_TOLERANCE = 0.1  # of a curved one's, times the fourth power of the angle by which its normals turn, and at most
 MOST_TOLERANCE = 1e-5
 
 
@@ -29,8 +30,8 @@ def moment_tolerance(dim: int, turning: NDArray[np.float64]) -> NDArray[np.float
 
 def _gauss(n: int) -> tuple[NDArray[Any], ...]:
     x, w = np.polynomial.legendre.leggauss(n)
-    t, wt = 0.5 * (x + 1.0), 0.5 * w
-    return t, wt, t, wt * t
+    y, v = roots_jacobi(n, 0.0, 1.0)  # weight 1 + y
+    return 0.5 * (x + 1.0), 0.5 * w, 0.5 * (y + 1.0), 0.25 * v
 
 
 def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
