@@ -9,7 +9,7 @@ struct Contactor3 {
   Facet facet;
   Plane plane;
   Polynomial<2> map; // from the reference domain into the plane
-  bool flat; // all nodal normals along the plane's normal: projection is plain
+  bool flat;         // all nodal normals along the plane's normal: projection is plain
   std::vector<Piece> pieces;
 
   Contactor3(const Facet &f, int m) : facet(f), plane(mean_plane(f)) {

@@ -64,8 +64,7 @@ struct Sight2 {
   }
 };
 
-inline void cut_line(const Facet &c, const Facet &t, int number, double reach,
-                     std::vector<Segment> &out) {
+inline void cut_line(const Facet &c, const Facet &t, int number, double reach, std::vector<Segment> &out) {
   Segment own;
   own.target = number;
   own.begin = sees(c, t.x[1]), own.end = sees(c, t.x[0]); // the target runs the other way
@@ -99,8 +98,8 @@ inline void find_hidden(const Facet &c, const std::vector<Facet> &targets, const
       });
 }
 
-inline void integrate_line(const Facet &c, const Facet &t, double begin, double end, double start,
-                           const Rule &rule, bool axisymmetric, Accumulator &sums) {
+inline void integrate_line(const Facet &c, const Facet &t, double begin, double end, double start, const Rule &rule,
+                           bool axisymmetric, Accumulator &sums) {
   bool counted = false;
   Sight2 at(c, start);
   if (sums.wants_sights()) {
@@ -125,9 +124,8 @@ inline void integrate_line(const Facet &c, const Facet &t, double begin, double 
   }
 }
 
-inline void integrate_line(const Facet &c, const Facet &t, const Segment &own,
-                           const std::vector<Segment> &segments, const Rule &rule, bool axisymmetric,
-                           Accumulator &sums) {
+inline void integrate_line(const Facet &c, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
+                           const Rule &rule, bool axisymmetric, Accumulator &sums) {
   std::vector<std::array<double, 2>> others;
   for (int nearer : own.behind)
     others.push_back({segments[nearer].begin, segments[nearer].end});

@@ -43,8 +43,7 @@ double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, boo
 }
 
 // The same in 2D, integrating over the chord so that the inverse map is exercised.
-double moment_error_line(const Facet &f, const Rule &rule, const double (*exact)[9], double length,
-                         bool axisymmetric) {
+double moment_error_line(const Facet &f, const Rule &rule, const double (*exact)[9], double length, bool axisymmetric) {
   double sum[9][9] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
   normalize(chord, 2);
   Spot<3> at;
@@ -141,8 +140,8 @@ int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const R
 
 } // namespace
 
-void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules,
-          const double *tolerance, bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
+void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, const double *tolerance,
+          bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions) {
   std::array<int, KIND_COUNT> affine_points{}; // affine facets of one type all need the same
   // One number of subdivisions for all facets with curves: were a common edge one chord here and two there, segments
   // cut by the chords would overlap or leave out what lies between.

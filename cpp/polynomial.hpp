@@ -1,5 +1,5 @@
-// Shape functions of facets as polynomials in the reference coordinates, and nodal values as one polynomial: to evaluate
-// it takes a third of the work of the shape functions.
+// Shape functions of facets as polynomials in the reference coordinates, and nodal values as one polynomial: to
+// evaluate it takes a third of the work of the shape functions.
 #pragma once
 #include "cells.hpp"
 #include <algorithm>
@@ -48,12 +48,19 @@ constexpr Coefficients quad8_coefficients() {
 }
 
 constexpr Coefficients TRI3_COEFFICIENTS{{{1, -1, -1}, {0, 1}, {0, 0, 1}}};
-constexpr Coefficients TRI6_COEFFICIENTS{
-    {{1, -3, -3, 4, 2, 2}, {0, -1, 0, 0, 2}, {0, 0, -1, 0, 0, 2}, {0, 4, 0, -4, -4}, {0, 0, 0, 4}, {0, 0, 4, -4, 0, -4}}};
-constexpr std::array<Coefficients, QUAD9 + 1> COEFFICIENTS{
-    line_coefficients(2, LINEAR_LINE),    line_coefficients(3, QUADRATIC_LINE), TRI3_COEFFICIENTS,
-    TRI6_COEFFICIENTS,                    product_coefficients(4, LINEAR_LINE), quad8_coefficients(),
-    product_coefficients(9, QUADRATIC_LINE)};
+constexpr Coefficients TRI6_COEFFICIENTS{{{1, -3, -3, 4, 2, 2},
+                                          {0, -1, 0, 0, 2},
+                                          {0, 0, -1, 0, 0, 2},
+                                          {0, 4, 0, -4, -4},
+                                          {0, 0, 0, 4},
+                                          {0, 0, 4, -4, 0, -4}}};
+constexpr std::array<Coefficients, QUAD9 + 1> COEFFICIENTS{line_coefficients(2, LINEAR_LINE),
+                                                           line_coefficients(3, QUADRATIC_LINE),
+                                                           TRI3_COEFFICIENTS,
+                                                           TRI6_COEFFICIENTS,
+                                                           product_coefficients(4, LINEAR_LINE),
+                                                           quad8_coefficients(),
+                                                           product_coefficients(9, QUADRATIC_LINE)};
 constexpr std::array<int, QUAD9 + 1> TERMS{3, 6, 3, 6, 4, 8, 9};
 
 } // namespace detail

@@ -132,8 +132,8 @@ inline bool project_line(const Facet &facet, const double *from, const double *a
   });
 }
 
-// Half the largest second derivative over the slopes at the origin, eight times that for directions up to 60 degrees off
-// the normal and slopes that change fourfold over the facet.
+// Half the largest second derivative over the slopes at the origin, eight times that for directions up to 60 degrees
+// off the normal and slopes that change fourfold over the facet.
 inline double bend_of(const Facet &f) {
   const auto &c = f.position.c;
   auto size = [&](int m) { return m < f.position.terms ? std::sqrt(dot(c[m], c[m], 3)) : 0.0; };

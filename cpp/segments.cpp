@@ -190,8 +190,8 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
       });
 }
 
-void integrate_pieces(const Over &over, const Facet &t, const Segment &own,
-                      const std::vector<Segment> &segments, const Rule &rule, Accumulator &sums) {
+void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
+                      const Rule &rule, Accumulator &sums) {
   if (own.behind.empty()) {
     integrate_part(over, t, own, own.polygon, rule, sums);
     return;

@@ -77,8 +77,8 @@ struct Coupling {
 // `exact_rules` give the moments that are to be met. Points per direction so that int N_i N_j over every facet alone is
 // met to the facet's `tolerance`; and the number of subdivisions per direction that the curvature of the facet's
 // edges asks for.
-void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules,
-          const double *tolerance, bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions);
+void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, const double *tolerance,
+          bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions);
 
 Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
                 const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,

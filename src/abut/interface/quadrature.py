@@ -1,7 +1,7 @@
 """Rules on segments: Gauss-Legendre and closed Newton-Cotes, as tables for the compiled core.
 
 A segment is a set of cones from an apex to its edges. Along an edge the rule lives on [0, 1]; from the apex outward it
-carries the weight r of the cone, theory (Q1), so that n x n points are exact for polynomials of degree 2 n - 2 (Gauss);
+carries the weight r of the cone, theory (Q1), so that n x n points are exact for polynomials of degree 2 n - 1 (Gauss);
 theory (Q3).
 """
 
