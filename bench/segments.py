@@ -3,8 +3,8 @@
 python bench/segments.py [--cells N]
 
 Spheres in spheres and balls on blocks have facets of very different sizes, whose normals point everywhere: what lies within
-reach is much more than what is seen; normals turn, and maps have to be inverted point by point. The last column is the time a
-facet over that of a flat interface of as many facets; each is the quickest of five.
+reach is much more than what is seen; normals turn, and maps have to be inverted point by point. The last column is the
+time a facet over that of a flat interface of as many facets; each is the quickest of five.
 """
 
 from __future__ import annotations
