@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.coupling import couple, surface_degree
-from abut.interface.geometry import by_kind, full_moments, nodal_normals, turning_within
-from abut.interface.quadrature import moment_tolerance
+from abut.contact.coupling import couple, surface_degree
+from abut.contact.geometry import by_kind, full_moments, nodal_normals, turning_within
+from abut.contact.quadrature import moment_tolerance
 from abut.mesh.surface import Surface
 from surfaces import FACETS_2D, FACETS_3D, FLAT, PAIRS, SHAPES, grid, line, moved, opposed, planar, side
 
