@@ -47,9 +47,9 @@ public:
     const int width = options_.vectorial ? dim_ : 1;
     for (int k = 0; k < functions_; ++k) {
       const double wh = weight * h[k];
-      out_.gap[9 * f_ + k] += wh * gap, out_.weight[9 * f_ + k] += wh;
+      out_.gap[MAX_FACET_NODES * f_ + k] += wh * gap, out_.weight[MAX_FACET_NODES * f_ + k] += wh;
       for (int l = 0; l < functions_; ++l)
-        out_.mass[81 * f_ + 9 * k + l] += wh * h[l];
+        out_.mass[MAX_FACET_NODES * (MAX_FACET_NODES * f_ + k) + l] += wh * h[l];
       for (int a = 0; a < width; ++a) {
         const double whn = options_.vectorial ? wh * normal[a] : wh;
         for (int j = 0; j < nodes_; ++j)
@@ -92,7 +92,7 @@ private:
     const int width = options_.vectorial ? dim_ : 1;
     for (int k = 0; k < functions_; ++k)
       for (int j = 0; j < count; ++j) {
-        entries.row.push_back(std::int32_t(9 * f_ + k));
+        entries.row.push_back(std::int32_t(MAX_FACET_NODES * f_ + k));
         entries.column.push_back(nodes[j]);
         entries.value.insert(entries.value.end(), block[k][j], block[k][j] + width);
       }

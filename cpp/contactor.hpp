@@ -29,7 +29,7 @@ struct Contactor3 {
       map.c[i][0] = dot(x, plane.e1, 3), map.c[i][1] = dot(x, plane.e2, 3);
     }
     flatten(
-        f, m, false,
+        {f, m, false},
         [&](const double *xi, int) {
           double x[3];
           facet.position.at(xi, x);

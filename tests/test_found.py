@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.contact.coupling import couple
+from abut.contact.coupling import CouplingOptions, couple
 from abut.diagnosis import check
 from abut.mesh.exterior import exterior
 from assembly_models import ASSEMBLIES, Assembly, fir_tree
@@ -127,7 +127,7 @@ def test_no_facet_sees_a_wrong_one(name: str) -> None:
     model = assembly.model()
     for contact in model.contacts:
         contactor, target = model.sides(contact)
-        at = couple(contactor, target, 0, points=1, keep_points=True).points
+        at = couple(contactor, target, 0, CouplingOptions(points=1, keep_points=True)).points
         assert at is not None
         mine = np.array([own.rows[int(c), int(f)] for c, f in zip(contactor.cells, contactor.local)])[at.facet]
         theirs = np.array([own.rows[int(c), int(f)] for c, f in zip(target.cells, target.local)])[at.target_facet]
@@ -164,6 +164,6 @@ def test_lobes_thinner_than_facets(size: float) -> None:
     (found,) = assembly.found()
     assert found.gap[0] > -1e-9
     model = assembly.model()
-    at = couple(*model.sides(model.contacts[0]), 0, points=1, keep_points=True).points
+    at = couple(*model.sides(model.contacts[0]), 0, CouplingOptions(points=1, keep_points=True)).points
     assert at is not None
     assert at.gap.min() > -1e-9

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
 from abut.contact.bases import non_negative_block
-from abut.contact.coupling import couple, surface_degree
+from abut.contact.coupling import CouplingOptions, couple, surface_degree
 from abut.contact.geometry import full_moments
 from abut.contact.laws import constraint_function
 from abut.contact.pressure_space import pressure_space, resolve
@@ -106,7 +106,7 @@ def test_non_negative_bases(kind: str) -> None:
 def test_dual_basis_is_biorthogonal() -> None:
     contactor = grid("quad4", (3, 3), distort=0.15)
     target = grid("quad4", (4, 4), distort=0.15, up=False)
-    coupling = couple(contactor, target, 1, componentwise=True)
+    coupling = couple(contactor, target, 1, CouplingOptions(componentwise=True))
     space = pressure_space("dual", contactor, coupling)
     product = (space.transfer.T @ coupling.contactor_part).toarray()[:, : len(contactor.points)]
     assert product == pytest.approx(np.diag(product.diagonal()), abs=1e-13)
@@ -156,7 +156,7 @@ def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
     contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane)
     target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane)
     target = replace(target, points=target.points + np.array([0.0, 0.0, 0.1]))
-    plain, seen = (couple(contactor, target, 1, sights=sights) for sights in (False, True))
+    plain, seen = (couple(contactor, target, 1, CouplingOptions(keep_sights=sights)) for sights in (False, True))
     assert plain.sights is None
     assert (plain.operator != seen.operator).nnz == 0
     np.testing.assert_array_equal(plain.gap, seen.gap)
@@ -183,7 +183,7 @@ def test_nothing_in_sight_is_left_out(kind: str, gap: float) -> None:
 
     contactor = grid(kind, (5, 4), bulge=dome(1.0, 0.8))
     target = grid(kind, (6, 7), up=False, bulge=dome(1.0 + gap, 1.3))
-    covered = couple(contactor, target, 1, reach=2.0).covered
+    covered = couple(contactor, target, 1, CouplingOptions(reach=2.0)).covered
     assert covered == pytest.approx(full_moments(contactor, 0)[:, 0], rel=1e-6)
 
 
@@ -199,5 +199,5 @@ def test_nothing_in_sight_is_left_out_in_the_plane(kind: str, gap: float) -> Non
 
     contactor = line(kind, 5, bulge=arch(1.0, 1.5))
     target = line(kind, 9, up=False, bulge=arch(1.0 + gap, 2.4))
-    covered = couple(contactor, target, 1, reach=2.0).covered
+    covered = couple(contactor, target, 1, CouplingOptions(reach=2.0)).covered
     assert covered == pytest.approx(full_moments(contactor, 0)[:, 0], rel=1e-9)

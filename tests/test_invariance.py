@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.cells import BY_CODE, CELLS
-from abut.contact.coupling import Coupling, couple, surface_degree
+from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.geometry import full_moments
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.surface import Surface
@@ -134,10 +134,10 @@ def test_numbering(kc: str, kt: str, seed: int, shape: str, gap: float) -> None:
     contactor, target = opposed(kc, kt, seed, shape, size=1.4, shift=0.4, gap=gap)
     rng, dim = np.random.default_rng(seed), contactor.dim
     degree = surface_degree(contactor)
-    before = couple(contactor, target, degree, points=points_for(shape))
+    before = couple(contactor, target, degree, CouplingOptions(points=points_for(shape)))
     contactor, mine, rows, facets = renumbered(contactor, rng)
     target, theirs, _, _ = renumbered(target, rng)
-    after = couple(contactor, target, degree, points=points_for(shape))
+    after = couple(contactor, target, degree, CouplingOptions(points=points_for(shape)))
     column = np.concatenate([columns(mine, dim), columns(theirs, dim, len(mine))])
     local = (rows % 9).reshape(-1, 9)
     expected = replace(
@@ -166,8 +166,8 @@ def test_matching_sides_change_places(kind: str, seed: int, shape: str, gap: flo
     if shape in FLAT:
         target = moved(target, lambda x: x + gap * np.eye(contactor.dim)[-1])
     degree, n = surface_degree(contactor), contactor.points.size
-    one = couple(contactor, target, degree, points=points_for(shape))
-    two = couple(target, contactor, degree, points=points_for(shape))
+    one = couple(contactor, target, degree, CouplingOptions(points=points_for(shape)))
+    two = couple(target, contactor, degree, CouplingOptions(points=points_for(shape)))
     area = full_moments(contactor, 0)[:, 0]
     assert one.covered == pytest.approx(area, abs=1e-11 * area.max())
     assert two.covered == pytest.approx(area[facets], abs=1e-11 * area.max())

@@ -7,7 +7,7 @@ of a line share evenly what a whole facet gets, and where both halves are alike 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,49 +27,43 @@ SUITE = (
 )
 Raw = dict[str, Any]
 Core = Callable[..., Raw]
-NORMALS, TARGET, ORDERS = 3, slice(4, 7), slice(8, 10)  # among the arguments of the compiled core
-PER_TARGET_FACET = (5, 6, 9, 11)  # kinds, nodes, order and split of the target
+PER_TARGET_FACET = ("kinds_t", "nodes_t", "order_t", "subdivide_t")  # arguments of the compiled core
 HIDDEN = 9  # functions of a facet, padded
 
 couple_surfaces: Core = coupling.couple_surfaces
 
 
-def flip_normals(*arguments: Any) -> Raw:
+def flip_normals(**arguments: Any) -> Raw:
     """The contactor looks into its own body."""
-    changed = list(arguments)
-    changed[NORMALS] = -changed[NORMALS]
-    return couple_surfaces(*changed)
+    return couple_surfaces(**arguments | {"normals": -arguments["normals"]})
 
 
-def flip_forces(*arguments: Any) -> Raw:
+def flip_forces(**arguments: Any) -> Raw:
     """The contact pulls where it should push."""
-    raw = couple_surfaces(*arguments)
+    raw = couple_surfaces(**arguments)
     for side in ("contactor", "target"):
         row, column, value = raw[side]
         raw[side] = row, column, -value
     return raw
 
 
-def one_point(*arguments: Any) -> Raw:
+def one_point(**arguments: Any) -> Raw:
     """One quadrature point on each segment."""
-    changed = list(arguments)
-    changed[ORDERS] = [np.ones_like(order) for order in changed[ORDERS]]
-    return couple_surfaces(*changed)
+    orders = {name: np.ones_like(arguments[name]) for name in ("order_c", "order_t")}
+    return couple_surfaces(**arguments | orders)
 
 
-def with_one_target_facet(arguments: Sequence[Any], facet: int) -> Raw:
+def with_one_target_facet(arguments: Raw, facet: int) -> Raw:
     """What one target facet alone contributes."""
-    changed = list(arguments)
-    for i in PER_TARGET_FACET:
-        changed[i] = np.ascontiguousarray(changed[i][facet : facet + 1])
-    return couple_surfaces(*changed)
+    own = {name: np.ascontiguousarray(arguments[name][facet : facet + 1]) for name in PER_TARGET_FACET}
+    return couple_surfaces(**arguments | own)
 
 
-def drop_a_segment(*arguments: Any) -> Raw:
+def drop_a_segment(**arguments: Any) -> Raw:
     """All that one contactor facet and one target facet share is left out, on both sides."""
-    raw = couple_surfaces(*arguments)
+    raw = couple_surfaces(**arguments)
     facet = int(np.flatnonzero(raw["segments"])[raw["segments"].astype(bool).sum() // 2])
-    parts = (with_one_target_facet(arguments, t) for t in range(len(arguments[5])))
+    parts = (with_one_target_facet(arguments, t) for t in range(len(arguments["kinds_t"])))
     part = next(p for p in parts if p["segments"][facet])
     for name in ("gap", "weight", "mass", "covered", "segments"):
         raw[name][facet] -= part[name][facet]
@@ -81,10 +75,10 @@ def drop_a_segment(*arguments: Any) -> Raw:
     return raw
 
 
-def swap_target_functions(*arguments: Any) -> Raw:
+def swap_target_functions(**arguments: Any) -> Raw:
     """On every target facet the first two shape functions stand in each other's place."""
-    raw = couple_surfaces(*arguments)
-    nodes = arguments[6]
+    raw = couple_surfaces(**arguments)
+    nodes = arguments["nodes_t"]
     rows, columns, values = [], [], []
     for facet in range(len(nodes)):
         row, column, value = with_one_target_facet(arguments, facet)["target"]
@@ -96,26 +90,26 @@ def swap_target_functions(*arguments: Any) -> Raw:
     return raw
 
 
-def flip_gap(*arguments: Any) -> Raw:
-    raw = couple_surfaces(*arguments)
+def flip_gap(**arguments: Any) -> Raw:
+    raw = couple_surfaces(**arguments)
     for name in ("gap", "point_gap", "sight_gap"):
         if name in raw:
             raw[name] = -raw[name]
     return raw
 
 
-def scale_target(*arguments: Any) -> Raw:
+def scale_target(**arguments: Any) -> Raw:
     """Action and reaction differ by a millionth."""
-    raw = couple_surfaces(*arguments)
+    raw = couple_surfaces(**arguments)
     row, column, value = raw["target"]
     raw["target"] = row, column, value * (1.0 + 1e-6)
     return raw
 
 
-def shift_columns(*arguments: Any) -> Raw:
+def shift_columns(**arguments: Any) -> Raw:
     """The target's forces stand at the neighbouring points of each facet: all functions moved by one place."""
-    raw = couple_surfaces(*arguments)
-    nodes = arguments[6]
+    raw = couple_surfaces(**arguments)
+    nodes = arguments["nodes_t"]
     rows, columns, values = [], [], []
     for facet in range(len(nodes)):
         row, column, value = with_one_target_facet(arguments, facet)["target"]
@@ -153,9 +147,9 @@ def test_the_unbroken_coupling_passes() -> None:
 def test_taking_apart_and_putting_together_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The mutations go through the target facet by facet: that alone gives the same coupling."""
 
-    def apart(*arguments: Any) -> Raw:
-        raw = couple_surfaces(*arguments)
-        parts = [with_one_target_facet(arguments, t)["target"] for t in range(len(arguments[5]))]
+    def apart(**arguments: Any) -> Raw:
+        raw = couple_surfaces(**arguments)
+        parts = [with_one_target_facet(arguments, t)["target"] for t in range(len(arguments["kinds_t"]))]
         raw["target"] = tuple(np.concatenate(columns) for columns in zip(*parts))
         return raw
 

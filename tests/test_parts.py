@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from abut.bodies.assemble import stiffness
 from abut.bodies.solids import Solids
-from abut.contact.coupling import couple
+from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.merging import added
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, join, rectangle
@@ -39,10 +39,10 @@ def test_couplings_of_parts_add_up(pair: tuple[str, str], tied: bool) -> None:
     """Each facet by itself sees what it sees in the whole: one part is empty."""
     mesh = blocks(*pair)
     contactor, target = mesh.surface("lower.top"), mesh.surface("upper.bottom")
-    options = {"keep_points": True, "sights": True, "componentwise": tied}
-    whole = couple(contactor, target, 1, **options)
+    options = CouplingOptions(keep_points=True, keep_sights=True, componentwise=tied)
+    whole = couple(contactor, target, 1, options)
     owner = np.arange(len(contactor)) % 3
-    parts = [couple(contactor, target, 1, only=owner == rank, **options) for rank in (0, 1, 2, 3)]
+    parts = [couple(contactor, target, 1, options, owner == rank) for rank in (0, 1, 2, 3)]
     assert not parts[3].segments.any()
     assert all(part.segments.any() for part in parts[:3])
     together = added(parts)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.contact.coupling import couple, surface_degree
+from abut.contact.coupling import CouplingOptions, couple, surface_degree
 from abut.contact.geometry import by_kind, full_moments, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance
 from abut.mesh.surface import Surface
@@ -164,7 +164,7 @@ def test_tied_tractions_turn_by_the_gap(kc: str, kt: str, seed: int, shape: str,
     """Tied surfaces carry traction along the surface too. Across a gap it acts along two lines: the moments differ by
     int (x_C - x_T) x t = N x (sum of weighted gap times t), here with one N. To rounding."""
     contactor, target = opposed(kc, kt, seed, shape, size=1.2, shift=0.3, gap=gap)
-    coupling = couple(contactor, target, surface_degree(contactor), componentwise=True)
+    coupling = couple(contactor, target, surface_degree(contactor), CouplingOptions(componentwise=True))
     traction = np.random.default_rng(seed).normal(size=(9 * len(contactor), contactor.dim))
     points = np.concatenate([contactor.points, target.points])
     own, other = coupling.contactor_part.T @ traction, coupling.target_part.T @ traction

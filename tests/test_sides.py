@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.cli import main
-from abut.contact.coupling import couple
+from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.geometry import full_moments
 from abut.errors import InputError
 from abut.job import load_job
@@ -221,14 +221,14 @@ def test_the_nearest_target_hides_the_others(contactor: str, near: str) -> None:
     mesh = join({"own": own, "far": far, "near": front})
     rows = np.concatenate([mesh.surfaces["far.bottom"], mesh.surfaces["near.bottom"]])
     surface, target = mesh.surface("own.top"), mesh.facets(rows)
-    coupling = couple(surface, target, 1, reach=0.2)
+    coupling = couple(surface, target, 1, CouplingOptions(reach=0.2))
     whole = full_moments(surface, 1)
     # Where the chords of the round edge and of another cross elsewhere than the curves, slivers may be lost: theory (S8).
     exact = 1e-7 if near == "round" else 1e-12
     assert coupling.weight.reshape(whole.shape) == pytest.approx(whole, abs=exact * whole.max())
-    alone = couple(surface, mesh.surface("near.bottom"), 1, reach=0.2)
+    alone = couple(surface, mesh.surface("near.bottom"), 1, CouplingOptions(reach=0.2))
     assert coupling.gap.sum() == pytest.approx(0.05 * whole.sum() - 0.04 * alone.weight.sum(), rel=exact)
-    layers = couple(surface, target, 1, reach=0.2, hidden=True)
+    layers = couple(surface, target, 1, CouplingOptions(reach=0.2, hidden=True))
     assert layers.weight.sum() == pytest.approx(whole.sum() + alone.weight.sum(), rel=1e-12)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, function_count
 from abut.mesh.surface import Surface
@@ -22,10 +22,10 @@ def block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -
     for kind, facets in by_kind(contactor):
         block = np.broadcast_to(blocks[kind], (len(facets), *blocks[kind].shape[-2:]))
         i, j = np.meshgrid(np.arange(block.shape[1]), np.arange(block.shape[2]), indexing="ij")
-        rows.append((9 * facets[:, None] + i.ravel()).ravel())
-        columns.append((9 * facets[:, None] + j.ravel()).ravel())
+        rows.append((MAX_FACET_NODES * facets[:, None] + i.ravel()).ravel())
+        columns.append((MAX_FACET_NODES * facets[:, None] + j.ravel()).ravel())
         values.append(block.reshape(len(facets), -1).ravel())
-    size = 9 * len(contactor)
+    size = MAX_FACET_NODES * len(contactor)
     matrix = sp.csr_matrix(
         (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size)
     )
@@ -83,7 +83,7 @@ def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None
     for kind, facets in by_kind(contactor):
         n = function_count(kind, 1)
         mass = coupling.mass[facets][:, :n, :n]
-        weight = coupling.weight.reshape(-1, 9)[facets, :n]
+        weight = coupling.weight.reshape(-1, MAX_FACET_NODES)[facets, :n]
         block = np.tile(np.eye(n), (len(facets), 1, 1))
         sound = sound_facets(mass) & ~plain[facets]
         if sound.any():

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.contact.coupling import Coupling, couple, default_reach
+from abut.contact.coupling import Coupling, CouplingOptions, couple, default_reach
 from abut.contact.geometry import CREASE, area_vectors, full_moments, straight
 from abut.errors import InputError, nearest
 from abut.mesh.exterior import exterior
@@ -122,7 +122,7 @@ def _met(
     contactor, target = straight(plane.facets(own)), straight(plane.facets(other))
     every = straight(plane.facets(np.concatenate([other, hiding])))
     reach = default_reach(contactor, target) + 2.0 * moved
-    seen = couple(contactor, every, 0, points=1, reach=reach, keep_points=True, sights=True)
+    seen = couple(contactor, every, 0, CouplingOptions(points=1, reach=reach, keep_points=True, keep_sights=True))
     pairs = _facing_pairs(contactor, seen, len(other)) & _not_through(contactor, seen, len(other))
     met = np.zeros(len(own), dtype=bool), np.zeros(len(other), dtype=bool)
     for facet, target_facet in pairs:
@@ -188,7 +188,7 @@ def check_twice(names: Sequence[str], sides: Sequence[Sides]) -> None:
                 continue
             contactor, target = (surface.part(c) for surface, c in zip(sides[first], common))
             reach = default_reach(*sides[first])
-            if couple(contactor, target, 0, points=1, reach=reach).segments.any():
+            if couple(contactor, target, 0, CouplingOptions(points=1, reach=reach)).segments.any():
                 how = ", with its sides swapped" if turned else ""
                 raise InputError(
                     f"contacts[{second}]: '{names[second]}' and '{names[first]}' press the same facets together{how}: the "

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
-from abut.contact.coupling import couple, default_reach
+from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
 from abut.contact.sides import code, words
 from abut.detection.facing import NEAR
@@ -49,7 +49,8 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
     flat = [straight(replace(own, axisymmetric=False)) for own in both]
     contactor, target = flat
     sizes = [facet_sizes(own) for own in flat]
-    at = couple(contactor, target, 0, points=1, reach=default_reach(contactor, target), keep_points=True).points
+    options = CouplingOptions(points=1, reach=default_reach(contactor, target), keep_points=True)
+    at = couple(contactor, target, 0, options).points
     if at is None or not len(at.gap):
         facing, opposite = [np.arange(len(own)) for own in flat], np.inf
     else:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from abut.bodies.assemble import stiffness
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import nodal_stress
-from abut.contact.coupling import Coupling, couple
+from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports
@@ -21,7 +21,7 @@ from abut.problem.constraints import Supports
 class Backend(Protocol):
     """The bodies of a model, assembled."""
 
-    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+    def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """Cut and integrate the interface of a contact pair, as ``abut.contact.coupling.couple``."""
         ...
 
@@ -48,9 +48,9 @@ class Serial:
     model: Model
     matrix: Any
 
-    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+    def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
-        return couple(contactor, target, degree, **options)
+        return couple(contactor, target, degree, options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Backend``."""

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.clearance import of_corners, partly_adjusted
-from abut.contact.coupling import Couple, Coupling, couple, default_reach, surface_degree
+from abut.contact.coupling import Couple, Coupling, CouplingOptions, couple, default_reach, surface_degree
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.node_to_segment import node_to_segment
 from abut.contact.opposite import by_target
@@ -266,18 +266,22 @@ def _couple(
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
-        seen = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
+        seen = couple(
+            contactor, target, 0, CouplingOptions(points=1, reach=reach, keep_sights=True, adjust=contact.adjust)
+        )
         coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
         name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
         of_dual = name in (DUAL, DUAL_P1)
-        cut = partial(
-            couple, contactor, target, surface_degree(contactor) if of_dual else degree,
-            rule=contact.integration.rule, points=contact.integration.points, componentwise=tied,
-            keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
+        degree = surface_degree(contactor) if of_dual else degree
+        options = CouplingOptions(
+            rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
+            keep_points=contact.law == LAWS[1] and not tied, keep_sights=not tied,
         )  # fmt: skip
-        coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
+        closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
+        without = partial(couple, contactor, target, degree, options)
+        coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without)
         coupling = of_corners(contactor, coupling) if of_dual else coupling
         contactor = contactor if tied else by_target(contactor, target, coupling)
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import full_moments
 from abut.contact.pressure_space import DUAL_P1
@@ -136,7 +137,9 @@ def _measured(own: Pair) -> str:
     name = own.space.name
     if name != DUAL_P1:
         return name
-    kept = abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, 9).max(axis=1) == 0.0
+    kept = (
+        abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, MAX_FACET_NODES).max(axis=1) == 0.0
+    )
     plain = int((kept & (own.coupling.segments > 0)).sum())
     if not plain:
         return f"{name}, dual functions everywhere"

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, facet_measure, facet_sizes, function_count, node_coordinates, pressure_kind
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
@@ -49,7 +49,7 @@ def trace_space(
     points: list[NDArray[np.float64]] = []
     nodes: list[NDArray[np.int64]] = []
     entries: list[tuple[NDArray[Any], ...]] = []
-    pressure_mass = np.zeros((len(surface), 9, 9))
+    pressure_mass = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
     first = 0
     for kind, facets in by_kind(surface):
         facets = facets[share[facets] > 0.0]
@@ -71,13 +71,13 @@ def trace_space(
     merged, n = _merge(np.concatenate(points), SAME * facet_sizes(surface).min())
     mass: Any = sp.csr_matrix((n, n))
     full: Any = sp.csr_matrix((n, n))
-    moments: Any = sp.csr_matrix((n, 9 * len(surface)))
+    moments: Any = sp.csr_matrix((n, MAX_FACET_NODES * len(surface)))
     for local, (facets, m, f, c) in zip(nodes, entries):
         own = merged[local]
         rows, columns = np.repeat(own, own.shape[1], axis=1).ravel(), np.tile(own, (1, own.shape[1])).ravel()
         mass = mass + sp.csr_matrix((m.ravel(), (rows, columns)), shape=(n, n))
         full = full + sp.csr_matrix((f.ravel(), (rows, columns)), shape=(n, n))
-        functions = 9 * facets[:, None] + np.arange(c.shape[2])
+        functions = MAX_FACET_NODES * facets[:, None] + np.arange(c.shape[2])
         rows = np.repeat(own, c.shape[2], axis=1).ravel()
         columns = np.tile(functions, (1, own.shape[1])).ravel()
         moments = moments + sp.csr_matrix((c.ravel(), (rows, columns)), shape=moments.shape)
