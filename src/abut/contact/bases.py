@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -12,11 +10,12 @@ from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, function_count
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 SLIVER = 1e4  # condition of a facet's mass matrix above which it has no well-determined dual basis
 
 
-def block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Any:
+def block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Sparse:
     """Sparse (9 n, 9 n) matrix from one dense block (or one per facet) for each facet type."""
     rows, columns, values = [], [], []
     for kind, facets in by_kind(contactor):
@@ -58,7 +57,7 @@ def non_negative_block(kind: str, c: float) -> NDArray[np.float64]:
     return block
 
 
-def non_negative(contactor: Surface) -> Any:
+def non_negative(contactor: Surface) -> Sparse:
     """Sparse (9 n, 9 n): facet-wise nodal values of the non-negative basis of every facet's quadratic functions."""
     kinds = [kind for kind, _ in by_kind(contactor)]
     c = 0.125 if "quad8" in kinds else 0.25  # one value on the whole surface keeps edges between types continuous
@@ -73,7 +72,7 @@ def sound_facets(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.asarray((values[:, 0] > 0.0) & (values[:, -1] < SLIVER * values[:, 0]))
 
 
-def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Any:
+def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Sparse:
     """Sparse (9 n, 9 n): nodal values of the biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl
     int N_l on each covered facet, theory (P4); slivers of facets keep the functions N_l.
 

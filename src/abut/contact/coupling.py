@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,6 +20,7 @@ from abut.contact.geometry import by_kind, facet_sizes, is_plane, nodal_normals,
 from abut.contact.quadrature import moment_tolerance, rule_tables
 from abut.errors import InputError
 from abut.mesh.surface import Surface
+from abut.types import Array, Json, Sparse
 
 CURVED_POINTS = {2: 6, 3: 3}  # by dimension, per direction, where the contactor's normal turns within a facet
 SAME_NORMAL = 1e-9
@@ -42,8 +42,8 @@ class IntegrationPoints:
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     normal: NDArray[np.float64]
-    pressure: Any
-    gap_operator: Any
+    pressure: Sparse
+    gap_operator: Sparse
 
 
 @dataclass(frozen=True)
@@ -80,9 +80,9 @@ class Coupling:
     """
 
     degree: int
-    operator: Any
-    contactor_part: Any
-    target_part: Any
+    operator: Sparse
+    contactor_part: Sparse
+    target_part: Sparse
     gap: NDArray[np.float64]
     weight: NDArray[np.float64]
     mass: NDArray[np.float64]
@@ -182,9 +182,7 @@ def _check(contactor: Surface, target: Surface) -> None:
             raise InputError(f"surface '{surface.name}' has no facets")
 
 
-def _cut(
-    contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions
-) -> dict[str, Any]:
+def _cut(contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions) -> Json:
     """What the compiled core makes of some facets of the contactor."""
     tables = rule_tables(options.rule)
     normals = nodal_normals(contactor)
@@ -218,7 +216,7 @@ def _cut(
     )
 
 
-def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:
+def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
     """What was integrated on some facets, at its place among all n."""
     result = dict(raw)
     for name in ("gap", "weight", "mass", "covered", "segments"):
@@ -267,14 +265,14 @@ def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
     return len(contactor.points), len(contactor.points) + len(target.points)
 
 
-def _matrix(entries: tuple[NDArray[Any], ...], rows: int, n_points: int, offset: int) -> Any:
+def _matrix(entries: tuple[Array, ...], rows: int, n_points: int, offset: int) -> Sparse:
     row, column, value = entries
     width = value.shape[1]
     columns = (width * (offset + column[:, None].astype(np.int64)) + np.arange(width)).ravel()
     return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, width * n_points))
 
 
-def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -> IntegrationPoints:
+def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> IntegrationPoints:
     n, dim = raw["point_normal"].shape
     offset, n_points = _columns(contactor, target)
     operator = sp.csr_matrix((n, dim * n_points))
@@ -300,7 +298,7 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
     )
 
 
-def _sights(raw: dict[str, NDArray[Any]]) -> Sights:
+def _sights(raw: dict[str, Array]) -> Sights:
     names = ("contactor_facet", "target_facet", "gap", "normal", "contactor", "target")
     return Sights(*(raw[f"sight_{name}"] for name in names))
 

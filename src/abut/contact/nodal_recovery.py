@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from abut.contact.geometry import (
     split_at_creases,
 )
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
 ON_AXIS = 1e-9  # radius over the contactor's largest
@@ -183,7 +183,7 @@ def corner_values(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.f
 
 
 def carry_to_target(
-    contactor: Surface, target: Surface, pairs: Any, values: NDArray[np.float64]
+    contactor: Surface, target: Surface, pairs: Sparse, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Pressure at the target's nodes, (n_target_facets, 9): read off the contactor at the foot of each node; zero where
     no contactor facet lies opposite, NaN where padded.

@@ -7,8 +7,6 @@ straight facets of first order in 2D only, and their inf-sup constant is zero (E
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -21,6 +19,7 @@ from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degre
 from abut.contact.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.contact.pressure_space import PressureSpace, facet_functions
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 INSIDE = 1e-9  # how far outside a facet, in reference coordinates, a foot still counts as on it
 
@@ -38,7 +37,7 @@ def node_to_segment(
     degree = surface_degree(contactor)
     row, node = facet_functions(contactor, degree)
     ids, first, column = np.unique(node, return_index=True, return_inverse=True)
-    gather: Any = sp.csr_matrix(
+    gather: Sparse = sp.csr_matrix(
         (np.ones(len(row)), (row, column.ravel())), shape=(MAX_FACET_NODES * len(contactor), len(ids))
     )
     moments = full_moments(contactor, degree).ravel()
@@ -76,7 +75,7 @@ def node_to_segment(
 def _rows(
     row: NDArray[np.int64], nodes: NDArray[np.int64], shapes: NDArray[np.float64], force: NDArray[np.float64],
     shape: tuple[int, int],
-) -> Any:  # fmt: skip
+) -> Sparse:  # fmt: skip
     dim = force.shape[1]
     used = nodes >= 0
     k = np.nonzero(used)[0]

@@ -9,7 +9,6 @@ theory (P1).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,6 +20,7 @@ from abut.contact.coupling import Coupling, surface_degree
 from abut.contact.geometry import by_kind, full_moments, function_count, split_at_creases
 from abut.errors import InputError
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
@@ -47,8 +47,8 @@ class PressureSpace:
 
     name: str
     degree: int
-    transfer: Any
-    plain: Any
+    transfer: Sparse
+    plain: Sparse
     weight: NDArray[np.float64]
     node: NDArray[np.int64]
     side: NDArray[np.int64]
@@ -142,7 +142,7 @@ def inner_facets(
     return inner
 
 
-def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _within(uses: Sparse, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets that have multipliers, all of them closed."""
     some, others = (
         (uses @ own.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for own in (closed, ~closed)
@@ -150,7 +150,7 @@ def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(some & ~others)
 
 
-def _touched(uses: Any, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _touched(uses: Sparse, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Multipliers with a part on given facets."""
     return np.asarray(uses.T @ np.repeat(facets, MAX_FACET_NODES).astype(float) > 0.0)
 

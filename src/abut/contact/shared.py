@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, combinations_with_replacement
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +19,7 @@ from abut.contact.coupling import Coupling
 from abut.contact.geometry import CREASE, full_moments, side_normals
 from abut.contact.pressure_space import PressureSpace
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 EVEN = 1e-3  # weights that differ by less are equal: those of curved facets of one size
 TWICE = 1e-3  # covered share over 1 from which on two targets lie over each other, not beside each other
@@ -35,7 +35,7 @@ class Functions:
     part: NDArray[np.int64]
     weight: NDArray[np.float64]
     normal: NDArray[np.float64]
-    neighbours: Any
+    neighbours: Sparse
     facet: NDArray[np.int64]
     nodes: NDArray[np.int32]
     covered: NDArray[np.float64]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +47,7 @@ def code(side: Names) -> str:
     return quoted[0] if len(quoted) == 1 else f"[{', '.join(quoted)}]"
 
 
-def normalised(side: Any, where: str) -> str | tuple[str, ...]:
+def normalised(side: object, where: str) -> str | tuple[str, ...]:
     """A name, or several different ones as a tuple. Raises InputError for anything else."""
     if isinstance(side, str):
         return side

@@ -5,7 +5,7 @@ A unit stands at the end in square brackets: force, length, mass, time and tempe
 
 from __future__ import annotations
 
-from typing import Any
+from abut.types import Json
 
 ANYWHERE = {  # keys that mean the same in every table
     "on": "name of the surface",
@@ -140,7 +140,7 @@ def meaning(table: str, key: str) -> str:
     return MEANINGS.get(table, {}).get(key) or ANYWHERE.get(key, "")
 
 
-def describe(schema: dict[str, Any], root: str) -> dict[str, Any]:
+def describe(schema: Json, root: str) -> Json:
     """The JSON Schema with the meaning of every key as its description, in place; ``root``: name of the whole record."""
     for name, table in {root: schema, **schema["$defs"]}.items():
         for key, entry in table.get("properties", {}).items():

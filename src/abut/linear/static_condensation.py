@@ -6,7 +6,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -22,6 +21,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Laws, Problem
 from abut.solution.state import State
+from abut.types import Array
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
@@ -191,7 +191,7 @@ class Flexibility:
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
-        self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], force: float
+        self, free: NDArray[np.int64], law: Array, push: NDArray[np.float64], force: float
     ) -> NDArray[np.float64]:
         """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance;
         force: sum of all others, beside which what is left of forces in balance is rounding."""

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.solution import ContactResult
+from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
 
 
-def contact_summary(contact: ContactResult) -> dict[str, Any]:
+def contact_summary(contact: ContactResult) -> Json:
     """The entry of a contact in summary.json; None where a number does not exist."""
     pressure = contact.statistics
     return {

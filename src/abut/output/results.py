@@ -7,7 +7,6 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
 from abut.solution.grids import contact_grid
+from abut.types import Json
 
 
 def write(
@@ -85,7 +85,7 @@ def write_index(folder: Path, solution: Solution) -> None:
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
 
 
-def summary(solution: Solution) -> dict[str, Any]:
+def summary(solution: Solution) -> Json:
     """What summary.json holds: plain numbers, lists and text; None where a number does not exist."""
     return {
         "schema": 1,
@@ -134,7 +134,7 @@ def _contact_file(contact: str, step: Step) -> str:
     return f"contact_{label(contact)}_{step.number:04d}.vtu"
 
 
-def _step_summary(step: Step) -> dict[str, Any]:
+def _step_summary(step: Step) -> Json:
     last = step.iterations[-1]
     return {
         "step": step.number,

@@ -4,7 +4,6 @@ contactor is cut and integrated by the process that has its cell."""
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +14,7 @@ from abut.contact.coupling import couple as couple_here
 from abut.contact.merging import added
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
+from abut.types import Sparse
 
 
 def couple(
@@ -50,7 +50,7 @@ def _over(surface: Surface, points: NDArray[np.int64], coordinates: NDArray[np.f
     return replace(surface, points=coordinates, nodes=nodes)
 
 
-def _among_all(matrix: Any, points: NDArray[np.int64], width: int, n_points: int) -> Any:
+def _among_all(matrix: Sparse, points: NDArray[np.int64], width: int, n_points: int) -> Sparse:
     """A matrix with ``width`` columns for each of some points, as one with columns for all points."""
     place = (width * points[:, None] + np.arange(width)).ravel()
     rows = matrix.tocsr()

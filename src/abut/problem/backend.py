@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports
+from abut.types import Operator, Sparse
 
 
 class Backend(Protocol):
@@ -29,7 +30,7 @@ class Backend(Protocol):
         """Nodal forces of stresses under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
         ...
 
-    def reduce(self, held: Supports) -> Any:
+    def reduce(self, held: Supports) -> Operator:
         """The stiffness on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
         ...
 
@@ -46,7 +47,7 @@ class Serial:
     """All of it in this process. matrix: stiffness over all points, (dim n_points, dim n_points) CSR."""
 
     model: Model
-    matrix: Any
+    matrix: Sparse
 
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
@@ -56,7 +57,7 @@ class Serial:
         """As in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, held: Supports) -> Any:
+    def reduce(self, held: Supports) -> Sparse:
         """As in ``Backend``, CSR."""
         return held.reduce(self.matrix)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -37,6 +36,7 @@ from abut.model.offset import offsets
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
 from abut.problem.tied_rows import tied_rows
+from abut.types import Sparse
 
 SQUARE = (
     0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
@@ -54,11 +54,11 @@ class PairPoints:
     """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, stiffness (n_points,);
     operator (n_points, n_free) change of the gap by the free displacements; prescribed (n_points, n_histories)."""
 
-    test: Any
+    test: Sparse
     weight: NDArray[np.float64]
     stiffness: NDArray[np.float64]  # of the constraint function, pressure per length
     gap: NDArray[np.float64]
-    operator: Any
+    operator: Sparse
     prescribed: NDArray[np.float64]
 
 
@@ -79,8 +79,8 @@ class Pair:
     target: Surface
     coupling: Coupling
     space: PressureSpace
-    rows: Any  # (n, dim n_points): operator on all displacements
-    operator: Any
+    rows: Sparse  # (n, dim n_points): operator on all displacements
+    operator: Sparse
     prescribed: NDArray[np.float64]
     gap: NDArray[np.float64]
     scale: NDArray[np.float64]
@@ -104,7 +104,7 @@ class Pair:
         return self.scale * self.stiffness
 
     @property
-    def transfer(self) -> Any:
+    def transfer(self) -> Sparse:
         """(9 n_facets, n) sparse, multipliers -> facet-wise nodal values of whichever component each one is."""
         return (
             self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
@@ -161,7 +161,7 @@ def _shared(own: Pair) -> Functions | None:
     return functions(own.space, own.contactor, own.coupling)
 
 
-def _repeats(operator: Any) -> bool:
+def _repeats(operator: Sparse) -> bool:
     """Whether rows depend on each other. Not looked for where they are too many for a dense matrix."""
     if not 0 < operator.shape[0] <= FEW:
         return False

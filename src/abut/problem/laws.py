@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Law, LawResult, LawState
 from abut.problem.contact_pairs import Pair, PairPoints
+from abut.types import Sparse
 
 Vector = NDArray[np.float64]
 FAINT = 1e-12  # of a jump over what its traction gives way: a row that hardly sees it holds the traction alone
@@ -28,8 +28,8 @@ class LawRows:
 
     residual: Vector
     closed: NDArray[np.bool_]
-    by_gap: Any
-    by_pressure: Any
+    by_gap: Sparse
+    by_pressure: Sparse
     at_points: bool
     decoupled: NDArray[np.bool_]
     symmetric: bool = True
@@ -115,8 +115,8 @@ def _matrix(
 
 
 def _normalised(
-    by_gap: Any, by_pressure: Any, residual: Vector, weight: Vector, stiffness: float
-) -> tuple[Any, Any, Vector]:
+    by_gap: Sparse, by_pressure: Sparse, residual: Vector, weight: Vector, stiffness: float
+) -> tuple[Sparse, Sparse, Vector]:
     """Rows of a normal law divided by minus their derivative by the gap; those that hardly look at it do not at all."""
     slope, give = by_gap.diagonal(), by_pressure.diagonal()
     sees = np.abs(slope) > FAINT * np.abs(give) * stiffness

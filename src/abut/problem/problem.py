@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +20,7 @@ from abut.problem.linearised import Linearised
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Motion, Share, Term
 from abut.solution.state import State, at_rest
+from abut.types import Operator, Sparse
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
@@ -72,10 +73,10 @@ class ContactProblem:
     terms: Sequence[Term]
     held: Supports
     pairs: Sequence[Pair]
-    operator: Any
+    operator: Operator
     restraint: Restraint
     springs: Regularisation
-    stiffness: Any
+    stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
 
@@ -162,12 +163,12 @@ class ContactProblem:
         ]
 
 
-def stacked(pairs: Sequence[Pair], n_free: int) -> Any:
+def stacked(pairs: Sequence[Pair], n_free: int) -> Sparse:
     """The operators of all pairs, (n, n_free)."""
     return sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
 
 
-def unit_of(stiffness: Any) -> float:
+def unit_of(stiffness: Sparse) -> float:
     """Size of a stiffness' entries."""
     diagonal = stiffness.diagonal()
     return float(np.median(diagonal)) if len(diagonal) else 1.0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from abut.materials.invariants import von_mises
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.solution import ContactResult, Step
+from abut.types import Array
 
 NOT_COVERED, OPEN, CLOSED = 0, 1, 2
 CONTACTOR, TARGET = 0, 1
@@ -26,9 +26,9 @@ class Grid:
     """points (n, 2 or 3); blocks of cells (kind, connectivity); arrays over points and over cells (in their order)."""
 
     points: NDArray[np.float64]
-    blocks: tuple[tuple[str, NDArray[Any]], ...]
-    point_data: dict[str, NDArray[Any]]
-    cell_data: dict[str, NDArray[Any]]
+    blocks: tuple[tuple[str, Array], ...]
+    point_data: dict[str, Array]
+    cell_data: dict[str, Array]
 
 
 def field_grid(mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> Grid:
@@ -88,7 +88,7 @@ def vectors(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _side(
     step: Step, contact: ContactResult, side: int
-) -> list[tuple[str, NDArray[np.float64], dict[str, NDArray[Any]], dict[str, NDArray[Any]]]]:
+) -> list[tuple[str, NDArray[np.float64], dict[str, Array], dict[str, Array]]]:
     """The facets of one side by type: kind, points, arrays over points, arrays over cells."""
     surface: Surface = contact.contactor if side == CONTACTOR else contact.target
     pressure = contact.pressure if side == CONTACTOR else contact.target_pressure

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -22,6 +21,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
+from abut.types import Sparse
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space
 
@@ -32,6 +32,7 @@ FALLING = 0.2  # beta ~ h^p with p above this falls with the mesh
 WEAK = 0.23  # half of what the weakest stable pair has
 STABLE_PAIRS = "stable pairs have 0.46 to 1.25"
 
+Norm = Callable[[NDArray[np.float64]], NDArray[np.float64]]  # squared, as its matrix times the pressures
 Closed = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # of points (n, dim)
 
 
@@ -155,7 +156,7 @@ def _root(values: NDArray[np.float64]) -> float:
     return float(np.sqrt(max(values.min(), 0.0)))
 
 
-def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Any, Any]:
+def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Sparse, Norm]:
     """T as h M (sparse) and as the trace norm (a function), block by block for both passes of a two-pass method."""
     masses, norms, starts = [], [], np.cumsum([0, *(len(p) for p in own)])
     for p in own:
@@ -176,7 +177,9 @@ def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Any, Any]:
     return sp.block_diag(masses, format="csr"), trace
 
 
-def _all_values(full: Any, operator: Any, mesh: Any, trace: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _all_values(
+    full: Sparse, operator: Sparse, mesh: Sparse, trace: Norm
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     solved = direct.factorized(full, definite=True)(operator.T.toarray())
     compliance = operator @ solved
     compliance = 0.5 * (compliance + compliance.T)
@@ -186,7 +189,7 @@ def _all_values(full: Any, operator: Any, mesh: Any, trace: Any) -> tuple[NDArra
 
 
 def _smallest_values(
-    full: Any, operator: Any, mesh: Any, trace: Any, count: int = 2
+    full: Sparse, operator: Sparse, mesh: Sparse, trace: Norm, count: int = 2
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Lanczos on the inverse: one factorisation of [S, -B^T; B, shift T_h] serves both norms."""
     n, m = full.shape[0], operator.shape[0]
