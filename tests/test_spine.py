@@ -26,9 +26,8 @@ from abut.output.restart import load_steps, save_step
 from abut.verify import law_tangents, material_tangent
 from oracle import assembled
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
-sys.path.insert(0, str(EXAMPLES / "own-law"))
-sys.path.insert(0, str(EXAMPLES / "own-material"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "own-law"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "own-material"))
 
 import soft_layer
 import stiffening
