@@ -133,7 +133,9 @@ def half_spaces(parts: Sequence[Interface]) -> HalfSpaces:
     full, mass, coupled = (
         sp.block_diag([getattr(part, name) for part in parts], format="csc") for name in ("full", "mass", "coupled")
     )
-    spread = max(_largest(part.full, part.mass, part.lowest) / part.lowest for part in parts)  # of each as wide, so that all have as many resolvents
+    spread = max(
+        _largest(part.full, part.mass, part.lowest) / part.lowest for part in parts
+    )  # of each as wide, so that all have as many resolvents
     terms = [inverse_root(part.lowest, spread * part.lowest, ACCURACY) for part in parts]
     sizes = [len(part.rows) for part in parts]
     shifts, weights = (np.repeat(np.stack(values), sizes, axis=0).T for values in zip(*terms))
