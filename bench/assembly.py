@@ -19,9 +19,9 @@ import skfem
 from skfem.helpers import ddot, sym_grad, trace
 from skfem.models.elasticity import lame_parameters
 
+from abut.bodies.elements import stiffness
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box
-from abut.solids.elements import stiffness
-from abut.solids.materials import LinearElastic
 
 YOUNG, POISSON = 210e3, 0.3
 

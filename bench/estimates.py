@@ -2,7 +2,7 @@
 
 OMP_NUM_THREADS=1 python bench/estimates.py [--models NAME,...] [--stages]
 
---stages: the stages of each run too, and what the model of the cost (abut.check.cost) says of them.
+--stages: the stages of each run too, and what the model of the cost (abut.diagnosis.cost) says of them.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import abut
-from abut.analysis import clock
-from abut.check.cost import foresee
-from abut.discretization.pairs import pairs
-from abut.discretization.supports import supports
+from abut.diagnosis.cost import foresee
 from abut.job import load_job
 from abut.mesh.make import box, join
+from abut.problem import clock
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pairs
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 import abut
 from abut.job import load_job
-from abut.solvers import condensed
+from abut.linear import static_condensation
 from search_models import ball, beam, layer, line, pin, solid_beam
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
@@ -79,12 +79,12 @@ def problems() -> list[Problem]:
 @contextmanager
 def without_elimination(active: bool) -> Iterator[None]:
     """Direct solution of the whole matrix, at every iteration, as of interfaces too large for dense matrices."""
-    before = condensed.LARGEST
-    condensed.LARGEST = 0 if active else before
+    before = static_condensation.LARGEST
+    static_condensation.LARGEST = 0 if active else before
     try:
         yield
     finally:
-        condensed.LARGEST = before
+        static_condensation.LARGEST = before
 
 
 def count(model: abut.Model, path: str) -> Count:

@@ -13,7 +13,7 @@ import time
 from dataclasses import replace
 
 from abut.cells import BY_CODE, CELLS
-from abut.interface.coupling import couple, surface_degree
+from abut.contact.coupling import couple, surface_degree
 from abut.mesh.make import box, join, sphere_octant
 from abut.mesh.surface import Surface
 

@@ -96,7 +96,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
         nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
-        "Cuts the contactor by the target and integrates; see abut.interface.coupling.");
+        "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
 }
 
 } // namespace abut

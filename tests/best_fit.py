@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.geometry import by_kind, facet_measure, pressure_kind
+from abut.contact.geometry import by_kind, facet_measure, pressure_kind
 from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 import abut
-from abut.analysis.clock import Clock
-from abut.analysis.load_step import with_plain
-from abut.analysis.problem import Problem, problem
-from abut.solvers.active_set import System, start
+from abut.nonlinear.active_set import start
+from abut.nonlinear.load_step import with_plain
+from abut.problem.assembly import Problem, problem
+from abut.problem.clock import Clock
+from abut.problem.system import System
 
 Array = NDArray[np.float64]
 SLACK = 1e-7  # share of the loads by which balance may be missed, as far as linprog solves
@@ -38,7 +39,7 @@ def assembled(model: abut.Model) -> Problem:
 
 
 def final(model: abut.Model, own: Problem, inside: NDArray[np.bool_]) -> System:
-    """The system with ordinary functions where the step that was solved had them (``abut.state.Saved.inside``)."""
+    """The system with ordinary functions where the step that was solved had them (``abut.solution.Saved.inside``)."""
     return with_plain(model, own.held, own.system, inside) if inside.any() else own.system
 
 

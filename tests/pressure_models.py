@@ -12,7 +12,7 @@ from abut.benchmarks.errors import pressure_l2
 from abut.cells import BY_CODE
 from abut.mesh.make import box, half_disc, join, quarter_disc, rectangle, sphere_octant
 from abut.mesh.make.block import grid
-from abut.state import ContactResult
+from abut.solution import ContactResult
 from best_fit import fits
 from certificate_models import mirrored
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.mesh import make
-from abut.state import Saved
+from abut.solution import Saved
 from assemblies import PLANE
 from assemblies_solid import SOLID
 from oracle import assembled, exact, final, programme, solvable
@@ -40,7 +40,7 @@ def solved(model: abut.Model) -> tuple[abut.Solution, Saved] | None:
         assert solution.converged
         return solution, kept[-1]
     assert "the loads pull it off its contact" in reason
-    with mock.patch("abut.analysis.problem.require_balance"), mock.patch("abut.analysis.problem.require_unmoved"):
+    with mock.patch("abut.problem.assembly.require_balance"), mock.patch("abut.problem.assembly.require_unmoved"):
         assert not solvable(programme(assembled(model).system))
     return None
 

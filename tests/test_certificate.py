@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 import abut
 from abut.analysis.certificate import BALANCE, certificate
 from abut.cli import main
-from abut.discretization.pairs import Pair, pair
-from abut.discretization.supports import supports
-from abut.interface.recover import facet_node_values
-from abut.io.results import summary
+from abut.contact.nodal_recovery import facet_node_values
 from abut.job import load_job
 from abut.mesh.make import join, rectangle
-from abut.state import Check
+from abut.output.results import summary
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import Pair, pair
+from abut.solution import Check
 from patch import model, two_blocks
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

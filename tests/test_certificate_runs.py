@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import abut
-from abut.analysis.cures import MODEL, OF_CONTACT, cures
+from abut.diagnosis.cures import MODEL, OF_CONTACT, cures
 from certificate_runs import RUNS, SOUND_RUNS, UNSOUND_RUNS, Run, verdict
 
 

@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import abut
-from abut.check import Finding, Report, check
-from abut.check.quality import CORNERS, quality
 from abut.cli import main
+from abut.diagnosis import Finding, Report, check
+from abut.diagnosis.quality import CORNERS, quality
 from abut.errors import InputError
 from abut.job import load_job
 from abut.mesh.make import box, join, rectangle
@@ -275,7 +275,7 @@ def test_findings_check_themselves() -> None:
 def test_estimate_of_memory() -> None:
     """Within the factor of three that the page promises of what docs/performance.md measured (tilted, then the ball, then
     hex20 and tet10; one core)."""
-    from abut.check.cost import LAWS
+    from abut.diagnosis.cost import LAWS
 
     for solver, degree, n, megabytes in (
         ("direct", 1, 9591, 172),
@@ -293,7 +293,7 @@ def test_estimate_of_memory() -> None:
 def test_estimate_of_time_grows_as_nested_dissection(dim: int, power: float) -> None:
     """Operations of a factorisation: n^(3/2) of a square, n^2 of a cube; of a bar ten times as long, ten times those of its
     tenth part."""
-    from abut.check.effort import effort
+    from abut.diagnosis.effort import effort
 
     def fronts(n: int, length: int = 1) -> float:
         mesh = (

@@ -9,10 +9,10 @@ import pytest
 import scipy.sparse as sp
 
 import abut
-from abut.discretization.elimination import eliminate
 from abut.errors import InputError, SingularModelError
 from abut.mesh.make import join, rectangle
 from abut.mesh.mesh import Mesh
+from abut.problem.elimination import eliminate
 
 EXACT = 1e-9
 SOFT = abut.LinearElastic(1000.0, 0.3)

@@ -10,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.io.results import write
 from abut.job import load_job
 from abut.mesh.facets import facet_keys, number_keys
 from abut.mesh.make import block, box, join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
+from abut.output.results import write
 from patch import errors, model
 
 EXACT = 1e-10

@@ -10,15 +10,15 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.analysis.loads import applied_load
 from abut.benchmarks import BENCHMARKS, run
 from abut.benchmarks.convergence import PLANE, SOLID, edge_fields, smooth_fields
 from abut.benchmarks.errors import displacement_l2, energy_norm, pressure_l2
+from abut.bodies.elements import lame
 from abut.cells import CELLS
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import field_rule
-from abut.solids.elements import lame
+from abut.problem.loads import applied_load
 from patch import STRAIN, exact_displacement, model, two_blocks
 
 Array = NDArray[np.float64]

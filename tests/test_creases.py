@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import abut
-from abut.discretization.pairs import pairs
-from abut.discretization.supports import supports
-from abut.interface.geometry import split_at_creases
+from abut.contact.geometry import split_at_creases
 from abut.mesh.make import box, join, rectangle
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pairs
 from abut.verify import inf_sup
 
 EXACT = 1e-10

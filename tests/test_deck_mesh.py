@@ -7,12 +7,12 @@ import pytest
 
 from abut import Mesh
 from abut._core import shape_functions
+from abut.bodies.loads import stress_load, surface_area
 from abut.cells import CELLS
+from abut.decks.cards.elements import ELEMENTS
 from abut.errors import InputError
-from abut.io.abaqus.elements import ELEMENTS
 from abut.mesh.integrals import chunks, gradients
 from abut.mesh.quadrature import stiffness_rule
-from abut.solids.loads import stress_load, surface_area
 from decks import MESH
 
 # Corners, edges whose midpoints follow them, and faces S1, S2, ..., from the figures of the CalculiX manual (sections 6.2

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from abut.cli import main
+from abut.decks.cards.cards import key
+from abut.decks.cards.supported import NEEDED, PROCEDURES, QUIET, READ, REFUSED
 from abut.errors import InputError
-from abut.io.abaqus.cards import key
-from abut.io.abaqus.known import NEEDED, PROCEDURES, QUIET, READ, REFUSED
 from abut.job import load_job
 from abut.mesh.mesh import Mesh
 from decks import BRICKS, HELD, PAIR, PUSH, load, step, write

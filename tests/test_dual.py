@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import abut
-from abut.discretization.pairs import pair, with_plain_functions
-from abut.discretization.supports import supports
+from abut.contact.clearance import of_corners
+from abut.contact.coupling import couple
+from abut.contact.nodal_recovery import at_facet_nodes, averages
+from abut.contact.pressure_space import inner_facets, pressure_space, resolve, with_plain_facets
 from abut.errors import InputError
-from abut.interface.clearance import of_corners
-from abut.interface.coupling import couple
-from abut.interface.pressure import inner_facets, pressure_space, resolve, with_plain_facets
-from abut.interface.recover import at_facet_nodes, averages
 from abut.mesh.make import join, rectangle
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pair, with_plain_functions
 from surfaces import FACETS_3D, grid
 
 

@@ -39,7 +39,7 @@ def test_example_runs_and_balances(path: Path) -> None:
     assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
 
 
-def check_expected(path: Path, step: abut.state.Step) -> None:
+def check_expected(path: Path, step: abut.solution.Step) -> None:
     """What theory says of the first contact and of probes: expected.json beside the job, by the job file's name."""
     expected = json.loads((path.parent / "expected.json").read_text())[path.stem]
     quantities = known_quantities(step)
@@ -54,7 +54,7 @@ def check_expected(path: Path, step: abut.state.Step) -> None:
         assert wanted.get("at_least", -np.inf) <= value <= wanted.get("at_most", np.inf), name
 
 
-def check_profile(contact: abut.state.ContactResult, expected: dict, tolerance: float) -> None:
+def check_profile(contact: abut.solution.ContactResult, expected: dict, tolerance: float) -> None:
     """The pressure along the report's line is Hertz's ellipse, in the mean over the line (as share of the peak): its edge,
     where the slope is infinite, falls within a facet."""
     theory = ellipse(expected)

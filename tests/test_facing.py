@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import abut
+from abut.detection.facing import facing, outside
 from abut.errors import InputError
-from abut.facing.search import facing, outside
 from abut.job import load_job
 from abut.job.pairs import write_pairs
 from abut.mesh.exterior import exterior

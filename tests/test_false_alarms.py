@@ -9,10 +9,10 @@ import pytest
 
 import abut
 from abut.analysis.faceting import bulge, misfit, unseen
-from abut.discretization.pairs import pair
-from abut.discretization.supports import supports
 from abut.mesh.make import box, cylinder, join, rectangle, ring, sphere_octant
-from abut.state import Check
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pair
+from abut.solution import Check
 
 STEEL = abut.LinearElastic(210e3, 0.3)
 

@@ -13,8 +13,8 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.check import check
-from abut.interface.coupling import couple
+from abut.contact.coupling import couple
+from abut.diagnosis import check
 from abut.mesh.exterior import exterior
 from assembly_models import ASSEMBLIES, Assembly, fir_tree
 

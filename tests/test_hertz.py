@@ -14,7 +14,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 HALF_WIDTH, PEAK = 6.2146, 3585.36
 
 
-def pressure_line(contact: abut.state.ContactResult) -> tuple[np.ndarray, np.ndarray]:
+def pressure_line(contact: abut.solution.ContactResult) -> tuple[np.ndarray, np.ndarray]:
     surface = contact.contactor
     used = (surface.nodes >= 0) & (np.arange(surface.nodes.shape[1]) < 2)  # corners: linear between them
     x, first = np.unique(np.round(surface.points[surface.nodes[used], 0], 9), return_index=True)

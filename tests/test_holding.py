@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import abut
-from abut.check import check
+from abut.diagnosis import check
 from abut.mesh import make
-from abut.state import Iteration
+from abut.solution import Iteration
 from search_models import beam
 
 UNITS = {"mm": 1.0, "m": 1e-3, "um": 1e3}  # a millimetre in the unit; newtons stay

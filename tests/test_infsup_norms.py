@@ -10,11 +10,11 @@ import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.interface.coupling import couple
-from abut.interface.geometry import full_moments
+from abut.contact.coupling import couple
+from abut.contact.geometry import full_moments
+from abut.linear.fractional import inverse_root
 from abut.mesh.make import rectangle
 from abut.mesh.surface import Surface
-from abut.solvers.fractional import inverse_root
 from abut.verify.norms import h1_matrix, trace_norm
 from abut.verify.trace import TraceSpace, trace_space
 from patch import ROTATION

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import abut
+from abut.bodies.elements import nodal_stress, stiffness, thermal_load
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import BBAR, REDUCED
-from abut.solids.elements import nodal_stress, stiffness, thermal_load
-from abut.solids.materials import LinearElastic
 from patch import errors, model, two_blocks
 
 MATERIAL = LinearElastic(young=2.0, poisson=0.3, expansion=1e-3)

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
+from abut.contact.bases import non_negative_block
+from abut.contact.coupling import couple, surface_degree
+from abut.contact.geometry import full_moments
+from abut.contact.laws import constraint_function
+from abut.contact.pressure_space import pressure_space, resolve
 from abut.errors import InputError
-from abut.interface.bases import non_negative_block
-from abut.interface.coupling import couple, surface_degree
-from abut.interface.geometry import full_moments
-from abut.interface.laws import constraint_function
-from abut.interface.pressure import pressure_space, resolve
 from abut.mesh.surface import Surface
 from surfaces import FACETS_2D, FACETS_3D, grid, in_plane, line
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 import abut
 from abut.cells import BY_CODE, CELLS
-from abut.interface.coupling import Coupling, couple, surface_degree
-from abut.interface.geometry import full_moments
+from abut.contact.coupling import Coupling, couple, surface_degree
+from abut.contact.geometry import full_moments
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.surface import Surface
 from surfaces import FACETS_2D, FACETS_3D, FLAT, PAIRS, SHAPES, moved, opposed, side, turned

@@ -181,7 +181,7 @@ def test_output_directory_in_the_way(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_every_key_has_a_meaning() -> None:
-    """The reference page and editors show it: a new key comes with a line in abut/job/meanings.py."""
+    """The reference page and editors show it: a new key comes with a line in abut/job/key_descriptions.py."""
     schema = json_schema()
     tables = {"JobFile": schema, **schema["$defs"]}
     entries = {(name, key): entry for name, table in tables.items() for key, entry in table["properties"].items()}

@@ -22,7 +22,7 @@ KILLS = 24
 # longer than running. Nothing numerical happens before a fork, so no threads are lost in it.
 RUNNER = """
 import os, random, signal, sys, time
-import abut.analysis, abut.io.stream, abut.io.vtu, abut.job, abut.cli.run, vtkmodules.vtkIOXML
+import abut.analysis, abut.output.stream, abut.io.vtu, abut.job, abut.cli.run, vtkmodules.vtkIOXML
 import vtkmodules.util.numpy_support
 from abut.cli import main
 

@@ -9,7 +9,7 @@ import pytest
 import scipy.sparse.linalg as spla
 from pyamg.krylov import fgmres as reference
 
-from abut.solvers.krylov import fgmres
+from abut.linear.krylov import fgmres
 
 N = 60
 

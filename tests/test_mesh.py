@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from abut._core import single_rows
+from abut.bodies.elements import body_load
 from abut.errors import InputError
 from abut.io.vtu import write_vtu
 from abut.mesh.check import check_mesh
 from abut.mesh.facets import row_codes
 from abut.mesh.make import box, cylinder, disc, half_disc, join, rectangle, sphere_octant
 from abut.mesh.mesh import CellBlock, Mesh
-from abut.solids.elements import body_load
 
 PIN_LUG = Path(__file__).parents[1] / "examples" / "pin-lug" / "pin-lug.msh"
 TWO_SQUARES = """$MeshFormat

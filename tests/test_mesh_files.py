@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from abut.bodies.elements import body_load
 from abut.errors import InputError
 from abut.io.raw import RawMesh
 from abut.io.vtu import write_vtu
@@ -20,7 +21,6 @@ from abut.mesh.make import box, cylinder, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.mesh.write import write_mesh
-from abut.solids.elements import body_load
 
 DATA = Path(__file__).parent / "data"
 

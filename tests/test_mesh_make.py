@@ -8,11 +8,11 @@ from itertools import product
 import numpy as np
 import pytest
 
+from abut.bodies.elements import body_load
 from abut.errors import InputError
 from abut.mesh.check import check_mesh
 from abut.mesh.make import box, cylinder, disc, half_disc, quarter_disc, rectangle, ring, sphere_octant
 from abut.mesh.mesh import Mesh
-from abut.solids.elements import body_load
 
 PLANE = ["tri3", "tri6", "quad4", "quad8", "quad9"]
 SOLID = ["tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "wedge15"]

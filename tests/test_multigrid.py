@@ -9,12 +9,12 @@ import pytest
 import scipy.sparse as sp
 
 import abut
-from abut.discretization.pairs import pairs
-from abut.discretization.supports import supports
+from abut.linear import iterative
+from abut.linear.fractional import inverse_root
+from abut.linear.schur_preconditioner import half_spaces, interfaces, schur_inverse
 from abut.mesh.make import box, join, rectangle
-from abut.solvers import iterative
-from abut.solvers.fractional import inverse_root
-from abut.solvers.schur import half_spaces, interfaces, schur_inverse
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pairs
 
 STEEL = abut.LinearElastic(210e3, 0.3)
 AGREE = 1e-7  # in pressure: the equations are met to 2e-9, and pressures are worse conditioned than residuals
@@ -221,7 +221,7 @@ def test_inverse_root(high: float) -> None:
 
 def test_interface_operator_is_close_to_the_true_one() -> None:
     """S and B K^-1 B^T have the same eigenvalues within a factor of five, for all contact and for a part of it."""
-    from abut.solids.elements import stiffness
+    from abut.bodies.elements import stiffness
 
     model = blocks(6, tilt=0.0)
     held = supports(model)

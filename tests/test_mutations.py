@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from abut.benchmarks import BENCHMARKS, run
+from abut.contact import coupling
 from abut.errors import AbutError
-from abut.interface import coupling
 
 SUITE = (
     "patch-compressed",

@@ -14,10 +14,10 @@ import abut
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.cli import main
+from abut.contact.coupling import Coupling
+from abut.contact.geometry import by_kind, nodal_normals
+from abut.contact.node_to_segment import node_to_segment
 from abut.errors import InputError
-from abut.interface.coupling import Coupling
-from abut.interface.geometry import by_kind, nodal_normals
-from abut.interface.node_to_segment import node_to_segment
 from abut.mesh.surface import Surface
 from patch import errors, exact_displacement, model, two_blocks
 from surfaces import FACETS_3D, SHAPES, grid, line, moved, opposed

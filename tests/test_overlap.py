@@ -10,13 +10,13 @@ import pytest
 
 import abut
 from abut.analysis.overlap import overlaps
-from abut.analysis.remedies import remedies
-from abut.discretization.pairs import pair
-from abut.discretization.supports import supports
-from abut.io.results import summary
+from abut.diagnosis.advice import remedies
 from abut.mesh.make import box, half_disc, join, rectangle
+from abut.output.results import summary
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pair
 from abut.report import write_report
-from abut.state import Check
+from abut.solution import Check
 
 SIZE = 1.0 / 3.0  # of the contactor's facets in `stacked`
 E, NU = 210e3, 0.3

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from abut.interface.coupling import couple
-from abut.interface.parts import added
+from abut.bodies.elements import stiffness
+from abut.contact.coupling import couple
+from abut.contact.merging import added
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.parallel.partition import cell_graph, layout, pieces, point_owners
-from abut.solids.elements import stiffness
-from abut.solids.materials import LinearElastic
 from patch import two_blocks
 
 PAIRS = [("hex8", "hex8"), ("tet10", "hex20"), ("wedge6", "tet4"), ("hex27", "wedge15"), ("quad8", "tri6")]

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 import abut
 from abut.errors import InputError
-from abut.io.fields import write_fields
-from abut.io.grids import field_grid
-from abut.io.results import is_written, write
 from abut.mesh.make import box, join, rectangle
+from abut.output.fields import write_fields
+from abut.output.parallel import Pieces
+from abut.output.results import is_written, write
 from abut.parallel.part import Part
 from abut.parallel.partition import pieces
-from abut.parallel.pieces import Pieces
-from abut.state import Solution
+from abut.solution import Solution
+from abut.solution.grids import field_grid
 
 Grid = Any
 

@@ -10,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.discretization.pairs import Pair, pair
-from abut.discretization.supports import supports
-from abut.interface.planes import evened
-from abut.interface.recover import averages
+from abut.contact.nodal_recovery import averages
+from abut.contact.symmetry_planes import evened
 from abut.mesh.make import box, join
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import Pair, pair
 from pressure_models import bent, quarter_ball
 from surfaces import turned
 

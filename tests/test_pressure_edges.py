@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.cures import cure
 from abut.cells import BY_CODE
-from abut.discretization.pairs import pair
-from abut.discretization.supports import supports
-from abut.interface.recover import averages
+from abut.contact.nodal_recovery import averages
+from abut.diagnosis.cures import cure
 from abut.job import load_job
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pair
 from certificate_models import line as unlike
 from pressure_models import (
     along,

@@ -12,10 +12,10 @@ import pytest
 import abut
 from abut.cli import main
 from abut.errors import Stopped
-from abut.io.restart import description
-from abut.io.stream import Stream
 from abut.job import load_job
 from abut.job.convert import write_job
+from abut.output.restart import description
+from abut.output.stream import Stream
 from abut.probing.table import columns, peaks
 from abut.report import write_report
 from abut.report.origin import comparison, quantities
@@ -70,7 +70,7 @@ def test_peaks_keep_their_sign() -> None:
         "pressure": np.array([np.nan, 2.0, 1.0]),
         "gap": nothing,
     }
-    result = abut.state.ProbeResult("p", np.zeros((3, 2)), None, None, values)
+    result = abut.solution.ProbeResult("p", np.zeros((3, 2)), None, None, values)
     assert peaks(result) == {"displacement_x": -3.0, "displacement_y": 0.5, "pressure": 2.0, "gap": None}
 
 

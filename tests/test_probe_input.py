@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import abut
-from abut.check import check
 from abut.cli import main
+from abut.diagnosis import check
 from abut.mesh import make
 from abut.probing import find_place
 from probe_models import PROBES, STEEL, TEXT, distorted, free, two_blocks

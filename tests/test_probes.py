@@ -9,6 +9,7 @@ import pytest
 
 import abut
 import patch
+from abut.bodies.elements import reference_nodes
 from abut.cells import CELLS
 from abut.job import load_job
 from abut.mesh import make
@@ -19,8 +20,7 @@ from abut.probing import boxes, find_place, read
 from abut.probing.cells import locate
 from abut.probing.feet import feet
 from abut.probing.inverse import nearest
-from abut.solids.elements import reference_nodes
-from abut.state import Step
+from abut.solution import Step
 from probe_models import JOB, distorted, free, two_blocks
 
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")

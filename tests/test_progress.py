@@ -16,8 +16,8 @@ import abut
 from abut.cli import main, progress
 from abut.cli.progress import Progress
 from abut.job import load_job
-from abut.solvers.linear import expected_seconds
-from abut.state import Iteration, Phase
+from abut.linear.choice import expected_seconds
+from abut.solution import Iteration, Phase
 from test_restart import STEPS, job
 
 

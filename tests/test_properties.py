@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.coupling import couple, surface_degree
-from abut.interface.geometry import by_kind, full_moments, nodal_normals
+from abut.contact.coupling import couple, surface_degree
+from abut.contact.geometry import by_kind, full_moments, nodal_normals
 from abut.mesh.surface import Surface
 from surfaces import FACETS_2D, FACETS_3D, FLAT, PAIRS, SHAPES, grid, line, moved, opposed, planar, side
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.remedies import Remedy, remedies, swap, unsettled
-from abut.io.results import summary, write
+from abut.diagnosis.advice import Remedy, remedies, swap, unsettled
 from abut.mesh import make
-from abut.solvers import constraint_function
-from abut.state import Iteration, Solution, Step
+from abut.nonlinear import constraint_function
+from abut.output.results import summary, write
+from abut.solution import Iteration, Solution, Step
 from assemblies import PLANE
 from test_overlap import ball_on_block, strip
 

@@ -21,7 +21,7 @@ from abut.report import Origin, read_origin, write_report
 from abut.report.lines import pressure_lines
 from abut.report.origin import comparison
 from abut.report.scene import scene, thin
-from abut.report.skins import patch, skin
+from abut.report.surface_triangles import patch, skin
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 STEEL = abut.LinearElastic(1000.0, 0.3)
@@ -180,7 +180,7 @@ def test_trouble_comes_before_the_certificate(tmp_path: Path) -> None:
     """Where a run failed with facets and nodes, what to try, and what of a deck was left out."""
     from dataclasses import replace
 
-    from abut.analysis.remedies import remedies
+    from abut.diagnosis.advice import remedies
 
     solution = solution_of("quad4")
     step = replace(solution.steps[-1], converged=False, cycling={"blocks": np.array([1, 2])})
@@ -325,7 +325,7 @@ def test_run_writes_the_report(tmp_path: Path) -> None:
 
 
 TOUCH_EVERYTHING = """<script>(() => {
-  document.documentElement.dataset.before = abut.view.count().pixels;
+  document.documentElement.dataset.before = abut.output.pyvista_export.count().pixels;
   const change = (e, value) => { e.value = value; for (const k of ["input", "change"]) e.dispatchEvent(new Event(k)); };
   for (const e of document.querySelectorAll("#panel select")) for (const o of [...e.options].reverse()) change(e, o.value);
   for (const e of document.querySelectorAll("#panel input[type=range]")) for (const v of [e.min, e.max]) change(e, v);
@@ -335,7 +335,7 @@ TOUCH_EVERYTHING = """<script>(() => {
   document.querySelector("#theme").click();
   const found = new Set();
   for (let i = 1; i < 20; i++) for (let j = 1; j < 20; j++) {
-    const hit = abut.view.pick(i / 20, j / 20);
+    const hit = abut.output.pyvista_export.pick(i / 20, j / 20);
     if (hit) { found.add(hit.name); if (!("displacement" in hit.values)) throw Error("nothing known at " + hit.name); }
   }
   document.documentElement.dataset.found = found.size;

@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 import abut
 from abut.cli import main
 from abut.errors import Stopped
-from abut.io.restart import FOLDER, description, differences, load_steps
-from abut.io.stream import LOG, Stream
 from abut.job import load_job
-from abut.solvers import condensed
+from abut.linear import static_condensation
+from abut.output.restart import FOLDER, description, differences, load_steps
+from abut.output.stream import LOG, Stream
 
 ROOT = Path(__file__).parents[1]
 BALL = (ROOT / "examples" / "hertz-sphere" / "job.toml").read_text()
@@ -108,7 +108,7 @@ def elimination(_: pytest.MonkeyPatch) -> dict[str, str]:
 
 
 def sparse_saddle(patch: pytest.MonkeyPatch) -> dict[str, str]:
-    patch.setattr(condensed, "LARGEST", 0)
+    patch.setattr(static_condensation, "LARGEST", 0)
     return {"linear": "direct"}
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import abut
-from abut.discretization.supports import supports
 from abut.errors import InputError, SingularModelError
-from abut.io.results import write
 from abut.job import load_job
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
+from abut.output.results import write
+from abut.problem.constraints import supports
 from test_constraints import EXACT, SOFT, at, equal
 
 
@@ -66,7 +66,7 @@ def test_a_free_tool_finds_its_place(condensed: bool, monkeypatch: pytest.Monkey
     """Pushed off its centre, free to sink and tilt: nothing holds it but contact. Moved to the same place it needs the same
     force and moment."""
     if not condensed:
-        monkeypatch.setattr("abut.solvers.condensed.LARGEST", 0)
+        monkeypatch.setattr("abut.linear.static_condensation.LARGEST", 0)
     reference = (0.3, 1.0)
     model = pressed(x=0.0, reference=reference)
     handle = at(model.mesh, "tool", 0.2, 1.0)
@@ -219,7 +219,7 @@ def test_a_body_glued_to_a_rigid_one() -> None:
 def test_a_rigid_back_on_a_free_pad(condensed: bool, law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A pad glued to a rigid back, pressed on a block: both are free to sink, and contact alone holds them."""
     if not condensed:
-        monkeypatch.setattr("abut.solvers.condensed.LARGEST", 0)
+        monkeypatch.setattr("abut.linear.static_condensation.LARGEST", 0)
     parts = {
         "block": rectangle((0, 1), (-1, 0), (4, 3), "quad8"),
         "pad": rectangle((0, 1), (0, 1), (3, 2), "quad8"),

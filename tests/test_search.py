@@ -13,17 +13,18 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.analysis.clock import Clock
-from abut.analysis.problem import Problem, problem
-from abut.conditions import weights
-from abut.discretization.rigid import near_null
+from abut.linear import direct, static_condensation
+from abut.linear.choice import Prepared
 from abut.mesh import make
-from abut.solvers import active_set, condensed, direct
-from abut.solvers.active_set import Stage, solve_step, start
-from abut.solvers.exact import ROUGH, solve_set
-from abut.solvers.linear import Prepared
-from abut.solvers.newton import Outcome, active_laws
-from abut.solvers.search import Log, search
+from abut.model.conditions import weights
+from abut.nonlinear import active_set
+from abut.nonlinear.active_set import solve_step, start
+from abut.nonlinear.exact import ROUGH, solve_set
+from abut.nonlinear.search import Log, search
+from abut.problem.assembly import Problem, problem
+from abut.problem.clock import Clock
+from abut.problem.rigid_modes import near_null
+from abut.problem.system import Outcome, Stage, active_laws
 from search_models import HARD, STEEL, ball, beam, line, pin
 from units import MILLIMETRES_TO, in_units
 
@@ -277,7 +278,7 @@ MODELS: dict[str, Callable[[], abut.Model]] = {
 def test_same_answer_as_peeling(name: str, path: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the active set is found one facet after the other, it is the same, and so are the pressures."""
     if path == "sparse":
-        monkeypatch.setattr(condensed, "LARGEST", 0)
+        monkeypatch.setattr(static_condensation, "LARGEST", 0)
     elif direct.solver_name() != "PARDISO":
         pytest.skip("only PARDISO condenses")
     _, solver, stage = prepared(MODELS[name]())

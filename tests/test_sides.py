@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import abut
 from abut.cli import main
+from abut.contact.coupling import couple
+from abut.contact.geometry import full_moments
 from abut.errors import InputError
-from abut.interface.coupling import couple
-from abut.interface.geometry import full_moments
 from abut.job import load_job
 from abut.job.convert import job_table
 from abut.job.schema import JobFile

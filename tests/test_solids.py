@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from abut.bodies.elements import body_load, nodal_stress, stiffness, thermal_load
+from abut.bodies.loads import force_load, pressure_load, surface_area
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
-from abut.solids.elements import body_load, nodal_stress, stiffness, thermal_load
-from abut.solids.loads import force_load, pressure_load, surface_area
-from abut.solids.materials import LinearElastic
 from patch import two_blocks
 
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")

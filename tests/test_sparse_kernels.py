@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pyamg.aggregation import fit_candidates, standard_aggregation
 
 from abut._core import block_product, padded_blocks, principal_submatrix
-from abut.solvers.cycle import SMOOTHED, Levels, coarse_matrix, inverse, level
+from abut.linear.multigrid_cycle import SMOOTHED, Levels, coarse_matrix, inverse, level
 
 SHAPES = [(1, 1), (2, 2), (2, 3), (3, 3), (3, 6), (6, 3), (6, 6), (4, 5)]
 

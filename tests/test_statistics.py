@@ -14,12 +14,12 @@ import abut
 from abut.analysis.statistics import pressure_statistics, quantile, resultant
 from abut.benchmarks.hertz import HALF_WIDTH, LINE_FORCE, LINE_PEAK
 from abut.cli import main
-from abut.io.contact_rows import contact_summary
-from abut.io.grids import CONTACTOR, TARGET, contact_grid
 from abut.job import load_job
 from abut.mesh import make
+from abut.output.contact_rows import contact_summary
 from abut.report.contact_words import lines
 from abut.report.scene import scene
+from abut.solution.grids import CONTACTOR, TARGET, contact_grid
 from patch import CELL_OF, model, two_blocks
 
 ROOT = Path(__file__).parents[1]

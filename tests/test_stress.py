@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from abut._core import shape_functions, smallest_determinants
+from abut.bodies.elements import lame, nodal_stress, reference_nodes, stress_sums
 from abut.cells import CELLS
+from abut.materials.elastic import LinearElastic
 from abut.mesh.integrals import gradients, groups
 from abut.mesh.make import box
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import BBAR, stiffness_rule, stress_rule
-from abut.solids.elements import lame, nodal_stress, reference_nodes, stress_sums
-from abut.solids.materials import LinearElastic
 from patch import two_blocks
 
 MATERIALS = {

@@ -15,9 +15,9 @@ import numpy as np
 import pyamg
 import scipy.sparse as sp
 
-from abut.discretization.rigid import rigid_modes
-from abut.discretization.supports import supports
-from abut.solids.elements import stiffness
+from abut.bodies.elements import stiffness
+from abut.problem.constraints import supports
+from abut.problem.rigid_modes import rigid_modes
 
 TOLERANCE = 1e-8
 

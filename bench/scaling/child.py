@@ -21,9 +21,9 @@ import cases
 import numpy as np
 
 from abut.analysis import solve
-from abut.io.fields import write_fields
-from abut.io.results import write
-from abut.parallel.pieces import Pieces
+from abut.output.fields import write_fields
+from abut.output.parallel import Pieces
+from abut.output.results import write
 from abut.parallel.team import Store, Team, lead
 
 CASE, DOFS, *OPTIONS = sys.argv[1:] if len(sys.argv) > 2 else ("flat-hex8", "1000")

@@ -12,11 +12,11 @@ import abut
 import inf_sup
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.patch import shaken
+from abut.bodies.elements import stiffness
 from abut.job import load_job
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.surface import Surface
-from abut.solids.elements import stiffness
-from abut.state import ContactResult, Solution
+from abut.solution import ContactResult, Solution
 from abut.verify.facet_quadrature import facet_forces, force_error, segment_forces
 from page import DOCS, error, plots, read_table, save, write_table
 

@@ -11,7 +11,7 @@ import abut
 from abut.benchmarks.convergence import PLANE, SOLID
 from abut.cells import BY_CODE, CELLS
 from abut.mesh.make import join, rectangle
-from abut.state import ContactResult
+from abut.solution import ContactResult
 from page import DOCS, plots, read_table, save, write_table
 
 sys.path.insert(0, str(DOCS.parent / "tests"))

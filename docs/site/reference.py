@@ -94,7 +94,7 @@ def _table(entries: Mapping[str, Any], schema: Mapping[str, Any], required: Iter
     for key, entry in entries.items():
         text = entry.get("description", "")
         if not text:
-            LOG.warning("job file: no meaning of key %r; add it to abut/job/meanings.py", key)
+            LOG.warning("job file: no meaning of key %r; add it to abut/job/key_descriptions.py", key)
         meaning, unit = match.groups() if (match := UNIT.match(text)) else (text, "")
         default = "**required**" if key in required else _default(entry)
         rows.append(f"| `{key}` | {_value(entry, schema)} | {default} | {unit} | {meaning} |")

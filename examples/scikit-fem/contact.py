@@ -1,4 +1,4 @@
-"""Contact for another finite element code: scikit-fem solves two elastic bodies, ``abut.interface`` couples them.
+"""Contact for another finite element code: scikit-fem solves two elastic bodies, ``abut.contact`` couples them.
 
     pip install abut scikit-fem
     python contact.py
@@ -25,9 +25,9 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 
 import abut
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.interface.coupling import couple
-from abut.interface.laws import linearise_active
-from abut.interface.pressure import pressure_space, resolve
+from abut.contact.coupling import couple
+from abut.contact.laws import linearise_active
+from abut.contact.pressure_space import pressure_space, resolve
 from abut.mesh.make import join
 from abut.mesh.mesh import CellBlock
 from abut.mesh.surface import Surface
@@ -152,7 +152,7 @@ def main() -> float:
     (u, force, active), (own, own_force) = solve(), solve_with_abut()
     difference = max(np.abs(u - own).max() / PRESSED, np.abs(force - own_force).max() / np.abs(force).max())
     print(f"{active.sum()} of {len(active)} multipliers in contact")
-    print(f"force on the punch: scikit-fem with abut.interface {force[2]:.10g}, abut alone {own_force[2]:.10g}")
+    print(f"force on the punch: scikit-fem with abut.contact {force[2]:.10g}, abut alone {own_force[2]:.10g}")
     print(f"largest relative difference of displacements and forces: {difference:.1e}")
     return float(difference)
 

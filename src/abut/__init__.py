@@ -8,8 +8,8 @@ from abut.errors import AbutError, ConvergenceError, InputError, SingularModelEr
 
 if TYPE_CHECKING:
     from abut.analysis import solve
-    from abut.facing import FoundContact, add_surfaces, find_contacts
-    from abut.io.results import write
+    from abut.detection import FoundContact, add_surfaces, find_contacts
+    from abut.materials.elastic import LinearElastic
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -31,18 +31,18 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.output.pyvista_export import plot, to_pyvista
+    from abut.output.results import write
     from abut.report import write_report
-    from abut.solids.materials import LinearElastic
-    from abut.state import Solution
-    from abut.view import plot, to_pyvista
+    from abut.solution import Solution
 
 __version__ = "0.1.0"
 
 _HOME = {
-    "solve": "abut.analysis", "write": "abut.io.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.state",
-    "write_report": "abut.report", "plot": "abut.view", "to_pyvista": "abut.view",
-    "LinearElastic": "abut.solids.materials", "FoundContact": "abut.facing", "add_surfaces": "abut.facing",
-    "find_contacts": "abut.facing", **dict.fromkeys(
+    "solve": "abut.analysis", "write": "abut.output.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.solution",
+    "write_report": "abut.report", "plot": "abut.output.pyvista_export", "to_pyvista": "abut.output.pyvista_export",
+    "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
+    "find_contacts": "abut.detection", **dict.fromkeys(
         ("Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "Integration", "Model", "NodalForce",
          "Pressure", "Probe", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction"),
         "abut.model",

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.resolution import resolution
-from abut.discretization.pairs import Pair
-from abut.interface.geometry import full_moments, split_at_creases
-from abut.interface.recover import at_points
-from abut.state import Check
+from abut.contact.geometry import full_moments, split_at_creases
+from abut.contact.nodal_recovery import at_points
+from abut.problem.contact_pairs import Pair
+from abut.solution import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent
 PENETRATION = 1e-2  # over the facet size; the constraint function lets pressure points give way by about p h / (30 E)

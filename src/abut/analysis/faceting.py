@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.discretization.pairs import Pair
-from abut.discretization.supports import Supports
+from abut.contact.coupling import Sights
+from abut.contact.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.errors import InputError
-from abut.interface.coupling import Sights
-from abut.interface.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.mesh.surface import Surface
 from abut.model import Model
+from abut.problem.constraints import Supports
+from abut.problem.contact_pairs import Pair
 
 MIDDLE = 2.0 / 3.0  # weight of a segment's middle; its corners share the rest: exact for parabolas on lines and squares
 HELD = 1e-9  # share of an axis held at a point below which it is free there

@@ -7,9 +7,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.discretization.pairs import Pair
-from abut.interface.geometry import by_kind, split_at_creases
+from abut.contact.geometry import by_kind, split_at_creases
 from abut.mesh.surface import Surface
+from abut.problem.contact_pairs import Pair
 
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
 WHOLE = 1e-2  # a facet covered to within this share is fully covered

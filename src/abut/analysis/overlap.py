@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from abut.analysis.faceting import misfit, unseen
 from abut.analysis.oscillation import CLOSED
-from abut.discretization.pairs import Pair
-from abut.interface.geometry import facet_sizes, full_moments
+from abut.contact.geometry import facet_sizes, full_moments
+from abut.problem.contact_pairs import Pair
 
 ROUNDING = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, Graph
-from abut.discretization.pairs import Pair
-from abut.interface.geometry import split_at_creases
+from abut.contact.geometry import split_at_creases
+from abut.problem.contact_pairs import Pair
 
 MOSTLY = 0.5  # covered share of a point from which on it could carry pressure
 FARTHEST = 10  # facets beyond which nobody counts

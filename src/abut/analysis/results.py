@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, certificate
 from abut.analysis.faceting import free_axes
-from abut.analysis.loads import Loads
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.statistics import (
     forces_on_bodies,
@@ -19,17 +18,25 @@ from abut.analysis.statistics import (
     pressure_statistics,
     resultant,
 )
-from abut.analysis.volume import Volume
-from abut.discretization.bodies import RigidBody
-from abut.discretization.pairs import Pair, offsets
-from abut.discretization.supports import Supports
-from abut.interface.geometry import full_moments, nodal_normals
-from abut.interface.planes import evened
-from abut.interface.recover import Averages, at_facet_nodes, averages, carry_to_target, corner_values, facet_node_values
+from abut.contact.geometry import full_moments, nodal_normals
+from abut.contact.nodal_recovery import (
+    Averages,
+    at_facet_nodes,
+    averages,
+    carry_to_target,
+    corner_values,
+    facet_node_values,
+)
+from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.model import METHODS, Model
-from abut.solvers.newton import Outcome, Stage, System
-from abut.state import ContactResult, RigidResult, Step
+from abut.problem.backend import Volume
+from abut.problem.constraints import Supports
+from abut.problem.contact_pairs import Pair, offsets
+from abut.problem.loads import Loads
+from abut.problem.rigid_bodies import RigidBody
+from abut.problem.system import Outcome, Stage, System
+from abut.solution import ContactResult, RigidResult, Step
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 

@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.clock import Clock
-from abut.analysis.holding import require_balance
-from abut.analysis.load_step import load_step, with_plain
-from abut.analysis.problem import problem
 from abut.analysis.results import step_result
-from abut.analysis.resume import begin_after, check_order, restored, saved_step
-from abut.conditions import weights
-from abut.discretization.rigid import near_null
+from abut.analysis.step_records import begin_after, check_order, restored, saved_step
 from abut.errors import SingularModelError
+from abut.linear.choice import Prepared, expected_seconds
+from abut.linear.iterative import NotConverged
 from abut.model import Model
+from abut.model.conditions import weights
+from abut.nonlinear.active_set import following, start
+from abut.nonlinear.load_step import load_step, with_plain
 from abut.probing import find_places, read
-from abut.solvers.active_set import Outcome, Stage, System, following, start
-from abut.solvers.iterative import NotConverged
-from abut.solvers.linear import Prepared, expected_seconds
-from abut.state import Observer, OnStep, Phase, Saved, Solution, Step
+from abut.problem.assembly import problem
+from abut.problem.clock import Clock
+from abut.problem.restraint import require_balance
+from abut.problem.rigid_modes import near_null
+from abut.problem.system import Outcome, Stage, System
+from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
 
 if TYPE_CHECKING:
     from abut.parallel.team import Team
@@ -44,11 +45,11 @@ def solve(
 ) -> Solution:
     """Solve a model step by step.
 
-    ``observer`` is called with every iteration (``abut.state.Iteration``), with stages that begin (``abut.state.Phase``)
-    and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the solution so far after each
-    converged step, and what it takes to go on from there; ``resume``: such records of all steps done before, in order,
-    of the same model: the run goes on after the last of them. ``team``: processes that share the work
-    (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
+    ``observer`` is called with every iteration (``abut.solution.Iteration``), with stages that begin
+    (``abut.solution.Phase``) and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the
+    solution so far after each converged step, and what it takes to go on from there; ``resume``: such records of all steps
+    done before, in order, of the same model: the run goes on after the last of them. ``team``: processes that share the
+    work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
     Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
     """

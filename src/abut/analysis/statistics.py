@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.discretization.pairs import Pair
-from abut.interface.coupling import Coupling
-from abut.interface.geometry import by_kind, full_moments, node_coordinates, pressure_kind
-from abut.interface.recover import Averages
+from abut.contact.coupling import Coupling
+from abut.contact.geometry import by_kind, full_moments, node_coordinates, pressure_kind
+from abut.contact.nodal_recovery import Averages
 from abut.mesh.surface import Surface
-from abut.state import PressureStatistics, Resultant
+from abut.problem.contact_pairs import Pair
+from abut.solution import PressureStatistics, Resultant
 
 SUPPORTED = 0.5 - 1e-6  # covered share of a point's support from which on its pressure counts
 LOADED = (

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import join, rectangle
 from abut.model import Contact, Model, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.solution import Solution
 
 YOUNG, POISSON, HEIGHT, LENGTH = 1.0, 0.3, 1.0, 2.0
 CURVATURE, SQUEEZE = 1e-3, 2e-3  # M / (E I); the compression that keeps a contact closed all over: above CURVATURE / 2

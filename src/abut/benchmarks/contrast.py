@@ -11,11 +11,11 @@ import numpy as np
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.patch import shaken
 from abut.benchmarks.record import Benchmark, Reference
-from abut.conditions import support_along
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import half_disc, join, rectangle
 from abut.model import Contact, Force, Model, Pressure, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.model.conditions import support_along
+from abut.solution import Solution
 
 CONTRAST = 1e4
 SIZES = {"coarse": ((1, 1, 1), (10, 10, 2)), "fine": ((10, 10, 2), (1, 1, 1))}

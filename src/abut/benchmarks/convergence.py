@@ -16,11 +16,11 @@ from abut.benchmarks.exact import EdgeOfContact, WaveField, Waves, full_contact
 from abut.benchmarks.record import Benchmark, Reference
 from abut.cells import CELLS
 from abut.fields import Field
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import block, join
 from abut.mesh.mesh import Mesh
 from abut.model import BodyForce, Contact, Model, Solid, Support, Traction
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.solution import Solution
 
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27")

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
+from abut.bodies.elements import lame
 from abut.cells import BY_CODE, CELLS
+from abut.contact.geometry import facet_measure
 from abut.errors import InputError
 from abut.fields import Field, evaluate
-from abut.interface.geometry import facet_measure
 from abut.mesh.integrals import body_chunks, gradients
 from abut.mesh.quadrature import field_rule
 from abut.mesh.surface import around
-from abut.solids.elements import lame
-from abut.state import Solution
+from abut.solution import Solution
 
 Array = NDArray[np.float64]
 Pieces = Iterator[tuple[str, Array, Array, Array, Array]]

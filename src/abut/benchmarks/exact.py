@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.solids.elements import lame
-from abut.solids.materials import LinearElastic
+from abut.bodies.elements import lame
+from abut.materials.elastic import LinearElastic
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from abut.benchmarks.measures import contact_points, pressure_error
 from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import join, rectangle, ring
 from abut.model import Contact, Force, Model, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.solution import Solution
 
 INTERFERENCE = 0.01
 LAME = {"stress": 1.171875, "strain": 1.287775, "axisymmetric": 1.287775}

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from abut.benchmarks.measures import contact_points, pressure_error
 from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, half_disc, join, quarter_disc, rectangle, sphere_octant
 from abut.model import Contact, Force, Model, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.solution import Solution
 
 HALF_WIDTH, LINE_PEAK, LINE_FORCE = 6.2146, 3585.36, 35e3
 RADIUS, BALL_PEAK, BALL_FORCE = 1.00964, 88.290, 60.0 * np.pi

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.fields import Field
-from abut.state import ContactResult, Solution
+from abut.solution import ContactResult, Solution
 
 Where = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # points (n, dim) -> (n,)
 

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.record import Benchmark, Reference
-from abut.conditions import support_along
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import block, join
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model, Pressure, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.model.conditions import support_along
+from abut.solution import Solution
 
 ROUNDING = "rounding only: the exact solution lies in the discrete spaces"
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from abut.benchmarks.measures import contact_points
 from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model, Solid, Support
-from abut.solids.materials import LinearElastic
-from abut.state import Solution
+from abut.solution import Solution
 
 YOUNG, POISSON = 1.0, 0.3
 PLANE_STRAIN = YOUNG / (1.0 - POISSON**2)  # E* against a rigid punch

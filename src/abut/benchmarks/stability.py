@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.elastic import LinearElastic
 from abut.mesh.make import join, rectangle
 from abut.model import Contact, Model, Solid, Support
-from abut.solids.materials import LinearElastic
 from abut.verify import InfSup, inf_sup
 
 SOURCE = "inf-sup constant in the trace norm over 4 to 32 elements, far sides clamped"

@@ -11,7 +11,7 @@ from abut.cli.run import add_ignore
 from abut.errors import AbutError
 
 if TYPE_CHECKING:
-    from abut.check import Report
+    from abut.diagnosis import Report
     from abut.job import Job
 
 
@@ -35,7 +35,7 @@ def add_check(commands: Any) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from abut.check import Finding, Report, check, from_error
+    from abut.diagnosis import Finding, Report, check, from_error
     from abut.job import load_job
     from abut.job.pairs import write_pairs
 

@@ -9,7 +9,7 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from abut.state import Iteration, Phase
+from abut.solution import Iteration, Phase
 
 if TYPE_CHECKING:
     from rich.status import Status

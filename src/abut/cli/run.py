@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from abut.cli.progress import Progress
     from abut.job import Job
     from abut.parallel.team import Team
-    from abut.state import Iteration, Phase, ProbeResult, Saved, Solution
+    from abut.solution import Iteration, Phase, ProbeResult, Saved, Solution
 
 DONE = 0
 STATUS = """exit status:
@@ -101,7 +101,7 @@ def _start(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, team: Team | None) -> int:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
-    from abut.io.results import summary
+    from abut.output.results import summary
 
     with (
         Progress(silent=arguments.quiet or arguments.json, plain=processes() > 1) as progress,
@@ -127,13 +127,13 @@ def _solve(
 ) -> tuple[Solution, Path]:
     """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
     from abut.analysis import solve
-    from abut.io import restart
-    from abut.io.fields import write_fields
-    from abut.io.stream import Stream
     from abut.job import load_job
-    from abut.parallel.pieces import Pieces
+    from abut.output import restart
+    from abut.output.fields import write_fields
+    from abut.output.parallel import Pieces
+    from abut.output.stream import Stream
     from abut.report import read_origin
-    from abut.state import Phase
+    from abut.solution import Phase
 
     progress(Phase(f"reading {arguments.job}"))
     job = load_job(arguments.job, ignore=arguments.ignore)
@@ -211,7 +211,7 @@ def _left(steps: int, directory: Path) -> str:
 
 def _failure(solution: Solution, directory: Path) -> str:
     """Where a run did not converge, and what to try."""
-    from abut.analysis.remedies import remedies, unsettled
+    from abut.diagnosis.advice import remedies, unsettled
 
     step = solution.steps[-1]
     places = [str(place) for place in unsettled(step)]
@@ -221,8 +221,8 @@ def _failure(solution: Solution, directory: Path) -> str:
 
 
 def _print_result(solution: Solution, directory: Path) -> None:
-    from abut.analysis.cures import cure
-    from abut.analysis.remedies import remedies
+    from abut.diagnosis.advice import remedies
+    from abut.diagnosis.cures import cure
     from abut.report.contact_words import lines
 
     for contact in solution.contacts:

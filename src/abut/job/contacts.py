@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from abut.contact.sides import Names, bodies_of, listed
+from abut.detection import AUTO, FoundContact, add_surfaces, find_contacts
 from abut.errors import InputError, nearest
-from abut.facing import AUTO, FoundContact, add_surfaces, find_contacts
 from abut.job.schema import ContactTable
 from abut.job.values import values
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Integration, Solid
-from abut.sides import Names, bodies_of, listed
 
 FINDING = ("auto", "bodies", "reach")  # keys that say what to look for; the others are the contact's own
 Key = tuple[float | None, tuple[str, ...] | None]

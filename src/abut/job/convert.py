@@ -13,6 +13,7 @@ from abut.errors import InputError
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
+from abut.materials.elastic import LinearElastic
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -28,7 +29,6 @@ from abut.model import (
     Temperature,
     Traction,
 )
-from abut.solids.materials import LinearElastic
 
 KINDS: dict[type, str] = {
     Pressure: "pressure",

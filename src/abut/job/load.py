@@ -15,6 +15,7 @@ from abut.errors import InputError, nearest
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable
 from abut.job.values import values
+from abut.materials.elastic import LinearElastic
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -35,7 +36,6 @@ from abut.model import (
     Term,
     Traction,
 )
-from abut.solids.materials import LinearElastic
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -109,7 +109,7 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) ->
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str]) -> Job:
-    from abut.job.deck import load_deck
+    from abut.decks.translation import load_deck
 
     if refine:
         raise InputError(f"{path}: only meshes that abut makes can be refined; leave --levels out")

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from abut.job.meanings import describe
+from abut.job.key_descriptions import describe
 from abut.model import SolveOptions
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.interface.coupling import Coupling, default_reach, no_gap
-from abut.interface.coupling import couple as couple_here
-from abut.interface.parts import added
+from abut.contact.coupling import Coupling, default_reach, no_gap
+from abut.contact.coupling import couple as couple_here
+from abut.contact.merging import added
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
 
@@ -20,7 +20,7 @@ from abut.parallel.team import Store, Team
 def couple(
     team: Team, owner: NDArray[np.int64], contactor: Surface, target: Surface, degree: int, **options: Any
 ) -> Coupling:
-    """As ``abut.interface.coupling.couple``, whose options it takes; owner: (n_facets,) process of each facet of the
+    """As ``abut.contact.coupling.couple``, whose options it takes; owner: (n_facets,) process of each facet of the
     contactor. Surfaces lie over one array of points."""
     points = np.union1d(contactor.node_ids, target.node_ids)
     shared = contactor.points[points]

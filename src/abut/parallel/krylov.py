@@ -46,7 +46,7 @@ class Answer:
 @dataclass(frozen=True)
 class Conditions:
     """What stands beside the stiffness, on process 0: coupled, lower (n, n_places), corner (n, n) and right-hand side as in
-    ``abut.solvers.blocks.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,)."""
+    ``abut.linear.saddle_point.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,)."""
 
     coupled: Any
     lower: Any

@@ -10,6 +10,12 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
+from abut.linear.choice import Prepared
+from abut.linear.direct import SINGULAR
+from abut.linear.interface_conditions import conditions
+from abut.linear.iterative import RESPONSE, Count, NotConverged, compliance
+from abut.linear.saddle_point import saddle
+from abut.linear.schur_preconditioner import PressureBlock, foresight, half_spaces, interfaces, pressure_block
 from abut.parallel.krylov import (
     FACTORS,
     Answer,
@@ -24,14 +30,7 @@ from abut.parallel.krylov import (
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.team import Team
-from abut.solvers.active_set import Rows, System
-from abut.solvers.blocks import saddle
-from abut.solvers.conditions import conditions
-from abut.solvers.direct import SINGULAR
-from abut.solvers.iterative import RESPONSE, Count, NotConverged, compliance
-from abut.solvers.linear import Prepared
-from abut.solvers.newton import Solve
-from abut.solvers.schur import PressureBlock, foresight, half_spaces, interfaces, pressure_block
+from abut.problem.system import Rows, Solve, System
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -39,7 +38,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Iterative:
-    """As ``abut.solvers.iterative.Iterative``, with everything as large as the volume on all processes."""
+    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes."""
 
     matrix: Distributed
     operator: Any
@@ -68,7 +67,7 @@ class Iterative:
         return solution, fixed
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
-        """As ``abut.solvers.iterative.Iterative.respond``."""
+        """As ``abut.linear.iterative.Iterative.respond``."""
         motions = self.motions
         small = np.asarray(np.linalg.pinv(motions.T @ (springs[:, None] * motions)))
         with self.matrix.held(springs):
@@ -87,7 +86,7 @@ class Iterative:
 
 @dataclass(frozen=True)
 class Direct:
-    """As ``abut.solvers.blocks.newton_step``."""
+    """As ``abut.linear.saddle_point.newton_step``."""
 
     matrix: Distributed
     operator: Any
@@ -104,7 +103,7 @@ class Direct:
         return solution, s.pressure(q)
 
     def factorise(self, rows: Rows) -> Solve:
-        """As ``abut.solvers.blocks.factorise``."""
+        """As ``abut.linear.saddle_point.factorise``."""
         layout, n = self.matrix.layout, len(rows.residual)
         s = saddle(self.unit, self.operator, rows, np.zeros(self.matrix.shape[0]))
         beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)

@@ -12,9 +12,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import padded_blocks
-from abut.discretization.supports import Supports
 from abut.parallel.partition import Layout
 from abut.parallel.team import Store, Team
+from abut.problem.constraints import Supports
 
 
 @dataclass(frozen=True)

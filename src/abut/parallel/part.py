@@ -10,11 +10,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.elements import stiffness, stress_sums
+from abut.materials.elastic import LinearElastic
 from abut.mesh.mesh import Mesh
 from abut.parallel.partition import pieces
 from abut.parallel.team import Store
-from abut.solids.elements import stiffness, stress_sums
-from abut.solids.materials import LinearElastic
 
 PORTION = 8192  # cells assembled at once where the matrix is not kept
 

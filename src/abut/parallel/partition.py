@@ -11,11 +11,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.linear.multigrid import slots
 from abut.mesh.exterior import facets_of, numbered
 from abut.mesh.facets import row_codes
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.parallel.team import Store, Team
-from abut.solvers.multigrid import slots
 
 FEW = 10  # cells a process below which they are dealt out in their order: a partitioner would leave processes empty
 PARTITIONERS = ("ptscotch", "parmetis")

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.interface.geometry import by_kind, facet_sizes
+from abut.contact.geometry import by_kind, facet_sizes
 from abut.mesh.facets import corner_keys, row_codes
 from abut.mesh.surface import Surface
 from abut.probing.cells import BULGE, INSIDE, NEAR

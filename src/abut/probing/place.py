@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from abut.contact.sides import words
 from abut.errors import InputError
 from abut.mesh.exterior import outside_of_body
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model
-from abut.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
+from abut.model.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
 from abut.probing.feet import feet
 from abut.probing.sides import CONTACTOR, TARGET, Side, choose
-from abut.sides import words
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class OnSurface:
 class Place:
     """Where a probe reads.
 
-    of: quantities; points, distance, nodes: as in ``abut.state.ProbeResult``; weights: (n, n_points) from the values at the
-    mesh's points to those at the probe's, CSR, None where nothing of the bodies is asked for; surface: likewise for
+    of: quantities; points, distance, nodes: as in ``abut.solution.ProbeResult``; weights: (n, n_points) from the values at
+    the mesh's points to those at the probe's, CSR, None where nothing of the bodies is asked for; surface: likewise for
     the contact; notes: choices that were made, in words.
     """
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.materials.invariants import von_mises
 from abut.probing.place import OnSurface, Place
 from abut.probing.sides import CONTACTOR
-from abut.solids.invariants import von_mises
-from abut.state import ContactResult, ProbeResult, Step
+from abut.solution import ContactResult, ProbeResult, Step
 
 
 def read(place: Place, step: Step) -> ProbeResult:

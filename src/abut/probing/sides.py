@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
-from abut.probe import ON_CONTACTS, Probe
+from abut.model.probe import ON_CONTACTS, Probe
 from abut.probing.feet import feet
 
 CONTACTOR, TARGET = "contactor", "target"

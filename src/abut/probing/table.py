@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.state import ProbeResult
+from abut.solution import ProbeResult
 
 STRESSES = ("xx", "yy", "zz", "xy", "yz", "zx")
 

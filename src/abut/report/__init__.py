@@ -7,7 +7,7 @@ from pathlib import Path
 from abut.io.atomic import write_file
 from abut.report.origin import Origin, read_origin
 from abut.report.page import page
-from abut.state import Solution
+from abut.solution import Solution
 
 __all__ = ["Origin", "read_origin", "write_report"]
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.state import ContactResult
+from abut.solution import ContactResult
 
 ZERO = 1e-9  # of its scale: smaller numbers are rounding, and shown as 0
 

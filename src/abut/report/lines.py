@@ -11,8 +11,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from abut.report.skins import Patch, patch
-from abut.state import ContactResult
+from abut.report.surface_triangles import Patch, patch
+from abut.solution import ContactResult
 
 NOTHING = 1e-3  # pressures below this share of the largest count as none: the constraint function is never quite zero
 SHORT = 0.1  # lines shorter than this share of the longest are not worth a picture

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from abut.probing.table import peaks
-from abut.state import Solution, Step
+from abut.solution import Solution, Step
 
 PROFILE = "contact.profile"
 

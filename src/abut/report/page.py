@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
-from abut.analysis.cures import cure
-from abut.analysis.remedies import remedies, unsettled
+from abut.diagnosis.advice import remedies, unsettled
+from abut.diagnosis.cures import cure
 from abut.io.versions import versions
 from abut.report.contact_words import centre, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
@@ -23,7 +23,7 @@ from abut.report.lines import Line, pressure_lines
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
-from abut.state import Solution
+from abut.solution import Solution
 
 LIBRARIES = ("three.min.js", "uplot.min.js")
 SCRIPTS = ("plots.js", "parts.js", "view.js", "report.js")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.probing.table import columns, peaks
 from abut.report.describe import Table
-from abut.state import ProbeResult, Solution
+from abut.solution import ProbeResult, Solution
 
 UNITS = {"displacement": "length", "stress": "force/length²", "pressure": "force/length²", "gap": "length"}
 CHARTS = (  # quantities of one chart: its title, its quantities

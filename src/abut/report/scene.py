@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.io.grids import largest_pressure, point_fields, vectors
 from abut.mesh.mesh import Mesh
-from abut.report.skins import Patch, Skin, patch, skin
-from abut.state import ContactResult, Solution, Step
+from abut.report.surface_triangles import Patch, Skin, patch, skin
+from abut.solution import ContactResult, Solution, Step
+from abut.solution.grids import largest_pressure, point_fields, vectors
 
 BUDGET = 9_000_000  # bytes of arrays; a third more as text
 FINE = 30_000  # points on all contact surfaces together, above which they are divided more coarsely

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.coupling import couple, default_reach
-from abut.interface.geometry import by_kind, facet_measure, full_moments, nodal_normals
-from abut.interface.node_to_segment import feet
+from abut.contact.coupling import couple, default_reach
+from abut.contact.geometry import by_kind, facet_measure, full_moments, nodal_normals
+from abut.contact.node_to_segment import feet
 from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 

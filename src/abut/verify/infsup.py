@@ -12,15 +12,15 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut.discretization.pairs import Pair, pairs, with_plain_functions
-from abut.discretization.supports import Supports, supports
+from abut.contact.coupling import surface_degree
+from abut.contact.geometry import full_moments
+from abut.contact.pressure_space import DUAL_P1
 from abut.errors import InputError, nearest
-from abut.interface.coupling import surface_degree
-from abut.interface.geometry import full_moments
-from abut.interface.pressure import DUAL_P1
+from abut.linear import direct
 from abut.mesh.surface import Surface
 from abut.model import Model
-from abut.solvers import direct
+from abut.problem.constraints import Supports, supports
+from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space
 

@@ -11,24 +11,24 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import BALANCE, balance
-from abut.conditions import support_along
-from abut.discretization.pairs import Pair, pair
-from abut.discretization.rigid import rigid_modes
-from abut.discretization.supports import supports
+from abut.bodies.elements import stiffness
+from abut.bodies.loads import stress_load
+from abut.contact.coupling import couple, surface_degree
+from abut.contact.geometry import nodal_normals
+from abut.contact.nodal_recovery import facet_node_values
+from abut.contact.sides import Sides
 from abut.errors import InputError
-from abut.interface.coupling import couple, surface_degree
-from abut.interface.geometry import nodal_normals
-from abut.interface.recover import facet_node_values
+from abut.linear.saddle_point import newton_step
+from abut.materials.elastic import LinearElastic
 from abut.mesh.facets import facet_keys, number_keys
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model, Solid
-from abut.sides import Sides
-from abut.solids.elements import stiffness
-from abut.solids.loads import stress_load
-from abut.solids.materials import LinearElastic
-from abut.solvers.blocks import newton_step
-from abut.solvers.newton import Rows
+from abut.model.conditions import support_along
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import Pair, pair
+from abut.problem.rigid_modes import rigid_modes
+from abut.problem.system import Rows
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
 FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
+from abut.linear.fractional import inverse_root
 from abut.mesh.integrals import chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import product_rule
 from abut.mesh.surface import Surface, around
-from abut.solvers.fractional import inverse_root
 from abut.verify.trace import TraceSpace
 
 

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.interface.geometry import by_kind, facet_measure, facet_sizes, function_count, node_coordinates, pressure_kind
+from abut.contact.geometry import by_kind, facet_measure, facet_sizes, function_count, node_coordinates, pressure_kind
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 

@@ -1,0 +1,145 @@
+"""Initial gaps that jump within a facet: what ``adjust`` leaves beside what it takes away, and steps of the target.
+
+A gap that jumps cannot be averaged over a function: beside a closed node the mean is that of the step, however high, and of
+a dual function, negative at the facet's other end, it even has the wrong sign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import CELLS
+from abut.contact.bases import block_diagonal, sound_facets
+from abut.contact.coupling import Coupling
+from abut.contact.geometry import by_kind, corner_functions, facet_sizes, function_count, nodal_normals
+from abut.contact.node_to_segment import feet
+from abut.mesh.surface import Surface
+
+STEP = 1e-3  # of the facet's size: gaps of neighbouring target facets that differ by less are one smooth gap
+
+
+def partly_adjusted(
+    contactor: Surface, target: Surface, closed: Coupling, adjust: float, reach: float, without: Callable[[], Coupling]
+) -> Coupling:
+    """``closed``, in which gaps and overlaps up to ``adjust`` are none, mended on facets that have larger ones too: there
+    the contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
+
+    adjust, reach: lengths; closed: with sights; without: the same coupling with nothing adjusted."""
+    if not adjust or closed.sights is None:
+        return closed
+    gap, facets = closed.sights.gap, np.arange(len(contactor))
+    partly = np.isin(facets, closed.sights.facet[gap == 0.0]) & np.isin(facets, closed.sights.facet[gap != 0.0])
+    if not partly.any():
+        return closed
+    own = without()
+    move = _on_to_target(contactor, target, partly, adjust, reach)
+    whole = np.zeros(own.contactor_part.shape[1])
+    whole[: move.size] = move.ravel()
+    rows = np.repeat(partly, 9)
+    result = replace(closed, gap=np.where(rows, own.gap + own.contactor_part @ whole, closed.gap))
+    if own.sights is not None:
+        at = own.sights
+        nodes = np.maximum(contactor.nodes[at.facet], 0)
+        moved = at.gap + np.einsum("ij,ijd,id->i", at.own, move[nodes], at.normal)
+        result = replace(result, sights=replace(closed.sights, gap=np.where(partly[at.facet], moved, gap)))
+    if own.points is not None and closed.points is not None:
+        moved = own.points.gap + own.points.gap_operator @ whole
+        gaps = np.where(partly[own.points.facet], moved, closed.points.gap)
+        result = replace(result, points=replace(closed.points, gap=gaps))
+    return result
+
+
+def _on_to_target(
+    contactor: Surface, target: Surface, partly: NDArray[np.bool_], adjust: float, reach: float
+) -> NDArray[np.float64]:
+    """How nodes of some facets move, (n_points, dim): corners along their normal where their gap is at most ``adjust``, the
+    others linearly between them (a parabola through two closed nodes and an open one would cut into the target)."""
+    normals = nodal_normals(contactor)
+    move = np.zeros_like(contactor.points)
+    for kind, facets in by_kind(contactor):
+        own, n = facets[partly[facets]], CELLS[kind].corners
+        nodes, first = np.unique(contactor.nodes[own, :n], return_index=True)
+        normal = normals[own, :n].reshape(-1, contactor.dim)[first]
+        facet, _, gap = feet(contactor.points[nodes], normal, target, reach)
+        near = (facet >= 0) & (np.abs(gap) <= adjust)
+        move[nodes[near]] = gap[near, None] * normal[near]
+    for kind, facets in by_kind(contactor):
+        own, between = facets[partly[facets]], corner_functions(kind, CELLS[kind].degree)
+        nodes = contactor.nodes[own, : len(between)]
+        move[nodes] = np.einsum("kc,fcd->fkd", between, move[nodes[:, : between.shape[1]]])
+    return move
+
+
+def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
+    """The coupling of the corners' functions, degree 1, with the weighted gap of a fit to the gap's values at the corners.
+
+    On each facet the gap is fitted by the functions of ``coupling``, of degree 1 or 2, in the mean; its values at the
+    corners take the gap's place. Of a gap with a step the fit undershoots, by up to a third of the step, and is kept
+    within the gaps that are there; slivers keep the gap as it is."""
+    n_rows = coupling.contactor_part.shape[0]
+    result = coupling if coupling.degree == 1 else _restricted(contactor, coupling)
+    if coupling.sights is None or not len(coupling.sights.gap):
+        return result
+    stepped, low, high = _steps(contactor, coupling)
+    gap, integrals = result.gap.reshape(-1, 9).copy(), coupling.gap.reshape(-1, 9)
+    for kind, facets in by_kind(contactor):
+        n, m = CELLS[kind].corners, function_count(kind, coupling.degree)
+        own = facets if m > n else facets[stepped[facets]]
+        own = own[sound_facets(coupling.mass[own][:, :m, :m])]
+        fit = np.linalg.solve(coupling.mass[own][:, :m, :m], integrals[own, :m, None])[:, :n]
+        kept = np.clip(fit, low[own, None, None], high[own, None, None])
+        gap[own, :n] = (result.mass[own][:, :n, :n] @ kept)[..., 0]
+    return replace(result, gap=gap.reshape(n_rows))
+
+
+def _restricted(contactor: Surface, coupling: Coupling) -> Coupling:
+    """The coupling of degree 2 in terms of the corners' functions."""
+    blocks, mass = {}, np.zeros_like(coupling.mass)
+    for kind, facets in by_kind(contactor):
+        own = corner_functions(kind, 2)
+        m, n = own.shape
+        blocks[kind] = np.zeros((m, m))
+        blocks[kind][:, :n] = own
+        mass[facets[:, None, None], np.arange(n)[:, None], np.arange(n)] = (
+            own.T @ coupling.mass[facets][:, :m, :m] @ own
+        )
+    corners = block_diagonal(contactor, blocks)
+    points = coupling.points
+    return replace(
+        coupling,
+        degree=1,
+        operator=(corners.T @ coupling.operator).tocsr(),
+        contactor_part=(corners.T @ coupling.contactor_part).tocsr(),
+        target_part=(corners.T @ coupling.target_part).tocsr(),
+        gap=corners.T @ coupling.gap,
+        weight=corners.T @ coupling.weight,
+        mass=mass,
+        points=points if points is None else replace(points, pressure=(points.pressure @ corners).tocsr()),
+    )
+
+
+def _steps(
+    contactor: Surface, coupling: Coupling
+) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]:
+    """Facets whose gap jumps from one target facet to the next, and the smallest and largest gap of each, (n_facets,).
+
+    The range of a continuous gap is at most the sum of its ranges over the pieces."""
+    at = coupling.sights
+    assert at is not None
+    n = len(contactor)
+    pieces, of = np.unique(np.stack([at.facet, at.target_facet], axis=1), axis=0, return_inverse=True)
+    of = of.ravel()
+    bounds = []
+    for number, index in ((len(pieces), of), (n, at.facet)):
+        low, high = np.full(number, np.inf), np.full(number, -np.inf)
+        np.minimum.at(low, index, at.gap)
+        np.maximum.at(high, index, at.gap)
+        bounds.append((low, high))
+    (piece_low, piece_high), (low, high) = bounds
+    smooth = np.bincount(pieces[:, 0], piece_high - piece_low, minlength=n)
+    with np.errstate(invalid="ignore"):
+        stepped = (high - low) - smooth > STEP * facet_sizes(contactor)
+    return stepped, low, high

@@ -1,0 +1,270 @@
+"""Coupling of a contact pair: int H_k N_j on contactor and target and the weighted gap, integrated on segments.
+
+The pressure functions here are facet by facet (discontinuous): row 9 f + k is function k of contactor facet f. The
+pressure spaces of ``abut.contact.pressure_space`` are combinations of these rows. "The paper" is El-Abbasi and Bathe 2001.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import couple_surfaces, plan_facets
+from abut.cells import CELLS
+from abut.contact.geometry import by_kind, facet_sizes, nodal_normals
+from abut.contact.quadrature import MOMENT_TOLERANCE, rule_tables
+from abut.errors import InputError
+from abut.mesh.surface import Surface
+
+CURVED_POINTS = 6  # per direction, where the contactor's normal turns within a facet
+SAME_NORMAL = 1e-9
+ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
+
+
+@dataclass(frozen=True)
+class IntegrationPoints:
+    """The integration points of all segments of a pair (n of them).
+
+    facet, target_facet: (n,) of contactor and target; weight: (n,) area; gap: (n,) geometric gap, length;
+    normal: (n, dim) unit, from target to contactor: theory (F1);
+    pressure: (n, 9 n_facets) values of the facet-wise pressure functions;
+    gap_operator: (n, dim n_points), change of the gap by a displacement.
+    """
+
+    facet: NDArray[np.int64]
+    target_facet: NDArray[np.int64]
+    weight: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    pressure: Any
+    gap_operator: Any
+
+
+@dataclass(frozen=True)
+class Sights:
+    """Corners and middles of all segments, and what the contactor sees from there (n of them).
+
+    facet, target_facet: (n,) of contactor and target; gap: (n,) geometric gap, length; normal: (n, dim) unit, from target to
+    contactor; own, other: (n, 9) shape functions of the contactor's and the target's facet, zero where padded.
+    """
+
+    facet: NDArray[np.int32]
+    target_facet: NDArray[np.int32]
+    gap: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    own: NDArray[np.float64]
+    other: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """The integrated interface of one contact pair.
+
+    Columns are the points of the surfaces: one shared array (``contactor.points is target.points``), or, where each
+    surface brings its own, the contactor's points followed by the target's.
+
+    operator: (9 n_facets, dim n_points) sparse, (B u)_k = int H_k (u_C - u_T) . N, theory (F5); for ``componentwise``
+              coupling (9 n_facets, n_points), the same without N (one displacement component).
+    contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
+    gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
+    covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
+    points, sights: where they were asked for.
+    Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the whole turn), ``gap`` times
+    a length.
+    """
+
+    degree: int
+    operator: Any
+    contactor_part: Any
+    target_part: Any
+    gap: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    covered: NDArray[np.float64]
+    segments: NDArray[np.int32]
+    points: IntegrationPoints | None = None
+    sights: Sights | None = None
+
+
+def default_reach(contactor: Surface, target: Surface) -> float:
+    """How far apart two surfaces may lie and still be paired, a length: two of the larger facets, or a tenth of the
+    contactor."""
+    extent = np.ptp(contactor.points[contactor.node_ids], axis=0)
+    facet = max(facet_sizes(contactor).max(), facet_sizes(target).max())
+    return float(max(2.0 * facet, 0.1 * np.linalg.norm(extent)))
+
+
+def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
+    """Size up to which a gap counts as none: ``adjust``, or rounding of the coordinates."""
+    rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
+    return float(adjust + rounding)
+
+
+def couple(
+    contactor: Surface,
+    target: Surface,
+    degree: int,
+    *,
+    rule: str = "gauss",
+    points: int | str = "auto",
+    reach: float | None = None,
+    componentwise: bool = False,
+    keep_points: bool = False,
+    sights: bool = False,
+    adjust: float = 0.0,
+    hidden: bool = False,
+    only: NDArray[np.bool_] | None = None,
+) -> Coupling:
+    """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
+
+    degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
+    rule:   "gauss" or "newton-cotes".
+    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
+            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
+    reach:  largest distance between the surfaces, length; see ``default_reach``.
+    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
+            sights: keep corners and middles of the segments, which takes a tenth of the time.
+    adjust: gaps and overlaps up to this size count as zero, length.
+    hidden: count also what lies behind something nearer; else each point of the contactor sees the nearest target only,
+            theory (S12).
+    only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
+            facets add up to the whole: ``abut.contact.merging``.
+    Raises InputError where the two surfaces do not fit together (dimension, empty).
+    """
+    if contactor.dim != target.dim:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
+    if contactor.axisymmetric != target.axisymmetric:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}': only one of them is axisymmetric")
+    for surface in (contactor, target):
+        if len(surface) == 0:
+            raise InputError(f"surface '{surface.name}' has no facets")
+    tables = rule_tables(rule)
+    normals = nodal_normals(contactor)
+    facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
+    part = contactor if only is None else contactor.part(facets)
+    order_c, split_c = _plan(part, tables, points)
+    order_t, split_t = _plan(target, tables, points)
+    if points == "auto":
+        order_c = np.where(_varying(part, normals[facets]), np.maximum(order_c, CURVED_POINTS), order_c)
+    raw = couple_surfaces(
+        part.points, part.kinds, part.nodes, np.ascontiguousarray(normals[facets]),
+        target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
+        degree, not componentwise, keep_points, sights, contactor.axisymmetric,
+        default_reach(contactor, target) if reach is None else reach,
+        no_gap(contactor, target, adjust), hidden,
+    )  # fmt: skip
+    if only is not None:
+        raw = _among_all(raw, facets, len(contactor))
+    offset, n_points = _columns(contactor, target)
+    contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)
+    target_part = _matrix(raw["target"], 9 * len(contactor), n_points, offset)
+    return Coupling(
+        degree=degree,
+        operator=(contactor_part - target_part).tocsr(),
+        contactor_part=contactor_part,
+        target_part=target_part,
+        gap=raw["gap"].ravel(),
+        weight=raw["weight"].ravel(),
+        mass=raw["mass"],
+        covered=raw["covered"],
+        segments=raw["segments"],
+        points=_points(raw, contactor, target) if keep_points else None,
+        sights=_sights(raw) if sights else None,
+    )
+
+
+Couple = Callable[..., Coupling]  # ``couple``, or what has it done by others
+
+
+def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:
+    """What was integrated on some facets, at its place among all n."""
+    result = dict(raw)
+    for name in ("gap", "weight", "mass", "covered", "segments"):
+        result[name] = np.zeros((n, *raw[name].shape[1:]), dtype=raw[name].dtype)
+        result[name][facets] = raw[name]
+    for name in ("contactor", "target"):
+        row, column, value = raw[name]
+        result[name] = 9 * facets[row // 9] + row % 9, column, value
+    for name in ("point_contactor_facet", "sight_contactor_facet"):
+        if name in raw:
+            result[name] = facets[raw[name]].astype(raw[name].dtype)
+    return result
+
+
+def _plan(
+    surface: Surface, tables: NDArray[np.float64], points: int | str
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    order, split = plan_facets(
+        surface.points,
+        surface.kinds,
+        surface.nodes,
+        tables,
+        rule_tables("gauss"),
+        MOMENT_TOLERANCE,
+        surface.axisymmetric,
+    )
+    if points != "auto":
+        order = np.full_like(order, int(points))
+    return order, split
+
+
+def _varying(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Facets over which the continuous normal turns: the place looked at on the target is no polynomial there."""
+    used = (surface.nodes >= 0)[..., None]
+    spread = np.where(used, normals, -np.inf).max(axis=1) - np.where(used, normals, np.inf).min(axis=1)
+    return np.asarray(spread.max(axis=1) > SAME_NORMAL)
+
+
+def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
+    """Number of the target's first point among the columns, and how many points there are."""
+    if contactor.points is target.points:
+        return 0, len(contactor.points)
+    return len(contactor.points), len(contactor.points) + len(target.points)
+
+
+def _matrix(entries: tuple[NDArray[Any], ...], rows: int, n_points: int, offset: int) -> Any:
+    row, column, value = entries
+    width = value.shape[1]
+    columns = (width * (offset + column[:, None].astype(np.int64)) + np.arange(width)).ravel()
+    return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, width * n_points))
+
+
+def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -> IntegrationPoints:
+    n, dim = raw["point_normal"].shape
+    offset, n_points = _columns(contactor, target)
+    operator = sp.csr_matrix((n, dim * n_points))
+    for surface, name, sign, first in ((contactor, "contactor", 1.0, 0), (target, "target", -1.0, offset)):
+        facet = raw[f"point_{name}_facet"]
+        nodes = surface.nodes[facet]
+        used = nodes >= 0
+        row = np.nonzero(used)[0]
+        value = sign * raw[f"point_{name}"][used][:, None] * raw["point_normal"][row]
+        column = dim * (first + nodes[used][:, None].astype(np.int64)) + np.arange(dim)
+        operator = operator + sp.csr_matrix(
+            (value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape
+        )
+    facet = raw["point_contactor_facet"].astype(np.int64)
+    columns = 9 * facet[:, None] + np.arange(9)
+    pressure = sp.csr_matrix(
+        (raw["point_pressure"].ravel(), (np.repeat(np.arange(n), 9), columns.ravel())), shape=(n, 9 * len(contactor))
+    )
+    pressure.eliminate_zeros()
+    target_facet = raw["point_target_facet"].astype(np.int64)
+    return IntegrationPoints(
+        facet, target_facet, raw["point_weight"], raw["point_gap"], raw["point_normal"], pressure, operator
+    )
+
+
+def _sights(raw: dict[str, NDArray[Any]]) -> Sights:
+    names = ("contactor_facet", "target_facet", "gap", "normal", "contactor", "target")
+    return Sights(*(raw[f"sight_{name}"] for name in names))
+
+
+def surface_degree(surface: Surface) -> int:
+    """Degree of the displacement on a surface: 2 where any facet is quadratic."""
+    return max(CELLS[kind].degree for kind, _ in by_kind(surface))

@@ -1,0 +1,72 @@
+"""The contactor's rim: where it ends on a target that goes on, the pressure of a body with corners is singular."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import CELLS
+from abut.contact.geometry import by_kind, nodal_normals
+from abut.contact.node_to_segment import feet
+from abut.mesh.surface import Surface
+
+BEYOND = 0.1  # of the distance from a facet's middle to its edge: how far outside the target is looked for
+
+
+@dataclass(frozen=True)
+class Rim:
+    """Edges of a surface that belong to one facet only (in 2D ends of it). facet: (m,); ends: (m, 2) points, in 2D the same
+    twice; out: (m, dim) from the facet's middle to the edge, square to the edge; normal: (m, dim) unit, of the facet."""
+
+    facet: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    out: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+
+def rim(surface: Surface) -> Rim:
+    """The rim of a surface. Raises InputError for a facet without a normal."""
+    facet, ends = _edges(surface)
+    used = (surface.nodes >= 0)[facet]
+    x = surface.points
+    middle = (x[np.maximum(surface.nodes[facet], 0)] * used[..., None]).sum(axis=1) / used.sum(axis=1)[:, None]
+    along, out = x[ends[:, 1]] - x[ends[:, 0]], x[ends].mean(axis=1) - middle
+    size = np.maximum((along**2).sum(axis=1), 1e-300)
+    out = out - along * ((out * along).sum(axis=1) / size)[:, None]
+    normal = nodal_normals(surface)[facet].sum(axis=1)
+    return Rim(facet, ends, out, normal / np.linalg.norm(normal, axis=1, keepdims=True))
+
+
+def goes_on(contactor: Surface, own: Rim, target: Surface, reach: float) -> NDArray[np.bool_]:
+    """Edges (m,) of a contactor's rim beyond which the target goes on; reach: a length."""
+    if not len(own.facet):
+        return np.zeros(0, dtype=bool)
+    edge = contactor.points[own.ends].mean(axis=1)
+    return np.asarray(feet(edge + BEYOND * own.out, own.normal, target, reach)[0] >= 0)
+
+
+def ends_on_target(contactor: Surface, own: Rim, on: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets (n_facets,) with a corner on an edge of the contactor's rim (in 2D an end of it) beyond which the target goes
+    on; not those at a rim where the target ends too, as flush blocks and symmetry planes have. on: (m,) as ``goes_on``."""
+    touched = np.zeros(len(contactor.points), dtype=bool)
+    touched[own.ends[on]] = True
+    return np.asarray((touched[np.maximum(contactor.nodes, 0)] & (contactor.nodes >= 0)).any(axis=1))
+
+
+def _edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Facet (m,) and corner points (m, 2) of every edge that belongs to one facet only; in 2D the point twice."""
+    facets, ends = [], []
+    for kind, own in by_kind(surface):
+        corners, nodes = CELLS[kind].corners, surface.nodes[own].astype(np.int64)
+        if CELLS[kind].dim == 1:
+            pairs = [(0, 0), (1, 1)]
+        else:
+            pairs = [(i, (i + 1) % corners) for i in range(corners)]
+        facets += [own] * len(pairs)
+        ends += [nodes[:, list(pair)] for pair in pairs]
+    facet, every = np.concatenate(facets), np.concatenate(ends)
+    _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+    single = first[count == 1]
+    return facet[single], every[single]

@@ -1,0 +1,92 @@
+"""Planes of symmetry, beyond which the pressure goes on as its mirror image: what that says of averages next to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import CELLS
+from abut.contact.geometry import by_kind, split_at_creases
+from abut.contact.nodal_recovery import Averages
+from abut.contact.rim import Rim
+from abut.mesh.surface import Surface
+
+SHARED = 2.0  # theory (P14): on an even mesh nodes on the plane and those next to it show the same across it
+CLOSED = 1e-3  # average over the largest from which on a point counts as in contact
+STRAIGHT = np.cos(np.deg2rad(20.0))  # mean of unit vectors along the rim on both sides of a point: a bend of 40 degrees
+APART = 0.13  # smaller over larger eigenvalue of two planes' normals at a point, from an angle of 40 degrees on
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Where a contactor ends at planes of symmetry. count: (n_points,) how many each point lies on, 0, 1 or 2; along:
+    (n_points, dim) unit tangent of the rim at points of one plane, zero elsewhere and where the rim bends."""
+
+    count: NDArray[np.int64]
+    along: NDArray[np.float64]
+
+
+def planes(contactor: Surface, rim: Rim, mirrored: NDArray[np.bool_]) -> Planes:
+    """The planes from the edges of a contactor's rim that lie on one. rim: of ``contactor``, in 3D; mirrored: (m,) bool."""
+    ids, ends = np.unique(rim.ends[mirrored], return_inverse=True)
+    n, ends = len(ids), ends.reshape(-1, 2)
+    step = contactor.points[ids[ends[:, 1]]] - contactor.points[ids[ends[:, 0]]]
+    edge, out = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (step, rim.out[mirrored]))
+    tangent, normals, edges = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.bincount(ends.ravel(), minlength=n)
+    for own in ends.T:
+        np.add.at(tangent, own, edge)
+        np.add.at(normals, own, np.einsum("ea,eb->eab", out, out))
+    size, length = np.linalg.eigvalsh(normals), np.linalg.norm(tangent, axis=1)
+    several = size[:, 1] > APART * size[:, 2]
+    straight = ~several & (length >= STRAIGHT * edges)
+    count, along = np.zeros(len(contactor.points), dtype=np.int64), np.zeros_like(contactor.points)
+    count[ids] = 1 + several
+    along[ids[straight]] = tangent[straight] / length[straight, None]
+    return Planes(count, along)
+
+
+def evened(contactor: Surface, at: Averages, average: NDArray[np.float64], of: Planes) -> NDArray[np.float64]:
+    """Averages (n_points,) of a contactor with those on planes of symmetry mended where triangles meet them, theory (P14).
+    The resultant stays, since what one point gains another loses; nothing becomes negative that was not.
+
+    of: the planes of ``contactor``, from which ``at`` was made."""
+    owner = split_at_creases(contactor)[1]
+    count, along = of.count[owner], of.along[owner]
+    closed = average > CLOSED * average.max(initial=0.0)
+    straight = np.flatnonzero(along.any(axis=1) & closed)
+    slope = np.zeros(len(average))
+    slope[straight] = (along[straight] * at.slopes(average, straight)).sum(axis=1)
+    result = average.copy()
+    for kind, facets in by_kind(at.surface):
+        rows = at.corners[facets, : CELLS[kind].corners]
+        near = (count[rows] > 0).any(axis=1)
+        if CELLS[kind].corners != 3 or not near.any():
+            continue
+        rows, mass = rows[near], at.mass[facets[near], :3, :3]
+        here, other = np.broadcast_arrays(rows[:, :, None], rows[:, None, :])
+        away = at.surface.points[here] - at.surface.points[other]
+        rise = slope[here] * (along[here] * away).sum(axis=-1)
+        if CELLS[kind].degree == 1:
+            rise = SHARED * (rise + average[other] - average[here])
+        towards = closed[here] & closed[other] & (count[here] > count[other])
+        result += _exchanged(at, average, here, other, np.where(towards, mass * rise, 0.0))
+    return result
+
+
+def _exchanged(
+    at: Averages,
+    average: NDArray[np.float64],
+    here: NDArray[np.int64],
+    other: NDArray[np.int64],
+    flow: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What averages gain (n_points,) by flows of force (n, 3, 3) from points ``other`` to points ``here``, of which no
+    point gives more than it has."""
+    n = len(average)
+    given = np.bincount(np.where(flow > 0.0, other, here).ravel(), np.abs(flow).ravel(), n)
+    share = np.minimum(1.0, np.maximum(at.weight * average, 0.0) / np.maximum(given, 1e-300))
+    flow = flow * share[np.where(flow > 0.0, other, here)]
+    gain = np.bincount(here.ravel(), flow.ravel(), n) - np.bincount(other.ravel(), flow.ravel(), n)
+    return np.asarray(gain / np.where(at.weight > 0.0, at.weight, 1.0))

@@ -1,0 +1,131 @@
+"""Contact pairs, ties and general contact of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from abut.decks.cards.cards import Card, Line, as_float, key, of
+from abut.decks.cards.mesh_cards import MeshCards
+from abut.decks.cards.reasons import Reasons
+from abut.decks.cards.record import GeneralContact, Numbers, Pair
+from abut.errors import nearest
+
+OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
+
+
+def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pair, ...]:
+    """Contact pairs and ties in the order of the deck."""
+    overclosures = _overclosures(cards, reasons)
+    clearances: dict[tuple[str, str], Card] = {}
+    for card in of(cards, "CLEARANCE"):
+        with reasons.gathered():
+            clearances[card.need("SLAVE").upper(), card.need("MASTER").upper()] = card
+    result: list[Pair] = []
+    for card in cards:
+        with reasons.gathered():
+            if card.key == "TIE" and not card.has("CYCLIC SYMMETRY"):
+                for i, (line, slave, master) in enumerate(sides(card, mesh)):
+                    name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
+                    result.append(Pair(name, slave, master, True, "TIED", "all", None, line.place))
+            elif card.key == "CONTACTPAIR":
+                result += _contact_pairs(card, mesh, overclosures, clearances)
+    for (slave, master), card in clearances.items():
+        reasons.add(card.unknown(f"no *CONTACT PAIR of slave {slave} and master {master}"))
+    return tuple(result)
+
+
+def _contact_pairs(
+    card: Card, mesh: MeshCards, overclosures: Mapping[str, str], clearances: dict[tuple[str, str], Card]
+) -> list[Pair]:
+    """The pairs of one card; takes what belongs to them from ``clearances``."""
+    interaction, result = card.need("INTERACTION"), []
+    if interaction.upper() not in overclosures:
+        raise card.unknown(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, overclosures)}")
+    overclosure = overclosures[interaction.upper()]
+    for line, slave, master in sides(card, mesh):
+        given = clearances.pop((slave.upper(), master.upper()), None)
+        clearance = None
+        if given is not None:
+            clearance = as_float(given.need("VALUE"))
+            if clearance is None:
+                raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
+        tied, name = overclosure == "TIED", f"{slave}-{master}"
+        result.append(Pair(name, slave, master, tied, overclosure, _adjust(card, mesh), clearance, line.place))
+    return result
+
+
+def general_contact(cards: Sequence[Card], reasons: Reasons) -> GeneralContact | None:
+    """Contact of everything outside, if the deck asks for it, with the interaction given to all of it."""
+    overclosures = _overclosures(cards, reasons)
+    found: GeneralContact | None = None
+    with reasons.gathered():
+        found = _general_contact(cards, overclosures)
+    return found
+
+
+def _general_contact(cards: Sequence[Card], overclosures: Mapping[str, str]) -> GeneralContact | None:
+    found: Card | None = None
+    for card in of(cards, "CONTACT INCLUSIONS"):
+        if not card.has("ALL EXTERIOR"):
+            raise card.error("only ALL EXTERIOR is supported; name single surfaces in *CONTACT PAIR")
+        found = card
+    overclosure = "HARD"
+    for card in of(cards, "CONTACT PROPERTY ASSIGNMENT"):
+        for line in card.lines:
+            if line.text(0) or line.text(1):
+                raise line.error("an interaction for single surfaces is not supported; name them in *CONTACT PAIR")
+            name = line.text(2)
+            if name.upper() not in overclosures:
+                raise line.unknown(f"no *SURFACE INTERACTION named {name!r}{nearest(name, overclosures)}")
+            overclosure = overclosures[name.upper()]
+    if found is None:
+        for card in of(cards, "CONTACT"):
+            raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
+    return None if found is None else GeneralContact(overclosure, found.place)
+
+
+def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
+    """Names of slave and master surface, line by line."""
+    card.first("slave and master surface")
+    for line in card.lines:
+        names = []
+        for i, what in enumerate(("slave", "master")):
+            text = line.text(i)
+            if text.upper() not in mesh.surfaces:
+                spelled = [surface.name for surface in mesh.surfaces.values()]
+                raise line.unknown(f"no {what} surface named {text!r}{nearest(text, spelled)}")
+            names.append(mesh.surfaces[text.upper()].name)
+        yield line, names[0], names[1]
+
+
+def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
+    text = card.get("ADJUST")
+    if text is None:
+        return 0.0
+    value = as_float(text)
+    if value is not None:
+        if value < 0.0:
+            raise card.error(f"ADJUST: expected a distance >= 0 or a node set, got {text}")
+        return value
+    if text.upper() not in mesh.node_sets.sets:
+        raise card.unknown(f"ADJUST: no node set named {text!r}{nearest(text, mesh.node_sets.spelled.values())}")
+    return mesh.node_sets.sets[text.upper()]
+
+
+def _overclosures(cards: Sequence[Card], reasons: Reasons) -> dict[str, str]:
+    """How pressure follows overclosure, by interaction."""
+    result: dict[str, str] = {}
+    current = ""
+    for card in cards:
+        with reasons.gathered(defines=True):
+            if card.key == "SURFACEINTERACTION":
+                current = card.need("NAME").upper()
+                result[current] = "HARD"
+            elif card.key == "SURFACEBEHAVIOR":
+                if not current:
+                    raise card.error("it must follow a *SURFACE INTERACTION")
+                overclosure = key(card.get("PRESSURE-OVERCLOSURE", "HARD") or "HARD")
+                if overclosure not in OVERCLOSURES:
+                    raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
+                result[current] = overclosure
+    return result

@@ -1,0 +1,117 @@
+"""Surfaces of a deck as rows (element number, local facet of ``abut.cells``)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import CELLS
+from abut.decks.cards.elements import FACES
+from abut.decks.cards.reasons import DeckError
+from abut.decks.cards.record import Block, Deck, Faces, Numbers
+
+Rows = NDArray[np.int64]  # (n, 2)
+
+
+@dataclass(frozen=True)
+class FreeFaces:
+    """Facets with an element on one side only: rows (n, 2), nodes (n, 9) padded with -1, corners (n,) how many of the
+    nodes are corners."""
+
+    rows: Rows
+    nodes: Numbers
+    corners: Numbers
+
+
+def free_faces(deck: Deck) -> FreeFaces:
+    """The boundary of all elements."""
+    rows, nodes, corners, keys = [], [], [], []
+    for block in deck.blocks:
+        for local, (kind, own) in enumerate(CELLS[block.type.kind].facets):
+            count = CELLS[kind].corners
+            padded = np.full((len(block.ids), 9), -1, np.int64)
+            padded[:, : len(own)] = block.nodes[:, own]
+            key = np.full((len(block.ids), 4), -1, np.int64)
+            key[:, :count] = np.sort(padded[:, :count], axis=1)
+            rows.append(np.stack([block.ids, np.full(len(block.ids), local)], axis=1))
+            nodes.append(padded)
+            corners.append(np.full(len(block.ids), count))
+            keys.append(key)
+    _, inverse, times = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
+    free = times[inverse.ravel()] == 1
+    return FreeFaces(np.concatenate(rows)[free], np.concatenate(nodes)[free], np.concatenate(corners)[free])
+
+
+def surface_rows(deck: Deck, surface: Faces, free: FreeFaces) -> Rows:
+    """Rows of a surface, each once. A surface of nodes becomes the free faces that its nodes make up.
+
+    Raises InputError for nodes that make up no face."""
+    if surface.empty:
+        raise DeckError(surface.place, f"*SURFACE: surface '{surface.name}' is empty; give it faces, or nodes")
+    if surface.nodes is not None:
+        return _of_nodes(deck, surface, surface.nodes, free)
+    parts = [np.empty((0, 2), np.int64)]
+    for elements, face in surface.faces:
+        if face == 0:
+            parts.append(free.rows[np.isin(free.rows[:, 0], elements)])
+            continue
+        for block in deck.blocks:
+            own = np.intersect1d(elements, block.ids)
+            if not len(own):
+                continue
+            parts.append(np.stack([own, np.full(len(own), FACES[block.type.kind][face - 1])], axis=1))
+    rows = np.unique(np.concatenate(parts), axis=0)
+    if not len(rows):
+        raise DeckError(surface.place, f"*SURFACE: surface '{surface.name}' has no faces; check its elements")
+    return rows
+
+
+def _of_nodes(deck: Deck, surface: Faces, nodes: Numbers, free: FreeFaces) -> Rows:
+    every = bound_nodes(deck, nodes)
+    inside = np.isin(free.nodes, every)
+    hit = (inside | (free.nodes < 0)).all(axis=1)
+    if not hit.any():  # a quadratic mesh whose set holds corners only
+        slots = np.arange(free.nodes.shape[1])[None, :]
+        hit = (inside | (slots >= free.corners[:, None])).all(axis=1)
+    left = np.setdiff1d(nodes, free.nodes[hit])
+    if len(left):
+        raise DeckError(
+            surface.place,
+            f"*SURFACE: node {left[0]}{f' and {len(left) - 1} more' if len(left) > 1 else ''} of surface "
+            f"'{surface.name}' make up no face of an element, and abut needs faces; list faces (TYPE=ELEMENT)",
+        )
+    return free.rows[hit]
+
+
+def bound_nodes(deck: Deck, nodes: Numbers) -> Numbers:
+    """The nodes, and those that an equation of two terms makes move as they do."""
+    more = [nodes]
+    wanted = set(nodes.tolist())
+    for equation in deck.equations:
+        if len(equation.terms) == 2 and equation.terms[0][2] == -equation.terms[1][2]:
+            (a, own, _), (b, other, _) = equation.terms
+            if own == other and (a in wanted) != (b in wanted):
+                more.append(np.array([a, b], np.int64))
+    return np.unique(np.concatenate(more))
+
+
+def connectivity(deck: Deck, rows: Rows) -> dict[str, Numbers]:
+    """Facet type -> node numbers (n, k) of the facets in ``rows``."""
+    parts: dict[str, list[Numbers]] = {}
+    for block in deck.blocks:
+        own = rows[np.isin(rows[:, 0], block.ids)]
+        if not len(own):
+            continue
+        nodes = element_nodes(block, own[:, 0])
+        for local in np.unique(own[:, 1]).tolist():
+            kind, pick = CELLS[block.type.kind].facets[local]
+            parts.setdefault(kind, []).append(nodes[own[:, 1] == local][:, pick])
+    return {kind: np.concatenate(own) for kind, own in parts.items()}
+
+
+def element_nodes(block: Block, elements: Numbers) -> Numbers:
+    """Nodes (n, k) of elements of a block by number."""
+    order = np.argsort(block.ids)
+    return block.nodes[order[np.searchsorted(block.ids[order], elements)]]

@@ -1,0 +1,267 @@
+"""Materials, sections, equations, rigid bodies, symmetry and pre-tension of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import takewhile
+
+import numpy as np
+
+from abut.decks.cards.cards import Card, Line, as_float, as_integer, key, of
+from abut.decks.cards.contact_cards import sides
+from abut.decks.cards.mesh_cards import MeshCards
+from abut.decks.cards.reasons import Reasons
+from abut.decks.cards.record import (
+    CyclicSymmetry,
+    Equation,
+    Material,
+    Numbers,
+    PreTension,
+    RigidBody,
+    Section,
+    Transform,
+)
+from abut.errors import nearest
+
+EMPTY = np.empty(0, np.int64)
+
+
+def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
+    """Materials by name in capitals; ``reasons`` gets what is not isotropic with one row of numbers."""
+    result: dict[str, Material] = {}
+    for i, card in enumerate(cards):
+        if card.key == "MATERIAL":
+            with reasons.gathered(defines=True):
+                material = _material(card, cards[i + 1 :])
+                result[material.name.upper()] = material
+    return result
+
+
+def _material(card: Card, following: Sequence[Card]) -> Material:
+    options = {
+        option.key: option
+        for option in takewhile(lambda own: own.key in ("ELASTIC", "DENSITY", "EXPANSION"), following)
+    }
+    name = card.need("NAME")
+    if "ELASTIC" not in options:
+        raise card.error(f"material '{name}' has no *ELASTIC; give Young's modulus and Poisson's ratio")
+    elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
+    poisson = elastic.number(1, "Poisson's ratio", 0.0)
+    density = _row(options["DENSITY"], "density").number(0, "density") if "DENSITY" in options else 0.0
+    expansion = 0.0
+    if "EXPANSION" in options:
+        expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
+    return Material(name, elastic.number(0, "Young's modulus"), poisson, density, expansion, card.place)
+
+
+def _row(card: Card, what: str) -> Line:
+    kind = key(card.get("TYPE", "ISO") or "")
+    if kind not in ("ISO", "ISOTROPIC"):
+        raise card.error(f"TYPE={kind} is not supported; abut's solids are isotropic")
+    line = card.first(what)
+    if len(card.lines) > 1:
+        raise card.lines[1].error(
+            "values that depend on temperature (several rows) are not supported; give one row, that of the temperature "
+            "that matters"
+        )
+    return line
+
+
+def sections(
+    cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None, reasons: Reasons
+) -> tuple[Section, ...]:
+    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
+    in both, as in Abaqus and CalculiX."""
+    result: list[Section] = []
+    for card in of(cards, "SOLID SECTION"):
+        with reasons.gathered():
+            own = _section(card, mesh, known)
+            result = [replace(s, elements=np.setdiff1d(s.elements, own.elements)) for s in result]
+            result.append(own)
+    return tuple(s for s in result if len(s.elements))
+
+
+def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) -> Section:
+    name, material = card.need("ELSET"), card.need("MATERIAL")
+    if name.upper() not in mesh.element_sets.sets:
+        raise card.unknown(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
+    if known is not None and material.upper() not in known:
+        raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
+    if card.has("NODAL THICKNESS"):
+        raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
+    thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
+    if not thickness > 0.0:
+        raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
+    elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
+    own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0, card.place)
+    return Section(spelled, elements, own, thickness, card.place)
+
+
+def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:
+    """*EQUATION, and *MPC that say that displacements are equal."""
+    result: list[Equation] = []
+    for card in of(cards, "EQUATION"):
+        with reasons.gathered():
+            for head, fields in _terms(card):
+                result += _equations(head, fields, mesh)
+    for card in of(cards, "MPC"):
+        with reasons.gathered():
+            for line in card.lines:
+                result += _multipoint(line, mesh)
+    return tuple(result)
+
+
+def _terms(card: Card) -> Iterator[tuple[Line, list[tuple[Line, int]]]]:
+    """For each equation of a card its first line, and the entries (line, field) of its terms."""
+    lines = list(card.lines)
+    while lines:
+        head = lines.pop(0)
+        count = head.integer(0, "number of terms")
+        fields: list[tuple[Line, int]] = []
+        while len(fields) < 3 * count:
+            if not lines:
+                raise head.error(f"{count} terms announced, but {len(fields) // 3} given; add the missing lines")
+            line = lines.pop(0)
+            last = len(line.fields) - (line.fields[-1] == "")
+            fields += [(line, i) for i in range(last)]
+        if len(fields) > 3 * count:
+            raise head.error(f"{count} terms announced, but more entries follow; check the lines")
+        yield head, fields
+
+
+def _equations(head: Line, fields: list[tuple[Line, int]], mesh: MeshCards) -> list[Equation]:
+    """One equation, or one for each node of the sets that stand in its terms."""
+    sets, rest = [], []
+    for (line, i), (other, j), (third, k) in zip(fields[::3], fields[1::3], fields[2::3]):
+        sets.append(mesh.existing(line, i))
+        rest.append((_direction(other, j), third.number(k, "coefficient")))
+    count = max(len(numbers) for numbers in sets)
+    if any(len(numbers) not in (1, count) for numbers in sets):
+        raise head.error("node sets of one equation must have the same number of nodes")
+    if rest[0][1] == 0.0:
+        raise head.error("the first coefficient is zero; take the term out")
+    return [
+        Equation(
+            tuple((int(n[i if len(n) > 1 else 0]), d, c) for n, (d, c) in zip(sets, rest)),
+            head.place,
+        )
+        for i in range(count)
+    ]
+
+
+def _direction(line: Line, i: int) -> int:
+    direction = line.integer(i, "direction")
+    if direction > 3:
+        raise line.error(f"direction {direction}: only displacements (1, 2, 3) are supported")
+    return direction
+
+
+def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
+    kind = key(line.text(0))
+    if kind not in ("TIE", "PIN"):
+        raise line.error(f"type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
+    a, b = (mesh.existing(line, i) for i in (1, 2))
+    if len(b) == 1:
+        b = np.repeat(b, len(a))
+    if len(a) != len(b):
+        raise line.error(f"the two node sets have {len(a)} and {len(b)} nodes; they must have the same number")
+    return [Equation(((int(n), d, 1.0), (int(m), d, -1.0)), line.place) for n, m in zip(a, b) for d in (1, 2, 3)]
+
+
+def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[RigidBody, ...]:
+    result = []
+    for card in of(cards, "RIGID BODY"):
+        with reasons.gathered():
+            nodes, elements = EMPTY, EMPTY
+            if card.get("NSET"):
+                nodes = _named(card, "NSET", mesh.node_sets.sets, "node")
+            elif card.get("ELSET"):
+                elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
+            else:
+                raise card.error("give the body's nodes (NSET) or elements (ELSET)")
+            reference = _node(card, "REF NODE", card.need("REF NODE"))
+            turning = _node(card, "ROT NODE", card.need("ROT NODE")) if card.has("ROT NODE") else 0
+            result.append(RigidBody(nodes, elements, reference, turning, card.place))
+    return tuple(result)
+
+
+def _named(card: Card, parameter: str, sets: Mapping[str, Numbers], what: str) -> Numbers:
+    name = card.need(parameter)
+    if name.upper() not in sets:
+        raise card.unknown(f"no {what} set named {name!r}{nearest(name.upper(), sets)}")
+    return sets[name.upper()]
+
+
+def _node(card: Card, parameter: str, text: str) -> int:
+    number = as_integer(text)
+    if number is None:
+        raise card.error(f"{parameter}: expected a node number, got {text!r}")
+    return number
+
+
+def transforms(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Transform, ...]:
+    result = []
+    for card in of(cards, "TRANSFORM"):
+        with reasons.gathered():
+            kind = key(card.get("TYPE", "R") or "R")
+            if kind not in ("R", "C"):
+                raise card.error(f"TYPE={kind} is not supported; R (rectangular) and C (cylindrical) are")
+            a, b = two_points(card.first("two points"))
+            result.append(Transform(_named(card, "NSET", mesh.node_sets.sets, "node"), kind, a, b, card.place))
+    return tuple(result)
+
+
+def two_points(line: Line) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Six numbers of a line as two different points."""
+    x = [line.number(i, "coordinate", 0.0) for i in range(6)]
+    a, b = (x[0], x[1], x[2]), (x[3], x[4], x[5])
+    if a == b:
+        raise line.error("the two points are the same")
+    return a, b
+
+
+def cyclic_symmetry(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[CyclicSymmetry, ...]:
+    ties: dict[str, Card] = {}
+    for card in of(cards, "TIE"):
+        with reasons.gathered():
+            if card.has("CYCLIC SYMMETRY"):
+                ties[card.need("NAME").upper()] = card
+    result = []
+    for card in of(cards, "CYCLIC SYMMETRY MODEL"):
+        with reasons.gathered():
+            name = card.get("TIE") or next(iter(ties), "")
+            tie = ties.pop(name.upper(), None)
+            if tie is None:
+                raise card.unknown(f"no *TIE, CYCLIC SYMMETRY named {name!r}; give one, and name it once")
+            sectors = as_float(card.need("N"))
+            if sectors is None or sectors < 2.0:
+                raise card.error(f"N: expected the number of sectors in the whole turn, >= 2, got {card.need('N')!r}")
+            a, b = two_points(card.first("two points of the axis"))
+            _, slave, master = next(sides(tie, mesh))
+            result.append(CyclicSymmetry(sectors, slave, master, a, b, card.place))
+    for tie in ties.values():
+        reasons.add(tie.error("a *TIE, CYCLIC SYMMETRY without a *CYCLIC SYMMETRY MODEL that names it; add one"))
+    return tuple(result)
+
+
+def pretension_sections(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[PreTension, ...]:
+    result = []
+    for card in of(cards, "PRE-TENSION SECTION"):
+        with reasons.gathered():
+            result.append(_pretension(card, mesh))
+    return tuple(result)
+
+
+def _pretension(card: Card, mesh: MeshCards) -> PreTension:
+    name = card.need("SURFACE")
+    if name.upper() not in mesh.surfaces:
+        raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
+    normal = None
+    if card.lines:
+        line = card.lines[0]
+        normal = (line.number(0, "normal", 0.0), line.number(1, "normal", 0.0), line.number(2, "normal", 0.0))
+        if normal == (0.0, 0.0, 0.0):
+            raise line.error("the normal is zero; leave the line out for the surface's own")
+    node = _node(card, "NODE", card.need("NODE"))
+    return PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place)

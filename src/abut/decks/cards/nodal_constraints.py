@@ -1,0 +1,290 @@
+"""What holds, binds and pushes single nodes, along the global axes: supports, equations and forces of a deck with its own
+axes (*TRANSFORM), cyclic symmetry and nodes that belong to no element worked in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from abut.decks.cards.faces import connectivity
+from abut.decks.cards.groups import Groups
+from abut.decks.cards.reasons import DeckError, Place
+from abut.decks.cards.record import CyclicSymmetry, Deck, Numbers, Transform
+from abut.decks.cards.time_histories import Course, combine, courses, zero
+
+Vector = NDArray[np.float64]
+NOTHING: Course = ((0.0, 0.0),)
+TINY = 1e-12  # of the largest coefficient: a term that is none
+NEAR = 1e-3  # of the surface: distance within which nodes on two sides of a sector count as the same
+
+Point = tuple[int, int]  # node, axis 0..2
+
+
+@dataclass(frozen=True)
+class Bond:
+    """A linear constraint: the sum of coefficient times displacement over (node, axis) follows ``course``."""
+
+    terms: Mapping[Point, float]
+    course: Course
+    place: Place
+
+
+@dataclass(frozen=True)
+class Bonds:
+    supports: Mapping[Point, Course]
+    bonds: tuple[Bond, ...]
+    forces: Mapping[Point, Course]
+
+
+def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
+    """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
+    used = set(groups.used.tolist())
+    apart = {r.reference for r in deck.rigid} | {r.turning for r in deck.rigid}
+    axes = 2 if plane else 3
+    given = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if n not in apart}
+    for point, course in given.items():
+        if point[1] >= 3 and not zero(course):
+            raise _nothing(deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies do")
+    held = {point: course for point, course in given.items() if point[1] < 3}
+    pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
+    named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
+    local = _local_axes(deck, named)
+    supports, oblique = _supports(deck, {p: c for p, c in held.items() if p[0] in used}, local, axes)
+    forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
+    equations = [Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations]
+    for symmetry in deck.cyclic:
+        equations += _cyclic(deck, groups, symmetry)
+    virtual = _Virtual(
+        {p: c for p, c in held.items() if p[0] not in used}, {p: c for p, c in pushed.items() if p[0] not in used}
+    )
+    equations, more = _without_virtual(equations, virtual, used, deck)
+    for point, course in more.items():
+        forces[point] = combine([(1.0, forces.get(point, NOTHING)), (1.0, course)])
+    known = dict(supports)
+    if plane == "axisymmetric":
+        known |= dict.fromkeys(((n, 0) for n in _on_axis(deck, groups)), NOTHING)
+    kept = [_reduced(bond, known, axes) for bond in (*oblique, *equations)]
+    return Bonds(supports, tuple(b for b in kept if b is not None), {p: c for p, c in forces.items() if p[1] < axes})
+
+
+@dataclass(frozen=True)
+class _Virtual:
+    """Supports and forces at nodes of no element."""
+
+    held: Mapping[Point, Course]
+    pushed: Mapping[Point, Course]
+
+
+def _on_axis(deck: Deck, groups: Groups) -> list[int]:
+    size = float(np.ptp(deck.points, axis=0).max())
+    return np.intersect1d(deck.nodes[deck.points[:, 0] <= 1e-9 * size], groups.used).tolist()
+
+
+def coordinates(deck: Deck, nodes: Numbers) -> Vector:
+    """Coordinates (n, 3) of nodes by number."""
+    return np.asarray(deck.points[np.searchsorted(deck.nodes, nodes)])
+
+
+def _local_axes(deck: Deck, named: set[int]) -> dict[int, Vector]:
+    """Node -> its own axes as rows (3, 3), for those that something is said of."""
+    result: dict[int, Vector] = {}
+    for transform in deck.transforms:
+        nodes = np.intersect1d(np.intersect1d(transform.nodes, deck.nodes), np.array(sorted(named), np.int64))
+        for node, x in zip(nodes.tolist(), coordinates(deck, nodes)):
+            result[node] = _axes(transform, x)
+    return result
+
+
+def _axes(transform: Transform, x: Vector) -> Vector:
+    a, b = np.array(transform.a), np.array(transform.b)
+    if transform.kind == "R":
+        third = np.cross(a, b)
+        first = a
+    else:
+        third = b - a
+        first = (x - a) - (x - a) @ third / (third @ third) * third
+    if np.linalg.norm(third) == 0.0 or np.linalg.norm(first) <= 1e-9 * np.abs(x - a).max(initial=1e-300):
+        raise DeckError(
+            transform.place,
+            f"*TRANSFORM: no axes follow from the two points at {x.tolist()}; leave nodes on the axis out",
+        )
+    first, third = first / np.linalg.norm(first), third / np.linalg.norm(third)
+    return _clean(np.stack([first, np.cross(third, first), third]))
+
+
+def _clean(rows: Vector) -> Vector:
+    """Components at rounding level made zero."""
+    return np.asarray(np.where(np.abs(rows) < TINY, 0.0, rows))
+
+
+def _supports(
+    deck: Deck, held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
+) -> tuple[dict[Point, Course], list[Bond]]:
+    """Supports along the global axes, and equations for those across."""
+    supports: dict[Point, Course] = {}
+    oblique: list[Bond] = []
+    by_node: dict[int, dict[int, Course]] = {}
+    for (node, direction), course in held.items():
+        by_node.setdefault(node, {})[direction] = course
+    for node, own in by_node.items():
+        if node not in local:
+            supports |= {(node, d): c for d, c in own.items() if d < axes}
+            continue
+        rows = local[node]
+        if len(own) == 3:
+            supports |= {(node, k): combine([(float(rows[d, k]), c) for d, c in own.items()]) for k in range(axes)}
+            continue
+        for d, course in own.items():
+            along = np.flatnonzero(rows[d])
+            if len(along) == 1:
+                k = int(along[0])
+                if k < axes:
+                    supports[node, k] = combine([(float(rows[d, k]), course)])
+                continue
+            oblique.append(
+                Bond({(node, int(k)): float(rows[d, k]) for k in along}, course, _place(deck, "boundary", (node, 0)))
+            )
+    return supports, oblique
+
+
+def _spread(pushed: Mapping[Point, Course], local: Mapping[int, Vector]) -> dict[Point, Course]:
+    """Forces along the global axes."""
+    parts: dict[Point, list[tuple[float, Course]]] = {}
+    for (node, direction), course in pushed.items():
+        row = local[node][direction] if node in local else np.eye(3)[direction]
+        for k in np.flatnonzero(row).tolist():
+            parts.setdefault((node, k), []).append((float(row[k]), course))
+    return {point: combine(own) for point, own in parts.items()}
+
+
+def _global(terms: tuple[tuple[int, int, float], ...], local: Mapping[int, Vector]) -> dict[Point, float]:
+    """Terms (node, direction, coefficient) along the global axes."""
+    result: dict[Point, float] = {}
+    for node, direction, coefficient in terms:
+        row = local[node][direction - 1] if node in local else np.eye(3)[direction - 1]
+        for k in np.flatnonzero(row).tolist():
+            result[node, k] = result.get((node, k), 0.0) + coefficient * float(row[k])
+    return result
+
+
+def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
+    """The displacement of every slave node is that of its master node, turned by one sector."""
+    nodes = {}
+    for side in (symmetry.slave, symmetry.master):
+        surface = deck.surfaces[side]
+        own = surface.nodes
+        if own is None:
+            own = np.concatenate([n.ravel() for n in connectivity(deck, groups.rows(side)).values()])
+        nodes[side] = np.intersect1d(own, groups.used)
+    a, axis = np.array(symmetry.a), np.array(symmetry.b) - np.array(symmetry.a)
+    x, y = (coordinates(deck, nodes[side]) for side in (symmetry.slave, symmetry.master))
+    size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
+    tried = [_turn(axis, sign * 2.0 * np.pi / symmetry.sectors) for sign in (1.0, -1.0)]
+    found = [tuple(map(np.asarray, cKDTree((y - a) @ turn.T).query(x - a))) for turn in tried]
+    best = int(found[1][0].max() < found[0][0].max())
+    (distance, match), turn = found[best], _clean(tried[best])
+    if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
+        worst = int(nodes[symmetry.slave][int(distance.argmax())])
+        raise DeckError(
+            symmetry.place,
+            f"*CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
+            f"'{symmetry.master}' one sector on; mesh both sides alike",
+        )
+    result = []
+    for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
+        for k in range(3):
+            terms = {(slave, k): 1.0}
+            for j in range(3):
+                terms[master, j] = terms.get((master, j), 0.0) - float(turn[k, j])
+            result.append(Bond(terms, NOTHING, symmetry.place))
+    return result
+
+
+def _turn(axis: Vector, angle: float) -> Vector:
+    """Rotation matrix (Rodrigues)."""
+    e = axis / np.linalg.norm(axis)
+    cross = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
+
+
+def _without_virtual(
+    equations: list[Bond], virtual: _Virtual, used: set[int], deck: Deck
+) -> tuple[list[Bond], dict[Point, Course]]:
+    """Equations without nodes of no element, and the nodal forces that do the same work as the forces there.
+
+    Held: the known displacement goes to the right-hand side. Free: one equation says what the displacement is; it goes
+    from the others, and a force F on it pushes the other terms c_i of that equation with -F c_i / c."""
+    pushed: dict[Point, Course] = {}
+    bound = {point for bond in equations for point in bond.terms}
+    equations = [_reduced_by(bond, virtual.held) for bond in equations]
+    for point in sorted(p for p in bound if p[0] not in used and p not in virtual.held):
+        having = [i for i, bond in enumerate(equations) if abs(bond.terms.get(point, 0.0)) > 0.0]
+        if not having:
+            continue
+        pivot = equations[having[0]]
+        c = pivot.terms[point]
+        for i in having[1:]:
+            share = equations[i].terms[point] / c
+            terms = dict(equations[i].terms)
+            for other, value in pivot.terms.items():
+                terms[other] = terms.get(other, 0.0) - share * value
+            terms.pop(point)
+            course = combine([(1.0, equations[i].course), (-share, pivot.course)])
+            equations[i] = replace(equations[i], terms=terms, course=course)
+        force = virtual.pushed.get(point)
+        if force is not None:
+            for other, value in pivot.terms.items():
+                if other != point:
+                    pushed[other] = combine([(1.0, pushed.get(other, NOTHING)), (-value / c, force)])
+        del equations[having[0]]
+    for kind, own, what in (("force", virtual.pushed, "carries its force"), ("boundary", virtual.held, "follows it")):
+        for point, course in own.items():
+            if point not in bound and not zero(course):
+                raise _nothing(
+                    deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"
+                )
+    return equations, pushed
+
+
+def _place(deck: Deck, kind: str, point: Point, moving: bool = False) -> Place:
+    """Of the first line that gives a node a value; ``moving``: one in the point's direction that is not zero."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    return next(
+        v.place
+        for v in every
+        if v.kind == kind and point[0] in v.numbers and (not moving or (point[1] + 1 in v.directions and v.value))
+    )
+
+
+def _nothing(deck: Deck, kind: str, point: Point, why: str) -> DeckError:
+    """The error of a value that would have no effect, with the card and line that give it."""
+    card = "*CLOAD" if kind == "force" else "*BOUNDARY"
+    return DeckError(
+        _place(deck, kind, point, moving=True),
+        f"{card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *EQUATION)",
+    )
+
+
+def _reduced_by(bond: Bond, known: Mapping[Point, Course]) -> Bond:
+    """Terms with known displacement on the right-hand side."""
+    moved = {point: c for point, c in bond.terms.items() if point in known}
+    if not moved:
+        return bond
+    course = combine([(1.0, bond.course), *((-c, known[point]) for point, c in moved.items())])
+    return replace(bond, terms={p: c for p, c in bond.terms.items() if p not in known}, course=course)
+
+
+def _reduced(bond: Bond, known: Mapping[Point, Course], axes: int) -> Bond | None:
+    """Without terms that are known or out of the plane; None where nothing is left."""
+    size = max((abs(c) for c in bond.terms.values()), default=0.0)
+    bond = _reduced_by(bond, known)
+    terms = {p: c for p, c in bond.terms.items() if abs(c) > TINY * size and p[1] < axes}
+    if terms:
+        return replace(bond, terms=terms)
+    if max(abs(v) for _, v in bond.course) > TINY * max(size, max(abs(v) for c in known.values() for _, v in c)):
+        raise DeckError(bond.place, "the equation contradicts the supports of its nodes; take one of them out")
+    return None

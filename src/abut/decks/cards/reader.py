@@ -1,0 +1,127 @@
+"""From the file to the record: ``read_deck``."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+from abut.decks.cards.cards import Card, as_float, key, read_cards
+from abut.decks.cards.contact_cards import general_contact, pairs
+from abut.decks.cards.mesh_cards import MeshCards, mesh_cards
+from abut.decks.cards.model_cards import (
+    cyclic_symmetry,
+    equations,
+    materials,
+    pretension_sections,
+    rigid_bodies,
+    sections,
+    transforms,
+)
+from abut.decks.cards.reasons import Reasons
+from abut.decks.cards.record import Deck, Prescribed
+from abut.decks.cards.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
+from abut.decks.cards.supported import NEEDED, opens, sift
+
+MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
+
+
+def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
+    """Read an Abaqus or CalculiX deck. ``ignore``: cards and parameters to leave out although they change the result.
+
+    Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
+    notes: list[str] = []
+    reasons = Reasons()
+    sifted = sift(_without_void_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
+    if not sifted.plain:
+        reasons.tell()
+    cards = sifted.cards
+    outside, groups = split_steps(cards, reasons)
+    mesh = mesh_cards(cards, notes, reasons)
+    known = amplitudes(cards, reasons)
+    pair_list = pairs(cards, mesh, reasons)
+    general = general_contact(cards, reasons)
+    named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
+    for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
+        if overclosure not in ("HARD", "TIED"):
+            notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
+    deck = Deck(
+        path=str(path),
+        nodes=mesh.nodes,
+        points=mesh.points,
+        blocks=mesh.blocks,
+        node_sets=mesh.node_sets.by_name(),
+        element_sets=mesh.element_sets.by_name(),
+        surfaces={surface.name: surface for surface in mesh.surfaces.values()},
+        sections=sections(cards, mesh, materials(cards, reasons), reasons),
+        pairs=pair_list,
+        general=general,
+        equations=equations(cards, mesh, reasons),
+        rigid=rigid_bodies(cards, mesh, reasons),
+        transforms=transforms(cards, mesh, reasons),
+        cyclic=cyclic_symmetry(cards, mesh, reasons),
+        pretension=pretension_sections(cards, mesh, reasons),
+        fixed=_fixed(outside, mesh, notes, reasons),
+        initial=initial_temperature(cards, mesh, reasons),
+        amplitudes=known,
+        steps=steps(groups, mesh, known, reasons),
+        notes=tuple(notes),
+        quiet=sifted.quiet,
+        ignored=sifted.ignored,
+    )
+    reasons.tell()
+    return deck
+
+
+def read_mesh_only(path: Path) -> Deck:
+    """The nodes, elements, sets, surfaces and sections of a deck; all other cards are passed over.
+
+    Raises InputError as ``read_deck`` does, for these cards only."""
+    reasons = Reasons()
+    every = read_cards(path, opens, reasons)
+    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
+    notes: list[str] = []
+    mesh = mesh_cards(cards, notes, reasons)
+    own = sections(cards, mesh, None, reasons)
+    reasons.tell()
+    inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
+    return Deck(
+        str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
+        {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
+        own,
+        (), None, (), (), (), (), (), (), {}, {}, (), tuple(notes), (), (),
+    )  # fmt: skip
+
+
+def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: Reasons) -> tuple[Prescribed, ...]:
+    """Supports outside the steps."""
+    result = []
+    for card in outside:
+        if card.key not in KIND:
+            continue
+        with reasons.gathered():
+            if card.key != "BOUNDARY":
+                raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
+            for value in prescribed(card, mesh, {}):
+                if value.value != 0.0 and not any("outside the steps" in note for note in notes):
+                    notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
+                result.append(value)
+    return tuple(result)
+
+
+def _without_void_friction(cards: Sequence[Card], notes: list[str]) -> list[Card]:
+    """Friction without effect: of tied contact, where the card only gives the stick stiffness, and with coefficient 0."""
+    result: list[Card] = []
+    tied = False
+    for card in cards:
+        if card.key == "SURFACEINTERACTION":
+            tied = False
+        elif card.key == "SURFACEBEHAVIOR":
+            tied = key(card.get("PRESSURE-OVERCLOSURE") or "") == "TIED"
+        elif card.key == "FRICTION":
+            if tied:
+                notes.append(f"{card.place}: *FRICTION of tied contact gives its stick stiffness; tied exactly instead")
+                continue
+            if card.lines and not card.parameters and all(as_float(line.text(0)) == 0.0 for line in card.lines):
+                continue
+        result.append(card)
+    return result

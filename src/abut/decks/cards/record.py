@@ -1,0 +1,203 @@
+"""What a deck says, as frozen records: node and element numbers are the deck's own, values in its units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.decks.cards.elements import ElementType
+from abut.decks.cards.reasons import Place
+
+Numbers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Elements of one type: ids (n,), nodes (n, k) node numbers; place: of the first card with them."""
+
+    code: str
+    type: ElementType
+    ids: Numbers
+    nodes: Numbers
+    place: Place
+
+
+@dataclass(frozen=True)
+class Faces:
+    """A surface as the deck gives it: (element numbers, face 1, 2, ... or 0 for every free face); or node numbers."""
+
+    name: str
+    place: Place
+    faces: tuple[tuple[Numbers, int], ...] = ()
+    nodes: Numbers | None = None
+
+    @property
+    def empty(self) -> bool:
+        return not any(len(own) for own, _ in self.faces) if self.nodes is None else not len(self.nodes)
+
+
+@dataclass(frozen=True)
+class Material:
+    name: str
+    young: float
+    poisson: float
+    density: float
+    expansion: float
+    place: Place
+
+
+@dataclass(frozen=True)
+class Section:
+    """name: the element set; thickness: of plane elements."""
+
+    name: str
+    elements: Numbers
+    material: Material
+    thickness: float
+    place: Place
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
+    clearance: the gap given for all of the surface, None for the one of the mesh."""
+
+    name: str
+    slave: str
+    master: str
+    tied: bool
+    overclosure: str
+    adjust: float | str | Numbers
+    clearance: float | None
+    place: Place
+
+
+@dataclass(frozen=True)
+class GeneralContact:
+    """Contact of all exterior surfaces; overclosure as for a pair."""
+
+    overclosure: str
+    place: Place
+
+    @property
+    def tied(self) -> bool:
+        """Whether what touches is glued."""
+        return self.overclosure == "TIED"
+
+
+@dataclass(frozen=True)
+class Equation:
+    """Terms (node, direction 1..3, coefficient); value: their sum, with ``curve`` its course over the steps."""
+
+    terms: tuple[tuple[int, int, float], ...]
+    place: Place
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """nodes, or elements, of the body; reference and turning node (turning node 0: turns are directions 4..6 of the
+    reference node)."""
+
+    nodes: Numbers
+    elements: Numbers
+    reference: int
+    turning: int
+    place: Place
+
+
+@dataclass(frozen=True)
+class Transform:
+    """Axes of their own for boundary conditions and forces at nodes: kind "R" (a on x', b near y') or "C" (a, b on the
+    axis)."""
+
+    nodes: Numbers
+    kind: str
+    a: tuple[float, float, float]
+    b: tuple[float, float, float]
+    place: Place
+
+
+@dataclass(frozen=True)
+class CyclicSymmetry:
+    """Sectors in the whole turn, the surfaces that meet (slave is master turned by one sector), two points of the axis."""
+
+    sectors: float
+    slave: str
+    master: str
+    a: tuple[float, float, float]
+    b: tuple[float, float, float]
+    place: Place
+
+
+@dataclass(frozen=True)
+class PreTension:
+    """The surface inside a bolt that is cut open, the node whose direction 1 is the opening and its force, the normal
+    (None: that of the surface)."""
+
+    surface: str
+    node: int
+    normal: tuple[float, float, float] | None
+    place: Place
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures;
+    face 0 with ``vector``: gravity on the element. amplitude: name, or "" for the ramp."""
+
+    kind: str  # boundary | force | pressure | gravity | temperature
+    numbers: Numbers
+    directions: tuple[int, ...]
+    value: float
+    amplitude: str
+    place: Place
+    vector: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Step:
+    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW)."""
+
+    number: int
+    period: float
+    values: tuple[Prescribed, ...]
+    new: frozenset[str]
+    place: Place
+
+
+@dataclass(frozen=True)
+class Amplitude:
+    points: tuple[tuple[float, float], ...]
+    total: bool  # times count from the beginning of the analysis
+
+
+@dataclass(frozen=True)
+class Deck:
+    """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
+    outside the steps; initial: node -> temperature; quiet, ignored: see ``known.Sifted``."""
+
+    path: str
+    nodes: Numbers
+    points: NDArray[np.float64]
+    blocks: tuple[Block, ...]
+    node_sets: Mapping[str, Numbers]
+    element_sets: Mapping[str, Numbers]
+    surfaces: Mapping[str, Faces]
+    sections: tuple[Section, ...]
+    pairs: tuple[Pair, ...]
+    general: GeneralContact | None
+    equations: tuple[Equation, ...]
+    rigid: tuple[RigidBody, ...]
+    transforms: tuple[Transform, ...]
+    cyclic: tuple[CyclicSymmetry, ...]
+    pretension: tuple[PreTension, ...]
+    fixed: tuple[Prescribed, ...]
+    initial: Mapping[int, float]
+    amplitudes: Mapping[str, Amplitude]
+    steps: tuple[Step, ...]
+    notes: tuple[str, ...]
+    quiet: tuple[str, ...]
+    ignored: tuple[str, ...]

@@ -1,0 +1,222 @@
+"""Steps, supports, loads, temperatures and amplitudes of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from abut.decks.cards.cards import Card, Line, key
+from abut.decks.cards.mesh_cards import MeshCards, face_number
+from abut.decks.cards.reasons import Reasons
+from abut.decks.cards.record import Amplitude, Prescribed, Step
+from abut.decks.cards.supported import STEP_PROCEDURES
+from abut.errors import nearest
+
+NAMED_SUPPORTS = {
+    "ENCASTRE": (1, 2, 3, 4, 5, 6),
+    "PINNED": (1, 2, 3),
+    "XSYMM": (1, 5, 6),
+    "YSYMM": (2, 4, 6),
+    "ZSYMM": (3, 4, 5),
+    "XASYMM": (2, 3, 4),
+    "YASYMM": (1, 3, 5),
+    "ZASYMM": (1, 2, 6),
+}
+KIND = {
+    "BOUNDARY": "boundary",
+    "CLOAD": "force",
+    "DLOAD": "pressure",
+    "DSLOAD": "pressure",
+    "TEMPERATURE": "temperature",
+}
+
+
+def split_steps(cards: Sequence[Card], reasons: Reasons) -> tuple[list[Card], list[list[Card]]]:
+    """Cards outside the steps, and those of each step; ``reasons`` gets where *STEP and *END STEP do not match."""
+    outside: list[Card] = []
+    steps: list[list[Card]] = []
+    opened: Card | None = None
+    for card in cards:
+        if card.key == "STEP":
+            if opened is not None:
+                reasons.add(card.error(f"the step begun at {opened.place} has no *END STEP; add it"))
+            opened = card
+            steps.append([card])
+        elif card.key == "ENDSTEP":
+            if opened is None:
+                reasons.add(card.error("no *STEP before it; add one"))
+            opened = None
+        elif opened is None:
+            outside.append(card)
+        else:
+            steps[-1].append(card)
+    if opened is not None:
+        reasons.add(opened.error("the step has no *END STEP; add it"))
+    return outside, steps
+
+
+def amplitudes(cards: Iterable[Card], reasons: Reasons) -> dict[str, Amplitude]:
+    """Amplitudes by name in capitals."""
+    result = {}
+    for card in cards:
+        if card.key == "AMPLITUDE":
+            with reasons.gathered(defines=True):
+                result[card.need("NAME").upper()] = _amplitude(card)
+    return result
+
+
+def _amplitude(card: Card) -> Amplitude:
+    for parameter, wanted in (("DEFINITION", "TABULAR"), ("VALUE", "RELATIVE")):
+        if key(card.get(parameter, wanted) or "") != wanted:
+            raise card.error(f"{parameter}={card.get(parameter)} is not supported; give a table of times and factors")
+    numbers = [
+        line.number(i, "time" if i % 2 == 0 else "factor")
+        for line in card.lines
+        for i in range(len(line.fields) - (line.fields[-1] == ""))
+    ]
+    if not numbers or len(numbers) % 2:
+        raise card.error("expected pairs of time and factor")
+    points = tuple(zip(numbers[::2], numbers[1::2]))
+    if any(b[0] <= a[0] for a, b in pairwise(points)):
+        raise card.error("times must increase from pair to pair")
+    return Amplitude(points, key(card.get("TIME", "") or "") == "TOTALTIME")
+
+
+def steps(
+    groups: Sequence[Sequence[Card]], mesh: MeshCards, known: Mapping[str, Amplitude], reasons: Reasons
+) -> tuple[Step, ...]:
+    """The steps; ``reasons`` gets those without procedure."""
+    result = []
+    for number, group in enumerate(groups, start=1):
+        period = 1.0
+        with reasons.gathered():
+            period = _period(group)
+        values: list[Prescribed] = []
+        new = set()
+        for card in group:
+            if card.key in KIND:
+                with reasons.gathered():
+                    values += prescribed(card, mesh, known)
+                    operation = key(card.get("OP", "MOD") or "")
+                    if operation not in ("NEW", "MOD"):
+                        raise card.error(f"OP={operation}: expected NEW or MOD")
+                    if operation == "NEW":
+                        new.add(KIND[card.key])
+        result.append(Step(number, period or 1.0, tuple(values), frozenset(new), group[0].place))
+    return tuple(result)
+
+
+def _period(group: Sequence[Card]) -> float:
+    procedure = next((card for card in group if card.key in STEP_PROCEDURES), None)
+    if procedure is None:
+        raise group[0].error("the step has no procedure; abut solves *STATIC steps")
+    period = procedure.lines[0].number(1, "period", 1.0) if procedure.lines else 1.0
+    if period < 0.0:
+        raise procedure.lines[0].error(f"period: expected a number > 0, got {period:g}")
+    return period
+
+
+def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> list[Prescribed]:
+    """The values of one *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD or *TEMPERATURE."""
+    amplitude = (card.get("AMPLITUDE") or "").upper()
+    if amplitude and amplitude not in known:
+        raise card.unknown(f"no *AMPLITUDE named {card.get('AMPLITUDE')!r}{nearest(amplitude, known)}")
+    if card.get("LOAD CASE", "1") != "1":
+        raise card.error("LOADCASE: imaginary parts belong to steady-state dynamics, which abut does not solve")
+    if key(card.get("TYPE", "DISPLACEMENT") or "") != "DISPLACEMENT":
+        raise card.error(f"TYPE={card.get('TYPE')}: only displacements can be prescribed in statics")
+    return [value for line in card.lines for value in _LINES[card.key](line, amplitude, mesh)]
+
+
+def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    nodes = mesh.node_sets.resolve(line, 0, "node")
+    if not len(nodes):
+        raise line.unknown(f"node set '{line.text(0)}' is empty")
+    name = line.text(1).upper()
+    if name in NAMED_SUPPORTS:
+        return [Prescribed("boundary", nodes, NAMED_SUPPORTS[name], 0.0, amplitude, line.place)]
+    first = line.integer(1, "first direction")
+    last = line.integer(2, "last direction", first)
+    if last == 11 or first == 11:
+        raise line.error("direction 11 (temperature) belongs to heat transfer, which abut does not solve")
+    if not first <= last <= 6:
+        raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
+    value = line.number(3, "displacement", 0.0)
+    return [Prescribed("boundary", nodes, tuple(range(first, last + 1)), value, amplitude, line.place)]
+
+
+def _force(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    direction = line.integer(1, "direction")
+    if direction > 3:
+        raise line.error(
+            f"direction {direction}: only forces (1, 2, 3) are supported, not moments; use a pair of forces"
+        )
+    nodes = mesh.existing(line, 0)
+    return [Prescribed("force", nodes, (direction,), line.number(2, "force"), amplitude, line.place)]
+
+
+def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    label, value = line.text(1).upper(), line.number(2, "magnitude")
+    elements = mesh.element_sets.resolve(line, 0, "element") if line.text(0) else np.array(sorted(mesh.kinds), np.int64)
+    for number in elements.tolist():
+        if number not in mesh.kinds:
+            raise line.unknown(f"element {number} does not exist")
+    if label == "GRAV":
+        x, y, z = (line.number(i, "direction", 0.0) for i in (3, 4, 5))
+        size = float(np.sqrt(x * x + y * y + z * z))
+        if size == 0.0:
+            raise line.error("the direction of gravity is missing; write set, GRAV, value, x, y, z")
+        vector = (x / size, y / size, z / size)
+        return [Prescribed("gravity", elements, (0,), value, amplitude, line.place, vector)]
+    if not label.startswith("P") or label == "P":
+        raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face) and GRAV are")
+    kinds = {mesh.kinds[number] for number in elements.tolist()}
+    face = face_number(line, label, "P", kinds)
+    return [Prescribed("pressure", elements, (face,), value, amplitude, line.place)]
+
+
+def _on_surface(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    name, label = line.text(0), line.text(1).upper()
+    if name.upper() not in mesh.surfaces:
+        raise line.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
+    if label != "P":
+        raise line.error(f"load {label!r} is not supported; P (pressure) is")
+    surface = mesh.surfaces[name.upper()]
+    if surface.nodes is not None or any(face == 0 for _, face in surface.faces):
+        raise line.error(f"surface '{name}' must list faces of elements (S1, S2, ...) to carry a pressure")
+    if surface.empty:
+        raise line.unknown(f"surface '{name}' is empty")
+    value = line.number(2, "pressure")
+    return [Prescribed("pressure", ids, (face,), value, amplitude, line.place) for ids, face in surface.faces]
+
+
+def _temperature(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    nodes = mesh.existing(line, 0)
+    return [Prescribed("temperature", nodes, (0,), line.number(1, "temperature"), amplitude, line.place)]
+
+
+_LINES: Mapping[str, Callable[[Line, str, MeshCards], list[Prescribed]]] = {
+    "BOUNDARY": _boundary,
+    "CLOAD": _force,
+    "DLOAD": _distributed,
+    "DSLOAD": _on_surface,
+    "TEMPERATURE": _temperature,
+}
+
+
+def initial_temperature(cards: Iterable[Card], mesh: MeshCards, reasons: Reasons) -> dict[int, float]:
+    """Temperature of nodes before the first step."""
+    result: dict[int, float] = {}
+    for card in cards:
+        if card.key != "INITIALCONDITIONS":
+            continue
+        with reasons.gathered(defines=True):
+            kind = key(card.need("TYPE"))
+            if kind != "TEMPERATURE":
+                raise card.error(f"TYPE={kind} is not supported; only the temperature is read")
+            for line in card.lines:
+                value = line.number(1, "temperature")
+                result |= dict.fromkeys(mesh.node_sets.resolve(line, 0, "node").tolist(), value)
+    return result

@@ -1,0 +1,281 @@
+"""The cards abut knows: those it reads, those without effect on the result, those it must refuse and why."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+
+from abut.decks.cards.cards import Card, key
+from abut.decks.cards.elements import ELEMENTS, refusal
+from abut.decks.cards.reasons import DeckError, Reasons
+from abut.errors import InputError, nearest
+
+# Cards that are read, with the parameters that are read or change nothing in small-displacement statics.
+READ: dict[str, tuple[str, ...]] = {
+    "NODE": ("NSET", "INPUT"),
+    "ELEMENT": ("TYPE", "ELSET", "INPUT"),
+    "NSET": ("NSET", "ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL"),
+    "ELSET": ("ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL"),
+    "SURFACE": ("NAME", "TYPE", "INTERNAL"),
+    "MATERIAL": ("NAME",),
+    "ELASTIC": ("TYPE",),
+    "DENSITY": (),
+    "EXPANSION": ("TYPE", "ZERO"),
+    "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS"),
+    "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE"),
+    "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
+    "DLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
+    "DSLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
+    "TEMPERATURE": ("OP", "AMPLITUDE"),
+    "INITIAL CONDITIONS": ("TYPE",),
+    "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
+    "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR"),
+    "SURFACE INTERACTION": ("NAME",),
+    "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE"),
+    "CONTACT": (),
+    "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
+    "CONTACT PROPERTY ASSIGNMENT": (),
+    "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
+    "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY"),
+    "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
+    "PRE-TENSION SECTION": ("SURFACE", "NODE"),
+    "EQUATION": (),
+    "MPC": (),
+    "RIGID BODY": ("NSET", "ELSET", "REF NODE", "ROT NODE"),
+    "TRANSFORM": ("NSET", "TYPE"),
+    "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER"),
+    "STATIC": ("SOLVER", "DIRECT", "TIME RESET", "TOTAL TIME AT START"),
+    "END STEP": (),
+}
+
+# Output, solver settings, and data that act in other kinds of analysis only: without effect on this result.
+QUIET = (
+    "HEADING", "PREPRINT", "PRINT", "RESTART", "NODE PRINT", "NODE FILE", "NODE OUTPUT", "EL PRINT", "EL FILE",
+    "ELEMENT OUTPUT", "OUTPUT", "CONTACT PRINT", "CONTACT FILE", "CONTACT OUTPUT", "SECTION PRINT", "SECTION FILE",
+    "ENERGY PRINT", "ENERGY FILE", "ENERGY OUTPUT", "INTEGRATED OUTPUT", "FILE FORMAT", "FILE OUTPUT", "MONITOR",
+    "TIME POINTS", "CONTROLS", "CONTACT CONTROLS", "SOLVER CONTROLS", "SECTION CONTROLS", "ORIENTATION",
+    "CONDUCTIVITY", "SPECIFIC HEAT", "GAP CONDUCTANCE", "GAP HEAT GENERATION", "DAMPING", "CONTACT DAMPING",
+    "PHYSICAL CONSTANTS", "VALUES AT INFINITY", "SELECT CYCLIC SYMMETRY MODES", "NO ANALYSIS",
+)  # fmt: skip
+
+PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
+    "BUCKLE": "buckling",
+    "COMPLEX FREQUENCY": "complex eigenfrequencies",
+    "COUPLED TEMPERATURE-DISPLACEMENT": "heat transfer coupled with displacement",
+    "CRACK PROPAGATION": "crack propagation",
+    "DYNAMIC": "dynamics",
+    "ELECTROMAGNETICS": "electromagnetics",
+    "FEASIBLE DIRECTION": "optimisation",
+    "FREQUENCY": "eigenfrequencies",
+    "GREEN": "Green functions",
+    "HEAT TRANSFER": "heat transfer",
+    "MODAL DYNAMIC": "modal dynamics",
+    "SENSITIVITY": "sensitivities",
+    "STEADY STATE DYNAMICS": "steady-state dynamics",
+    "SUBSTRUCTURE GENERATE": "substructures",
+    "UNCOUPLED TEMPERATURE-DISPLACEMENT": "heat transfer coupled with displacement",
+    "VISCO": "creep and viscosity",
+}
+
+_MATERIAL = "; abut's solids are linear elastic"
+_FLAT = "; abut reads flat decks: have the preprocessor write one without parts and assemblies"
+_WRITE = "; have the preprocessor write out every node and element"
+REFUSED: dict[str, str] = {
+    "ASSEMBLY": f"assemblies are not read{_FLAT}",
+    "BEAM SECTION": "beams are not supported; model the part with solid elements",
+    "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
+    "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
+    "CHANGE FRICTION": "friction is not supported; contact is frictionless or tied",
+    "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
+    "CHANGE SURFACE BEHAVIOR": "contact that changes between steps is not supported; make a deck for each state",
+    "CHANGE SOLID SECTION": "materials that change between steps are not supported; make a deck for each state",
+    "COHESIVE BEHAVIOR": "cohesive contact is not supported",
+    "CONSTRAINT": "constraint functions belong to optimisation",
+    "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",
+    "COUPLING": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
+    "CREEP": f"creep is not supported{_MATERIAL}",
+    "CYCLIC HARDENING": f"plasticity is not supported{_MATERIAL}",
+    "DAMPING MODEL": "damping belongs to dynamics",
+    "DASHPOT": "dashpots are not supported; take them out",
+    "DEFORMATION PLASTICITY": f"plasticity is not supported{_MATERIAL}",
+    "DFLUX": "heat flux belongs to heat transfer, which abut does not solve",
+    "DISTRIBUTING COUPLING": "distributing couplings are not read; spread the force over a surface with *CLOAD",
+    "DISTRIBUTION": "distributions are not read; give numbers",
+    "ELGEN": f"generated elements are not read{_WRITE}",
+    "ELCOPY": f"generated elements are not read{_WRITE}",
+    "FILM": "heat films belong to heat transfer, which abut does not solve",
+    "FRICTION": "friction is not supported; contact is frictionless, or tied (PRESSURE-OVERCLOSURE=TIED)",
+    "GAP": "gap elements are not supported; use *CONTACT PAIR",
+    "HYPERELASTIC": f"rubber elasticity is not supported{_MATERIAL}",
+    "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
+    "INSTANCE": f"assemblies are not read{_FLAT}",
+    "KINEMATIC": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
+    "MASS": "point masses belong to dynamics",
+    "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
+    "MODAL DAMPING": "damping belongs to dynamics",
+    "MODEL CHANGE": "contact and elements that come or go between steps are not supported; make a deck for each state",
+    "MULTI-STAGE CYCLIC SYMMETRY": "multistage cyclic symmetry is not supported; model one sector",
+    "NCOPY": f"generated nodes are not read{_WRITE}",
+    "NFILL": f"generated nodes are not read{_WRITE}",
+    "NGEN": f"generated nodes are not read{_WRITE}",
+    "NODAL THICKNESS": "a thickness for each node is not supported; give the section one thickness",
+    "NORMAL": "normals given by hand are not read; abut takes them from the mesh",
+    "PART": f"parts are not read{_FLAT}",
+    "PLASTIC": f"plasticity is not supported{_MATERIAL}",
+    "RADIATE": "radiation belongs to heat transfer, which abut does not solve",
+    "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
+    "REFINE MESH": "refinement is not supported; refine the mesh in the preprocessor",
+    "SHELL SECTION": "shells are not supported; model the part with solid elements",
+    "SPRING": "springs are not supported; hold the node with *BOUNDARY or load it with *CLOAD",
+    "SUBMODEL": "submodels are not supported; give the displacements with *BOUNDARY",
+    "SYSTEM": f"nodes in a system of their own are not read{_WRITE}",
+    "USER MATERIAL": f"user materials are not supported{_MATERIAL}",
+    "VISCOELASTIC": f"viscosity is not supported{_MATERIAL}",
+} | {name: f"abut solves *STATIC steps only, not {words}" for name, words in PROCEDURES.items()}
+
+_PARAMETERS = {  # reasons for parameters that are refused
+    ("STEP", "NLGEOM"): "large displacements are not supported; abut's displacements are small",
+    ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
+    ("STATIC", "RIKS"): "arc-length steps are not supported",
+    ("STATIC", "STABILIZE"): "artificial damping is not supported; hold every body",
+    ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
+    ("TIE", "MULTISTAGE"): "multistage ties are not supported",
+    ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
+}
+GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
+    key(name) for name in ("ASSEMBLY", "ELCOPY", "ELGEN", "INSTANCE", "NCOPY", "NFILL", "NGEN", "PART", "SYSTEM")
+}
+NEEDED = {  # leaving these out would leave no deck
+    *GENERATED,
+    *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
+}
+
+_READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
+_QUIET = {key(name) for name in QUIET}
+_REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
+_PROCEDURES = {key(name) for name in PROCEDURES}
+STEP_PROCEDURES = _PROCEDURES | {"STATIC"}
+
+
+def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
+    """Whether the file that INPUT names is read: not for what is refused, whatever stands in it."""
+    supported = card != "ELEMENT" or key(parameters.get("TYPE") or "") in ELEMENTS
+    return supported and "INPUT" in _READ.get(card, ())
+
+
+@dataclass(frozen=True)
+class Sifted:
+    """cards: those to read; quiet: titles of those without effect; ignored: what was left out because the user said so;
+    plain: whether numbers of nodes and elements mean the same everywhere, and none are generated."""
+
+    cards: tuple[Card, ...]
+    quiet: tuple[str, ...]
+    ignored: tuple[str, ...]
+    plain: bool
+
+
+def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) -> Sifted:
+    """The cards to read. ``ignore`` names cards and parameters to leave out although they change the result; ``reasons``
+    gets the cards, parameters and element types that abut does not honour.
+
+    Raises InputError for names in ``ignore`` that are no card or must be read."""
+    asked = {key(name.lstrip("*")) for name in ignore}
+    left = _without_steps(tuple(cards), asked)
+    _check_asked(ignore, left)
+    static = any(card.key == "STATIC" for card in left if isinstance(card, Card))
+    kept: list[Card] = []
+    quiet: dict[str, None] = {}
+    ignored: dict[str, list[str]] = {}
+    found: dict[str, DeckError] = {}
+    changing = ""  # what belongs to a *CHANGE ... card: *CHANGE SURFACE BEHAVIOR is followed by *SURFACE BEHAVIOR
+    for card in left:
+        if isinstance(card, Card) and card.key.startswith("CHANGE"):
+            changing = card.key.removeprefix("CHANGE")
+        if isinstance(card, Card) and card.key == changing and f"CHANGE{changing}" in asked:
+            ignored.setdefault(card.title, []).append(str(card.place))
+            changing = ""
+        elif isinstance(card, _Step):
+            ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
+        elif card.key in _QUIET:
+            quiet[card.title] = None
+        elif card.key in _READ:
+            _parameters(card, asked, ignored, found)
+            code = key(card.get("TYPE") or "")
+            if card.key == "ELEMENT" and code and code not in ELEMENTS:
+                found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
+                continue
+            own = {name: value for name, value in card.parameters.items() if name in _READ[card.key]}
+            kept.append(Card(card.key, card.title, own, card.lines, card.place))
+        elif card.key in asked:
+            ignored.setdefault(card.title, []).append(str(card.place))
+        else:
+            _, reason = _REFUSED.get(card.key, ("", "abut does not know this card; take it out if it is not needed"))
+            pointless = card.key in NEEDED or (card.key in _PROCEDURES and not static)
+            found.setdefault(card.key, card.refusal(reason, "" if pointless else card.title[1:]))
+    for what, error in found.items():
+        reasons.add(error, defines=what.startswith("ELEMENT "))
+    told = tuple(f"{what} ({_places(at)})" for what, at in ignored.items())
+    return Sifted(tuple(kept), tuple(quiet), told, not GENERATED & found.keys())
+
+
+def _places(places: list[str]) -> str:
+    return places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else "")
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step that is left out, for its procedure."""
+
+    procedure: Card
+
+
+def _without_steps(cards: tuple[Card, ...], asked: set[str]) -> tuple[Card | _Step, ...]:
+    """Cards without the steps whose procedure the user leaves out; a ``_Step`` stands where one was."""
+    result: list[Card | _Step] = []
+    step: list[Card] | None = None
+    for card in cards:
+        if card.key == "STEP" and step is None:
+            step = []
+        if step is None:
+            result.append(card)
+            continue
+        step.append(card)
+        if card.key == "ENDSTEP":
+            result += _step(step, asked)
+            step = None
+    return (*result, *_step(step or [], asked))
+
+
+def _step(step: list[Card], asked: set[str]) -> list[Card | _Step]:
+    for card in step:
+        if card.key in _PROCEDURES:  # refused alone: what else the step holds goes with it
+            return [_Step(card) if card.key in asked else card]
+    return list(step)
+
+
+def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], found: dict[str, DeckError]) -> None:
+    """Sort out the parameters that are not read."""
+    for name, value in card.parameters.items():
+        if name in _READ[card.key] or (name == "NLGEOM" and value is not None and key(value) == "NO"):
+            continue
+        if name in asked:
+            ignored.setdefault(f"{name} of {card.title}", []).append(str(card.place))
+        else:
+            reason = _PARAMETERS.get((_name(card), name), "abut does not know this parameter")
+            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", name))
+
+
+def _name(card: Card) -> str:
+    return next(name for name in READ if key(name) == card.key)
+
+
+def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> None:
+    present = {card.key for card in cards if isinstance(card, Card)}
+    parameters = {name for card in cards if isinstance(card, Card) for name in card.parameters}
+    parameters |= {parameter for _, parameter in _PARAMETERS}
+    for name in ignore:
+        own = key(name.lstrip("*"))
+        if own in _READ and own not in parameters:
+            raise InputError(f"--ignore {name}: abut reads *{name.upper()}, which cannot be left out")
+        if own not in _REFUSED.keys() | present | parameters | _QUIET:
+            raise InputError(f"--ignore {name}: no such card{nearest(name.upper(), [*REFUSED, 'NLGEOM'])}")

@@ -1,0 +1,181 @@
+"""What is prescribed over the steps: for every node or face, its course on one time axis from 0 to 1."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Mapping
+
+from abut.decks.cards.reasons import DeckError
+from abut.decks.cards.record import Deck, Prescribed, Step
+
+Course = tuple[tuple[float, float], ...]  # (time, value), linear between, constant outside
+Key = tuple[float, ...]
+
+RAMP = 1e-9  # of a step: the time a value takes to jump where an amplitude begins elsewhere than the step before ended
+
+
+def ends(deck: Deck) -> tuple[float, ...]:
+    """Times at which the steps end, the last of them 1."""
+    total = sum(step.period for step in deck.steps)
+    times, time = [], 0.0
+    for step in deck.steps:
+        time += step.period
+        times.append(time / total)
+    return (*times[:-1], 1.0) if times else ()
+
+
+def times(deck: Deck) -> tuple[float, ...]:
+    """Ends of the steps, and the corners of the amplitudes that act in them."""
+    total = sum(step.period for step in deck.steps)
+    result, start = set(ends(deck)), 0.0
+    for step in deck.steps:
+        for name in {value.amplitude for value in step.values} - {""}:
+            own = deck.amplitudes[name]
+            shift = 0.0 if own.total else start
+            inside = (shift + t for t, _ in own.points)
+            result |= {t / total for t in inside if start + RAMP * total < t < start + step.period - RAMP * total}
+        start += step.period
+    return tuple(sorted(result))
+
+
+def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0) -> dict[Key, Course]:
+    """Courses of one kind ("boundary", "force", "pressure", "gravity", "temperature") by (number, direction), gravity by
+    (number, x, y, z). ``base``: the value before the first step.
+
+    Values given twice in a step add up where they are loads; the later one holds for supports and temperatures. Raises
+    InputError for supports that begin or end between steps."""
+    state: dict[Key, list[tuple[float, float]]] = {}
+    places: dict[Key, Prescribed] = {}
+    if kind == "boundary" and deck.steps:
+        for value in deck.fixed:
+            for own in _keys(value):
+                state[own], places[own] = [(0.0, 0.0), (deck.steps[0].period, value.value)], value
+    start = 0.0
+    for step in deck.steps:
+        given = _given(step, kind)
+        end = start + step.period
+        for own, (value, size) in given.items():
+            before = [p for p in state.get(own, []) if p[0] <= start] or [(start, base(own))]
+            if kind == "boundary" and own not in state and step is not deck.steps[0]:
+                raise _error(value, f"node {int(own[0])} is free in the step before and held in step {step.number}")
+            state[own] = [*before, *_within(deck, value, size, before[-1][1], start, end)]
+            places[own] = value
+        if _group(kind) in step.new:
+            for own in state.keys() - given.keys():
+                if kind == "boundary":
+                    raise _error(places[own], f"OP=NEW of step {step.number} lets node {int(own[0])} go again")
+                state[own] = [*state[own], (start, state[own][-1][1]), (end, base(own))]
+        start = end
+    total = start or 1.0
+    return {own: _tidy([(t / total, v) for t, v in points]) for own, points in state.items()}
+
+
+def _error(value: Prescribed, what: str) -> DeckError:
+    return DeckError(
+        value.place,
+        f"*BOUNDARY: {what}; supports that come or go between steps are not supported: make a deck for each state",
+    )
+
+
+def _group(kind: str) -> str:
+    return "pressure" if kind == "gravity" else kind
+
+
+def _keys(value: Prescribed) -> Iterable[Key]:
+    if value.kind == "gravity":
+        return [(number, *value.vector) for number in value.numbers.tolist()]
+    return [(number, direction) for number in value.numbers.tolist() for direction in value.directions]
+
+
+def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
+    """The values of one step by key, with sums of loads."""
+    result: dict[Key, tuple[Prescribed, float]] = {}
+    for value in step.values:
+        if value.kind != kind:
+            continue
+        for own in _keys(value):
+            before = result.get(own)
+            if before is None or kind in ("boundary", "temperature"):
+                result[own] = (value, value.value)
+                continue
+            if before[0].amplitude != value.amplitude:
+                raise DeckError(
+                    value.place,
+                    f"{int(own[0])} has a load with another amplitude in the same place ({before[0].place}); "
+                    "give both one amplitude, or add them up in one",
+                )
+            result[own] = (value, before[1] + value.value)
+    return result
+
+
+def _within(
+    deck: Deck, value: Prescribed, size: float, before: float, start: float, end: float
+) -> list[tuple[float, float]]:
+    """Points of a course within a step, with the one at its beginning."""
+    if not value.amplitude:
+        return [(start, before), (end, size)]
+    own = deck.amplitudes[value.amplitude]
+    shift = 0.0 if own.total else start
+    inside = [t + shift for t, _ in own.points if start < t + shift < end]
+    first = size * at(own.points, start - shift)
+    jump = [] if first == before else [(start + RAMP * (end - start), first)]
+    return [(start, before), *jump, *((t, size * at(own.points, t - shift)) for t in (*inside, end))]
+
+
+def at(points: tuple[tuple[float, float], ...], time: float) -> float:
+    """Value of a course at a time."""
+    i = bisect_right([t for t, _ in points], time)
+    if i == 0:
+        return points[0][1]
+    if i == len(points):
+        return points[-1][1]
+    (t0, v0), (t1, v1) = points[i - 1], points[i]
+    return v0 + (v1 - v0) * (time - t0) / (t1 - t0)
+
+
+def _tidy(points: list[tuple[float, float]]) -> Course:
+    """Without repeated times and points on the line between their neighbours."""
+    result: list[tuple[float, float]] = []
+    for point in points:
+        if result and point[0] <= result[-1][0]:
+            result[-1] = (result[-1][0], point[1])
+            continue
+        while len(result) > 1 and _straight(result[-2], result[-1], point):
+            result.pop()
+        result.append(point)
+    if all(value == result[0][1] for _, value in result):
+        return ((0.0, result[0][1]),)
+    return tuple(result)
+
+
+def _straight(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+    line = a[1] + (c[1] - a[1]) * (b[0] - a[0]) / (c[0] - a[0])
+    return abs(line - b[1]) <= 1e-13 * max(abs(a[1]), abs(b[1]), abs(c[1]))
+
+
+def combine(parts: Iterable[tuple[float, Course]]) -> Course:
+    """Sum of courses with their coefficients."""
+    parts = [(c, course) for c, course in parts if c != 0.0]
+    grid = sorted({t for _, course in parts for t, _ in course} or {0.0})
+    return _tidy([(t, sum(c * at(course, t) for c, course in parts)) for t in grid])
+
+
+def zero(course: Course) -> bool:
+    return all(value == 0.0 for _, value in course)
+
+
+def scaled(course: Course) -> tuple[float, Course | None]:
+    """The largest value, with sign, and the course over it: None for a plain ramp from 0 at time 0 to 1 at time 1."""
+    size = max((value for _, value in course), key=abs)
+    if size == 0.0:
+        return 0.0, None
+    unit = tuple((t, value / size) for t, value in course)
+    return size, None if unit == ((0.0, 0.0), (1.0, 1.0)) else unit
+
+
+def grouped(own: Mapping[Key, Course]) -> dict[tuple[float, Course], list[int]]:
+    """Numbers with the same direction and course together."""
+    result: dict[tuple[float, Course], list[int]] = {}
+    for (number, direction), course in own.items():
+        result.setdefault((direction, course), []).append(int(number))
+    return result

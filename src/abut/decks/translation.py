@@ -1,0 +1,358 @@
+"""From an Abaqus or CalculiX deck to a model."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from abut.bodies.loads import stress_load
+from abut.contact.sides import bodies_of, find_sides
+from abut.decks.cards import read_deck
+from abut.decks.cards.adjust import distance
+from abut.decks.cards.elements import FACES
+from abut.decks.cards.groups import Groups, Piece, pieces
+from abut.decks.cards.nodal_constraints import Bonds, bonds
+from abut.decks.cards.pretension import cut
+from abut.decks.cards.reasons import DeckError, Reasons
+from abut.decks.cards.record import Deck, GeneralContact, Numbers, Pair
+from abut.decks.cards.time_histories import Course, combine, courses, scaled, times, zero
+from abut.decks.rigid import join, rigid_bodies
+from abut.detection import add_surfaces, find_contacts
+from abut.errors import InputError
+from abut.materials.elastic import LinearElastic
+from abut.mesh.check import check_mesh
+from abut.mesh.mesh import Mesh
+from abut.mesh.read import build
+from abut.model import (
+    Amplitude,
+    Contact,
+    Equation,
+    Gravity,
+    Load,
+    Model,
+    NodalForce,
+    Pressure,
+    Rigid,
+    Solid,
+    SolveOptions,
+    Support,
+    Temperature,
+    Term,
+)
+
+AXES = "xyz"
+SAME_WAY = 0.9  # cosine between mean normals of two surfaces that cannot touch
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A model, what was put in place of something else (notes), and what was left out because the user said so."""
+
+    model: Model
+    notes: tuple[str, ...]
+    ignored: tuple[str, ...]
+
+
+def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
+    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result.
+
+    Raises InputError with card, file, line and cure for what abut does not do."""
+    deck = read_deck(path, ignore)
+    try:
+        return translate(deck)
+    except DeckError:
+        raise
+    except InputError as error:
+        if str(error).startswith(str(path)):
+            raise
+        raise InputError(f"{path}: {error}") from None
+
+
+def translate(deck: Deck) -> Translation:
+    """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
+    if not deck.steps:
+        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
+    if not deck.blocks:
+        raise InputError("the deck has no *ELEMENT cards")
+    reasons = Reasons()
+    plane = _plane(deck)
+    deck = cut(deck)
+    notes = list(deck.notes)
+    notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    groups = Groups(deck)
+    every, stiff = join(deck, pieces(deck))
+    parts = {groups.body(piece.name, piece.elements): piece for piece in every}
+    moving = [name for own in stiff for name, piece in parts.items() if piece is own]
+    hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])
+    contacts: list[Contact] = []
+    for pair in deck.pairs:
+        with reasons.gathered():
+            contacts.append(_contact(deck, groups, pair, hard, notes))
+    solids: list[Solid] = []
+    for name, piece in parts.items():
+        with reasons.gathered():
+            if name not in moving:
+                solids.append(_solid(name, piece))
+    rigid: list[Rigid] = []
+    with reasons.gathered():
+        rigid = rigid_bodies(deck, moving, plane)
+    notes += _idle(deck, groups)
+    thickness = 1.0
+    with reasons.gathered():
+        thickness = _thickness(deck, plane, notes)
+    supports: list[Support] = []
+    equations: list[Equation] = []
+    loads: list[Load] = []
+    with reasons.gathered():
+        bound = bonds(deck, groups, plane)
+        supports = _supports(bound, groups)
+        equations = _equations(bound, groups)
+        loads += _forces(bound, groups, plane, thickness)
+    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
+        with reasons.gathered():
+            loads += others
+    reasons.tell()
+    if deck.quiet:
+        notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
+    mesh = build(groups.raw(), deck.path)
+    notes += mesh.notes
+    check_mesh(mesh)
+    for contact, pair in zip(contacts, deck.pairs):
+        with reasons.gathered():
+            _check_sides(mesh, contact, pair)
+    reasons.tell()
+    if deck.general is not None:
+        mesh, found = _general(deck.general, mesh, solids, contacts, notes)
+        contacts += found
+    model = Model(
+        mesh,
+        solids=solids,
+        supports=supports,
+        loads=loads,
+        contacts=contacts,
+        equations=equations,
+        rigid=rigid,
+        plane=plane,
+        solve=_options(deck),
+    )
+    return Translation(model, tuple(notes), deck.ignored)
+
+
+def _idle(deck: Deck, groups: Groups) -> list[str]:
+    """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
+    made = set(groups.used.tolist())
+    made |= {n for e in deck.equations for n, _, _ in e.terms}
+    made |= {n for r in deck.rigid for n in (r.reference, r.turning)}
+    given = set(deck.nodes.tolist())
+    notes: dict[str, None] = {}
+    for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):
+        if value.kind == "boundary" and made.isdisjoint(value.numbers.tolist()):
+            node = int(value.numbers[0])
+            what = "belongs to no element and no equation" if node in given else "does not exist"
+            notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
+    return list(notes)
+
+
+def _plane(deck: Deck) -> str | None:
+    planes = {block.type.plane: block for block in deck.blocks}
+    if len(planes) > 1:
+        codes = " and ".join(sorted(block.code for block in planes.values()))
+        raise DeckError(
+            list(planes.values())[1].place,
+            f"*ELEMENT: elements {codes} in one deck: abut solves 3D, plane strain, "
+            "plane stress or axisymmetry, not two of them together; use one of the types",
+        )
+    return next(iter(planes))
+
+
+def _solid(name: str, piece: Piece) -> Solid:
+    material = piece.section.material
+    try:
+        elastic = LinearElastic(material.young, material.poisson, material.density, material.expansion)
+    except InputError as error:
+        raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
+    return Solid(name, elastic, integration=piece.integration)
+
+
+def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
+    """By which forces are divided: a plane model of abut is one unit thick."""
+    if plane not in ("strain", "stress"):
+        return 1.0
+    values = {section.thickness: section for section in deck.sections}
+    if len(values) > 1:
+        place = next(reversed(values.values())).place
+        raise DeckError(place, "*SOLID SECTION: sections of different thickness are not supported; give all the same")
+    value = next(iter(values))
+    if value != 1.0:
+        notes.append(f"forces in the results are those of unit thickness: times {value:g} gives the deck's")
+    return value
+
+
+def _history(course: Course) -> tuple[float, Amplitude | None]:
+    size, unit = scaled(course)
+    return size, None if unit is None else Amplitude(unit)
+
+
+def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
+    """The slave is the contactor, which must deform: elements in ``hard`` are rigid."""
+    slave, master = groups.surface(pair.slave), groups.surface(pair.master)
+    for name, own in ((slave, pair.slave), (master, pair.master)):
+        if deck.surfaces[own].nodes is not None:
+            notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{own}' make up")
+    if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
+        slave, master = master, slave
+        notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
+    if pair.tied:
+        return Contact(slave, master, name=pair.name, kind="tied")
+    adjust = pair.adjust
+    if isinstance(adjust, np.ndarray):
+        adjust = distance(deck, groups, pair, adjust)
+        notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
+    if pair.clearance is not None:
+        adjust = float(np.ptp(deck.points, axis=0).max())
+    return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=pair.clearance or 0.0)
+
+
+def _general(
+    general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
+) -> tuple[Mesh, list[Contact]]:
+    """Pairs of bodies that face each other and that no *CONTACT PAIR or *TIE names; the mesh with their surfaces."""
+    named = [{body for side in (c.contactor, c.target) for body in bodies_of(mesh, side)} for c in contacts]
+    found = [f for f in find_contacts(mesh, solids) if set(f.bodies) not in named]
+    if not found and not contacts:
+        raise DeckError(
+            general.place,
+            "*CONTACT INCLUSIONS: no two bodies face each other within half a facet; name their surfaces "
+            "in *CONTACT PAIR",
+        )
+    notes += [f"general contact: {f.note}" for f in found]
+    return add_surfaces(mesh, found), [f.contact(kind="tied" if general.tied else "contact") for f in found]
+
+
+def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
+    """Raise InputError for surfaces that look the same way, which happens where meshes overlap."""
+    push = [stress_load(own, np.eye(mesh.dim)) for own in find_sides(mesh, contact.contactor, contact.target)]
+    a, b = (own.reshape(-1, mesh.dim).sum(axis=0) for own in push)  # area times outward normal
+    if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
+        card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
+        raise DeckError(
+            pair.place,
+            f"{card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            "needs surfaces that face each other: choose other faces, or join the meshes",
+        )
+
+
+def _supports(bound: Bonds, groups: Groups) -> list[Support]:
+    """Nodes held alike together; components with the same course over time in one support."""
+    by_node: dict[int, dict[int, Course]] = {}
+    for (node, axis), course in bound.supports.items():
+        by_node.setdefault(node, {})[axis] = course
+    alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
+    for node, own in by_node.items():
+        alike.setdefault(tuple(sorted(own.items())), []).append(node)
+    result: list[Support] = []
+    for key, nodes in alike.items():
+        on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
+        still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
+        moving: dict[Course | None, dict[str, float]] = {}
+        for axis, course in key:
+            if not zero(course):
+                size, unit = scaled(course)
+                moving.setdefault(unit, {})[AXES[axis]] = size
+        for unit, values in (moving or {None: {}}).items():
+            amplitude = None if unit is None else Amplitude(unit)
+            result.append(Support(on, **(values | still), amplitude=amplitude))
+            still = {}
+    return result
+
+
+def _equations(bound: Bonds, groups: Groups) -> list[Equation]:
+    return [
+        Equation(
+            tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
+            *_history(bond.course),
+        )
+        for bond in bound.bonds
+    ]
+
+
+def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -> list[Load]:
+    by_node: dict[tuple[int, Course | None], dict[int, float]] = {}
+    for (node, axis), course in bound.forces.items():
+        if not zero(course):
+            size, unit = scaled(course)
+            by_node.setdefault((node, unit), {})[axis] = size / thickness
+    alike: dict[tuple[Course | None, tuple[float, ...]], list[int]] = {}
+    for (node, unit), own in by_node.items():
+        vector = tuple(own.get(axis, 0.0) for axis in range(2 if plane else 3))
+        alike.setdefault((unit, vector), []).append(node)
+    return [
+        NodalForce(groups.node_set(np.array(nodes), f"force-{i}"), vector, None if unit is None else Amplitude(unit))
+        for i, ((unit, vector), nodes) in enumerate(alike.items(), start=1)
+    ]
+
+
+def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:
+    alike: dict[Course, list[tuple[int, int]]] = {}
+    kinds = {int(e): block.type.kind for block in deck.blocks for e in block.ids}
+    for (element, face), course in courses(deck, "pressure").items():
+        if not zero(course):
+            number = int(element)
+            alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
+    for i, (course, rows) in enumerate(alike.items(), start=1):
+        yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
+
+
+def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> Iterator[Load]:
+    alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
+    for key, course in courses(deck, "gravity").items():
+        if not zero(course):
+            alike.setdefault((key[1:], course), []).append(int(key[0]))
+    for (vector, course), elements in alike.items():
+        place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
+        size, amplitude = _history(course)
+        for name, piece in parts.items():
+            inside = np.isin(piece.elements, elements)
+            if not inside.any():
+                continue
+            if not inside.all():
+                raise DeckError(place, f"*DLOAD: gravity on a part of body '{name}' only; give it to all of the body")
+            if piece.section.material.density == 0.0:
+                raise DeckError(place, f"*DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'")
+            value = tuple(size * x for x in vector[: 2 if plane else 3])
+            yield Gravity(value, name, amplitude)
+
+
+def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:
+    """Changes from the initial temperature."""
+    for step in deck.steps:
+        for value in step.values:
+            if value.kind == "temperature":
+                for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
+                    raise DeckError(
+                        value.place,
+                        f"*TEMPERATURE: node {node} has no temperature to begin with; add "
+                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+                    )
+    alike: dict[Course, list[int]] = {}
+    for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():
+        change = combine([(1.0, course), (-deck.initial[int(node)], ((0.0, 1.0),))])
+        if not zero(change):
+            alike.setdefault(change, []).append(int(node))
+    count = 0
+    for change, nodes in alike.items():
+        own = np.intersect1d(np.array(nodes, np.int64), groups.used)
+        if len(own):
+            count += 1
+            yield Temperature(groups.node_set(own, f"temperature-{count}"), *_history(change))
+
+
+def _options(deck: Deck) -> SolveOptions:
+    """Load steps at the ends of the deck's steps and the corners of its amplitudes."""
+    own = times(deck)
+    if np.allclose(own, np.arange(1, len(own) + 1) / len(own), rtol=0.0, atol=1e-12):
+        return SolveOptions(steps=len(own))
+    return SolveOptions(times=own)

@@ -1,0 +1,185 @@
+"""find_contacts: pairs of surfaces of different bodies that face each other, contactor and target chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from abut import checks
+from abut.detection.facing import Facing, Outside, facing, outside, seen_by
+from abut.errors import InputError, nearest
+from abut.mesh.mesh import Mesh
+from abut.model import Contact, Solid
+
+AUTO = "auto:"  # what the names of found surfaces begin with
+ALIKE = 1.1  # ratio of Young's moduli up to which neither body is the softer one
+MUCH_FINER = 3.0  # ratio of facet sizes from which on a finer contactor would show the target's kinks
+FLAT = np.cos(np.deg2rad(1.0))  # facets all within that of one plane have no kinks to show
+BARE = 0.55  # share of the contactor's facets that lies opposite: with less a pressure stands on facets that are mostly bare
+BARER = 0.1  # difference of such shares that is worth a choice
+BEND = np.cos(np.deg2rad(45.0))  # facets beyond a sharper edge are not added around those that face something
+
+
+@dataclass(frozen=True)
+class FoundContact:
+    """Two surfaces that face each other.
+
+    contactor, target: names for the surfaces ("auto:lug-pin" belongs to body 'lug' and faces 'pin'); bodies: the
+    contactor's, the target's; contactor_facets, target_facets: rows (n, 2) = (cell, local facet); gap: the smallest and
+    the largest distance found, negative where they overlap; reason: why this side is the contactor.
+    """
+
+    contactor: str
+    target: str
+    bodies: tuple[str, str]
+    contactor_facets: NDArray[np.int64]
+    target_facets: NDArray[np.int64]
+    gap: tuple[float, float]
+    reason: str
+
+    def contact(self, **options: Any) -> Contact:
+        """The contact of a model; ``options`` as for ``abut.Contact``."""
+        name = options.pop("name", "") or f"{self.bodies[0]}-{self.bodies[1]}{_patch(self.contactor)}"
+        return Contact(self.contactor, self.target, name=name, **options)
+
+    @property
+    def note(self) -> str:
+        """What was found and chosen, in one line."""
+        return (
+            f"found: '{self.contactor}' ({len(self.contactor_facets)} facets, contactor: {self.reason}) faces "
+            f"'{self.target}' ({len(self.target_facets)} facets), gap {self.gap[0]:.3g} to {self.gap[1]:.3g}"
+        )
+
+
+@dataclass(frozen=True)
+class _Patch:
+    """Facets (numbers of an ``Outside``) of two bodies that face each other, each side connected."""
+
+    bodies: tuple[int, int]
+    facets: tuple[NDArray[np.int64], NDArray[np.int64]]
+    faces: Facing
+
+
+def find_contacts(
+    mesh: Mesh, solids: Sequence[Solid] = (), *, reach: float | None = None, bodies: Sequence[str] | None = None
+) -> tuple[FoundContact, ...]:
+    """Surfaces on the outside of different bodies that face each other: one pair for two bodies and each connected patch.
+
+    solids: the softer body becomes the contactor, and one without a material counts as rigid; among equals, or where there
+    are no solids, the finer mesh does, unless it is more than three times finer than a curved target. reach: the largest
+    gap, length (default: half the sum of two facets' sizes; overlaps count up to half of that). bodies: look at these only.
+    Each patch is widened by the facets around it, so that contact may move, and the target by what the contactor sees. A
+    facet may belong to several pairs.
+    Raises InputError for a reach that is not positive and for unknown bodies.
+    """
+    if reach is not None:
+        checks.positive(reach, "reach")
+    for name in bodies or ():
+        if name not in mesh.bodies:
+            raise InputError(f"bodies: no body named {name!r} in the mesh{nearest(name, mesh.bodies)}")
+    names = [name for name in mesh.bodies if bodies is None or name in bodies]
+    every = outside(mesh, names)
+    patches = _patches(every, facing(every, reach))
+    young = {name: np.inf for name in names if solids} | {solid.body: solid.material.young for solid in solids}
+    sides = [_choose(every, patch, young) for patch in patches]
+    count: dict[tuple[int, int], int] = {}
+    result = []
+    for patch, (side, reason) in zip(patches, sides):
+        count[patch.bodies] = count.get(patch.bodies, 0) + 1
+        number = f":{count[patch.bodies]}" if count[patch.bodies] > 1 else ""
+        a, b = (every.names[i] for i in patch.bodies)
+        surface = f"{AUTO}{a}-{b}{number}", f"{AUTO}{b}-{a}{number}"
+        grown = [_widened(every, own) for own in patch.facets]
+        grown[1 - side] = np.union1d(grown[1 - side], seen_by(every, grown[side], grown[1 - side]))
+        result.append(
+            FoundContact(
+                contactor=surface[side], target=surface[1 - side], bodies=(a, b) if side == 0 else (b, a),
+                contactor_facets=every.rows[grown[side]], target_facets=every.rows[grown[1 - side]],
+                gap=(float(patch.faces.gap.min()), float(patch.faces.gap.max())), reason=reason,
+            )
+        )  # fmt: skip
+    return tuple(result)
+
+
+def add_surfaces(mesh: Mesh, found: Sequence[FoundContact]) -> Mesh:
+    """The mesh with the surfaces of found contacts under their names. Raises InputError where it has such names."""
+    surfaces = dict(mesh.surfaces)
+    for contact in found:
+        for name, rows in ((contact.contactor, contact.contactor_facets), (contact.target, contact.target_facets)):
+            if name in surfaces:
+                raise InputError(
+                    f"mesh: a surface named '{name}' is there already, so that contact between bodies "
+                    f"{contact.bodies[0]!r} and {contact.bodies[1]!r} cannot be named; rename the surface or a body"
+                )
+            surfaces[name] = rows
+    return replace(mesh, surfaces=surfaces)
+
+
+def _patch(name: str) -> str:
+    """ ":2" of the second patch between two bodies."""
+    number = name.rsplit(":", 1)[-1]
+    return f":{number}" if number.isdigit() and name.count(":") > 1 else ""
+
+
+def _patches(every: Outside, found: Facing) -> list[_Patch]:
+    """Facets connected by common nodes or by facing each other, for two bodies each."""
+    result = []
+    n = len(every.names)
+    code = every.body[found.one] * n + every.body[found.other]
+    for number in np.unique(code):
+        own = found.where(code == number)
+        facets = np.unique(np.concatenate([own.one, own.other]))
+        one, other = np.searchsorted(facets, own.one), np.searchsorted(facets, own.other)
+        nodes = every.surface.nodes[facets]
+        facet, local = np.nonzero(nodes >= 0)
+        touch = sp.csr_matrix((np.ones(len(facet)), (facet, nodes[facet, local])))
+        links = touch @ touch.T + sp.csr_matrix((np.ones(len(one)), (one, other)), shape=(len(facets),) * 2)
+        _, label = connected_components(links, directed=False)
+        for piece in np.unique(label):  # in the order of their first facets
+            inside = own.where(label[one] == piece)
+            sides = np.unique(inside.one), np.unique(inside.other)
+            result.append(_Patch((int(number // n), int(number % n)), sides, inside))
+    return result
+
+
+def _choose(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int, str]:
+    """Which side is the contactor, and why: the softer one, or the one that lies opposite with most of its facets, or the
+    finer one."""
+    a, b = (every.names[i] for i in patch.bodies)
+    share = [min(patch.faces.area.sum() / every.area[facets].sum(), 1.0) for facets in patch.facets]
+    soft = int(young[b] < young[a]) if a in young and b in young else 0
+    unlike = a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b])
+    if unlike and (share[soft] > BARE or young[(a, b)[1 - soft]] == np.inf):
+        return soft, "softer"
+    fuller = int(share[1] > share[0])
+    if share[fuller] > share[1 - fuller] + BARER and share[1 - fuller] < BARE:
+        return fuller, "the facets of the other side reach far beyond this one"
+    sizes = [float(np.median(every.size[facets])) for facets in patch.facets]
+    finer = int(sizes[1] < sizes[0] * (1.0 - 1e-9))
+    if max(sizes) > MUCH_FINER * min(sizes) and not _flat(every, patch.facets[1 - finer]):
+        return 1 - finer, "the other side is much finer and would show the kinks of this one"
+    return finer, "finer" if abs(sizes[0] - sizes[1]) > 1e-9 * max(sizes) else "first of two alike"
+
+
+def _flat(every: Outside, facets: NDArray[np.int64]) -> bool:
+    normals = every.normal[facets]
+    return bool((normals @ normals[0]).min() > FLAT)
+
+
+def _widened(every: Outside, core: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The facets with those around them on the same body that no sharp edge parts off."""
+    nodes = every.surface.nodes
+    normal = np.zeros_like(every.surface.points)
+    facet, local = np.nonzero(nodes[core] >= 0)
+    np.add.at(normal, nodes[core[facet], local], every.normal[core[facet]])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    free = np.flatnonzero(every.body == every.body[core[0]])
+    facet, local = np.nonzero(nodes[free] >= 0)
+    along = np.einsum("ij,ij->i", normal[nodes[free[facet], local]], every.normal[free[facet]])
+    return np.union1d(core, free[facet[along > BEND]])

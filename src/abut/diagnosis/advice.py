@@ -1,0 +1,131 @@
+"""What is most likely to help where a step did not converge, or where surfaces overlap."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.contact.coupling import surface_degree
+from abut.contact.geometry import facet_sizes
+from abut.contact.sides import code
+from abut.errors import InputError
+from abut.model import LAWS, METHODS, Contact, SolveOptions
+from abut.solution import Solution, Step
+
+COUNT = 3
+FINER = 0.8  # facet size of one side over the other's that tells them apart
+MORE = 4  # times the iterations, and as many as are allowed without asking at least
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """What to do, and why that should help here."""
+
+    action: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.action}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Facets of a contactor whose contact does not settle: facets (n,) their numbers within the surface; nodes (m,) point
+    numbers of the mesh; coordinates (m, dim)."""
+
+    contact: str
+    facets: NDArray[np.int64]
+    nodes: NDArray[np.int64]
+    coordinates: NDArray[np.float64]
+
+    def __str__(self) -> str:
+        facets = ", ".join(map(str, self.facets[:8].tolist())) + (", ..." if len(self.facets) > 8 else "")
+        low, high = self.coordinates.min(axis=0), self.coordinates.max(axis=0)
+        box = " to ".join("(" + ", ".join(f"{v:.4g}" for v in corner) + ")" for corner in (low, high))
+        return f"contact '{self.contact}': facets [{facets}] do not settle, {len(self.facets)} in all, within {box}"
+
+
+def unsettled(step: Step) -> list[Place]:
+    """Where the contact of a step does not settle, contact by contact."""
+    surfaces = {c.name: c.contactor for c in step.contacts}
+    places = []
+    for name, facets in step.cycling.items():
+        nodes = surfaces[name].nodes[facets]
+        own = np.unique(nodes[nodes >= 0]).astype(np.int64)
+        places.append(Place(name, facets, own, surfaces[name].points[own]))
+    return places
+
+
+def remedies(solution: Solution) -> tuple[Remedy, ...]:
+    """At most three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces
+    that overlap; else none. There are no others than those that have been seen to help: the search for the contact ends
+    whatever the mesh, the load steps and the choice of the sides are."""
+    found = _by_overlap(solution) if solution.converged else (*_by_law(solution), *_by_limit(solution))
+    return tuple(found)[:COUNT]
+
+
+def swap(solution: Solution, contact: Contact) -> str:
+    """To swap the sides of a contact, in words; empty where the model would be refused, as with a rigid contactor."""
+    model = solution.model
+    other = replace(contact, contactor=contact.target, target=contact.contactor)
+    try:
+        replace(model, contacts=[other if own is contact else own for own in model.contacts])
+    except InputError:
+        return ""
+    return f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})"
+
+
+def _by_overlap(solution: Solution) -> Iterator[Remedy]:
+    """Contact narrower than the pressure functions it is averaged over: theory (L10)."""
+    failed = {check.contact for check in solution.certificate if check.name == "overlap" and not check.passed}
+    results = {c.name: c for c in solution.contacts}
+    for contact in solution.model.contacts:
+        if contact.name not in failed:
+            continue
+        where = f"contact '{contact.name}': "
+        result = results[contact.name]
+        if contact.pressure == "P1" and surface_degree(result.contactor) == 2:
+            yield Remedy(
+                f'{where}pressure = "auto"',
+                "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
+            )
+        coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
+        if coarse > 1.0 / FINER and (sides := swap(solution, contact)):
+            yield Remedy(
+                f"{where}{sides}",
+                f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
+            )
+        yield Remedy(
+            f"{where}refine both surfaces where they touch",
+            "contact is narrower than two facets, or chords of curved surfaces cut into each other; facets that stay open "
+            "may also be left out of the contactor",
+        )
+        if contact.law == LAWS[0] and contact.method == METHODS[0]:
+            yield Remedy(
+                f'{where}law = "constraint-function"',
+                "it looks at points and errs the other way (too stiff): the truth lies between",
+            )
+
+
+def _by_law(solution: Solution) -> Iterator[Remedy]:
+    """Of all contacts at once: what one of them does moves the others."""
+    smooth = [contact for contact in solution.model.contacts if contact.law == LAWS[1] and contact.kind != "tied"]
+    if smooth:
+        names = ", ".join(f"'{contact.name}'" for contact in smooth)
+        yield Remedy(
+            f'contact{"s" if len(smooth) > 1 else ""} {names}: law = "complementarity"',
+            f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
+            "active set needs no smoothing",
+        )
+
+
+def _by_limit(solution: Solution) -> Iterator[Remedy]:
+    limit, taken = solution.model.solve.max_iterations, len(solution.steps[-1].iterations)
+    if taken >= limit:
+        yield Remedy(
+            f"solve.max_iterations = {max(MORE * limit, SolveOptions().max_iterations)}",
+            f"the contact was still settling after the {limit} iterations that are allowed",
+        )

@@ -1,0 +1,110 @@
+"""What a run will take: solver, memory and time, before it is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+from abut.cells import CELLS
+from abut.diagnosis.effort import effort, seconds
+from abut.diagnosis.finding import Finding
+from abut.linear.choice import LARGE, chosen
+from abut.linear.direct import available_memory
+from abut.model import Model
+from abut.parallel.backend import LARGE as PETSC_LARGE
+from abut.problem.constraints import Supports
+from abut.problem.contact_pairs import Pair
+
+
+@dataclass(frozen=True)
+class Law:
+    """megabytes = base + memory n^power, for n free displacements."""
+
+    memory: float
+    power: float
+    base: float = 100.0
+
+
+LAWS = {  # by dimension, solver and degree of the cells: fitted to docs/performance.md (3D) and docs/check.md
+    (2, "direct", 1): Law(2.3e-3, 1.0),
+    (2, "direct", 2): Law(3.1e-3, 1.0),
+    (3, "direct", 1): Law(2.7e-4, 4 / 3),
+    (3, "direct", 2): Law(4.5e-4, 4 / 3),
+    (3, "amg", 1): Law(4.4e-3, 1.0, 60.0),
+    (3, "amg", 2): Law(1.0e-2, 1.0, 60.0),
+}
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """solver: "direct" or "amg"; stages: seconds of each on one core; megabytes."""
+
+    solver: str
+    stages: dict[str, float]
+    megabytes: float
+
+    @property
+    def seconds(self) -> float:
+        return sum(self.stages.values())
+
+
+def foresee(model: Model, held: Supports, pairs: Sequence[Pair]) -> Foreseen:
+    """What a run will need: seconds mostly within a factor of two, memory of two or three."""
+    n = int(held.free.shape[1])
+    petsc = model.solve.linear == "petsc"
+    sizes = PETSC_LARGE if petsc else LARGE
+    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, held.coupled, sizes)
+    degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
+    law = LAWS[model.dim, "direct" if model.dim == 2 else solver, degree]
+    return Foreseen(solver, seconds(effort(model, n, pairs), solver), law.base + law.memory * n**law.power)
+
+
+def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+    """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
+    n, petsc = int(held.free.shape[1]), model.solve.linear == "petsc"
+    foreseen = foresee(model, held, pairs)
+    solver, megabytes = foreseen.solver, foreseen.megabytes
+    multipliers = sum(map(len, pairs))
+    name, alone = (f"petsc ({solver})", "on one process ") if petsc else (solver, "")
+    findings = [
+        Finding(
+            "info",
+            "solve",
+            f"{n} free displacements, {multipliers} multipliers; linear solver {name}: about "
+            f"{_time(foreseen.seconds)} {alone}(to a factor of two) and {_memory(megabytes)}",
+        )
+    ]
+    if petsc and find_spec("petsc4py") is None:
+        findings.append(
+            Finding(
+                "warning",
+                "solve",
+                'linear = "petsc" needs petsc4py, which is not installed for this Python',
+                "install it (docs/mpi.md), or take the line out",
+            )
+        )
+    available = available_memory()
+    if available is not None and 1e6 * megabytes > available:
+        cure = 'choose linear = "amg"' if solver == "direct" and model.dim == 3 else "make the mesh coarser"
+        findings.append(
+            Finding(
+                "warning",
+                "solve",
+                f"about {_memory(megabytes)} needed, {_memory(1e-6 * available)} free",
+                f"{cure}, or take a larger machine",
+            )
+        )
+    return findings
+
+
+def _time(seconds: float) -> str:
+    if seconds < 1.0:
+        return "a second"
+    return (
+        f"{seconds:.2g} s" if seconds < 10.0 else f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60.0:.0f} min"
+    )
+
+
+def _memory(megabytes: float) -> str:
+    return f"{megabytes:.0f} MB" if megabytes < 1000.0 else f"{megabytes / 1000.0:.1f} GB"

@@ -1,0 +1,132 @@
+"""What to do about each line of the certificate that fails: one sentence each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from abut.contact.geometry import facet_sizes
+from abut.contact.sides import words
+from abut.diagnosis.advice import swap
+from abut.model import LAWS, METHODS, Contact
+from abut.solution import Check, ContactResult, Solution
+
+FINER = 0.8  # contactor's facet size over the target's below which it sees the target's kinks
+SECOND = " (second pass)"
+SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and hold every body by supports of its own"
+
+
+def cure(check: Check, solution: Solution) -> str:
+    """What to change so that a failed check passes, a sentence; empty for one that passed."""
+    if check.passed:
+        return ""
+    if not check.contact:
+        return MODEL[check.name]
+    name = check.contact.removesuffix(SECOND)
+    contact = next(c for c in solution.model.contacts if c.name == name)
+    result = next(c for c in solution.contacts if c.name == check.contact)
+    return OF_CONTACT[check.name](contact, result, swap(solution, contact))
+
+
+def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
+    """Every failed check with its cure."""
+    return tuple((check, cure(check, solution)) for check in solution.certificate if not check.passed)
+
+
+MODEL = {
+    "model balance": f'solve again with solve.linear = "direct"; if it stays, {SINGULAR_HINT}',
+    "regularisation": "add a support, or a symmetry plane (normal = 0), that holds the motion named in the notes",
+    "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
+    "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
+    "loads, gaps, names of contacts; `abut check` names gaps that stay open",
+}
+
+
+def _balance(contact: Contact, result: ContactResult, sides: str) -> str:
+    return 'leave `integration` and `method` out, and solve with solve.linear = "direct"'
+
+
+def _penetration(contact: Contact, result: ContactResult, sides: str) -> str:
+    if contact.law == LAWS[1]:
+        return f'law = "complementarity", an epsilon below {contact.epsilon:g}, or finer facets where they touch'
+    return "raise solve.max_iterations: contact has not closed; else refine where the surfaces touch"
+
+
+def _overlap(contact: Contact, result: ContactResult, sides: str) -> str:
+    finer = ", or take the finer side as contactor" if sides else ""
+    return f"refine both surfaces where they touch, until contact is two facets wide{finer}"
+
+
+def _faceting(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        "use cells of second order, finer facets round the curve, or as many facets on both sides: their chords differ by "
+        "too much for this load"
+    )
+
+
+def _tension(contact: Contact, result: ContactResult, sides: str) -> str:
+    if contact.pressure != "auto":
+        return f'pressure = "auto" in place of "{contact.pressure}"'
+    return "refine at the edge of contact, where the pressure ends within a facet"
+
+
+def _complementarity(contact: Contact, result: ContactResult, sides: str) -> str:
+    if contact.law == LAWS[1]:
+        return 'law = "complementarity", or raise solve.max_iterations: the law of contact is not met yet'
+    return "raise solve.max_iterations: the law of contact is not met yet"
+
+
+def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
+    if contact.method != METHODS[0]:
+        return f"leave method out: {contact.method} rings from node to node where meshes differ"
+    if contact.pressure != "auto":
+        return f'pressure = "auto": "{contact.pressure}" can alternate from facet to facet'
+    fine = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
+    if fine < FINER:
+        way = f"{sides}, or refine the target" if sides else "refine the target"
+        return f"{way}: the contactor's facets are {fine:.2g} of the target's in size"
+    return "refine both surfaces where they touch" + (", and take the softer body as contactor" if sides else "")
+
+
+def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f"refine {words(contact.contactor)} where it touches: contact needs three facets to each side of its middle"
+
+
+def _moments(contact: Contact, result: ContactResult, sides: str) -> str:
+    return "leave `integration` out; on curved facets refine, or let both sides have the same facets"
+
+
+def _bare(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f"{sides + ', or ' if sides else ''}end the facets of the contactor where the target ends"
+
+
+def _removed(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        "check that these two surfaces face each other, and name only the facets of the contactor that may touch, none that "
+        "supports hold"
+    )
+
+
+def _twice(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        "two contacts press the same facets: leave them out of one, or name both targets in one contact, of which the "
+        "nearest counts; one contact alone: make the mesh of its target sound, whose facets overlap"
+    )
+
+
+OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
+    "force balance": _balance,
+    "moment balance": _balance,
+    "penetration": _penetration,
+    "overlap": _overlap,
+    "faceting": _faceting,
+    "tension": _tension,
+    "complementarity": _complementarity,
+    "oscillation": _oscillation,
+    "resolution": _resolution,
+    "facet moments": _moments,
+    "bare area": _bare,
+    "removed multipliers": _removed,
+    "covered twice": _twice,
+}

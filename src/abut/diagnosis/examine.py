@@ -1,0 +1,59 @@
+"""check(model): everything that can be said of a model before it is solved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from abut.diagnosis.constraints import constraints
+from abut.diagnosis.contactor import sides
+from abut.diagnosis.cost import cost
+from abut.diagnosis.finding import Finding, Motion, Report, from_error, in_order
+from abut.diagnosis.interface import MIXED, interface, not_facing
+from abut.diagnosis.probes import probes
+from abut.diagnosis.quality import quality
+from abut.diagnosis.rigid_body_check import motions
+from abut.diagnosis.units import units
+from abut.errors import AbutError, InputError
+from abut.mesh.exterior import exterior
+from abut.model import Model
+from abut.problem.constraints import Supports, supports
+from abut.problem.contact_pairs import Pair, pair
+
+
+def check(model: Model) -> Report:
+    """Examine a model without solving it. What depends on something that is itself in error is left out."""
+    findings, doubts = [*quality(model.mesh), *probes(model)], units(model)
+    shown: list[Motion] = []
+    try:
+        held = supports(model)
+    except AbutError as error:
+        findings.append(from_error(error, "supports"))
+        return Report(in_order([*findings, *doubts]))
+    built, about = _pairs(model, held)
+    findings += about
+    try:
+        about, shown = motions(model, held, built)
+        findings += about
+    except InputError as error:  # loads that cannot be evaluated
+        findings.append(from_error(error, "loads"))
+    if len(built) == len(model.contacts):
+        findings += cost(model, held, built)
+    if not any(MIXED in f.what for f in findings):  # one mistake, said once
+        findings += doubts
+    return Report(in_order(findings), tuple(shown))
+
+
+def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
+    """The contact pairs that can be built, and findings on all of them."""
+    built: list[Pair] = []
+    findings: list[Finding] = []
+    outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
+    for contact in model.contacts:
+        try:
+            own = pair(model, contact, held)
+        except AbutError as error:
+            findings.append(not_facing(model, contact, error))
+            continue
+        built.append(own)
+        findings += [*interface(model, own, outside), *sides(model, own), *constraints(model, own, held)]
+    return built, findings

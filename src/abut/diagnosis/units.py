@@ -1,0 +1,153 @@
+"""Do sizes, materials and loads go together? What does not is mostly a matter of units."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from abut.contact.geometry import full_moments
+from abut.diagnosis.finding import Finding
+from abut.mesh.facets import bodies_at
+from abut.mesh.mesh import Mesh
+from abut.model import Force, Gravity, Model, Pressure, Traction
+
+UNLIKE = 300.0  # ratio of bodies' sizes that one would expect of metres beside millimetres, hardly of a design
+STIFF = 1e5  # ratio of Young's moduli: steel on rubber is 4e4
+STRAINED, UNSTRAINED = 0.05, 1e-8  # strain by a load alone that is too much, and hardly any
+FAR = 0.1  # prescribed displacement over the size of the body
+SOUND = {
+    "metres": (9.0, 11.0, 20.0, 5e4),
+    "millimetres": (9e3, 11e3, 2e4, 5e7),
+}  # gravity from, to; sqrt(E / density) likewise
+
+
+def units(model: Model) -> list[Finding]:
+    """Findings on sizes, moduli, loads, prescribed displacements, gravity."""
+    return [*_sizes(model), *_moduli(model), *_loads(model), *_prescribed(model), *_gravity(model)]
+
+
+def body_size(mesh: Mesh, body: str) -> float:
+    """Largest extent of a body."""
+    return float(np.ptp(mesh.points[mesh.nodes_of(body)], axis=0).max())
+
+
+def _sizes(model: Model) -> list[Finding]:
+    size = {body: body_size(model.mesh, body) for body in model.mesh.bodies}
+    small, large = min(size, key=lambda b: size[b]), max(size, key=lambda b: size[b])
+    if not size[large] > UNLIKE * size[small]:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"bodies '{small}' and '{large}'",
+            f"one is {size[small]:.3g} in size, the other {size[large]:.3g}: is one meshed in metres, "
+            "the other in millimetres?",
+            "scale the coordinates of one of them by 1000",
+        )
+    ]
+
+
+def _moduli(model: Model) -> list[Finding]:
+    young = {solid.body: solid.material.young for solid in model.solids}
+    if not young:
+        return []
+    soft, stiff = min(young, key=lambda b: young[b]), max(young, key=lambda b: young[b])
+    if not young[stiff] > STIFF * young[soft]:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"bodies '{soft}' and '{stiff}'",
+            f"Young's moduli {young[soft]:.3g} and {young[stiff]:.3g} differ {young[stiff] / young[soft]:.0e} times: is one "
+            "in Pa, the other in MPa?",
+            "give both in one unit, force over the mesh's length squared",
+        )
+    ]
+
+
+def _loads(model: Model) -> list[Finding]:
+    """The strain that a surface load makes in its own body: load per area over Young's modulus."""
+    young = {solid.body: solid.material.young for solid in model.solids}
+    findings = []
+    for i, load in enumerate(model.loads):
+        if not isinstance(load, (Pressure, Traction, Force)) or callable(load.value):
+            continue
+        size = float(np.linalg.norm(load.value))
+        if isinstance(load, Force):
+            size /= float(full_moments(model.mesh.surface(load.on), 0)[:, 0].sum())
+        bodies = [b for b in bodies_at(model.mesh, model.mesh.surfaces[load.on][:, 0]) if b in young]
+        if not bodies or not size:
+            continue
+        strain = size / min(young[body] for body in bodies)
+        if STRAINED > strain > UNSTRAINED:
+            continue
+        large = strain >= STRAINED
+        says = "more than small strains allow" if large else "which is hardly anything"
+        findings.append(
+            Finding(
+                "warning" if large else "advice",
+                f"loads[{i}] on '{load.on}'",
+                f"{size:.3g} per area strains body '{bodies[0]}' (Young's modulus {min(young[b] for b in bodies):.3g}) by "
+                f"about {strain:.0e}, {says}",
+                "give load and Young's modulus in one unit, such as N and mm with MPa, or N and m with Pa",
+            )
+        )
+    return findings
+
+
+def _prescribed(model: Model) -> list[Finding]:
+    findings = []
+    for i, support in enumerate(model.supports):
+        nodes = model.mesh.nodes_of(support.on)
+        values = [getattr(support, name) for name in ("x", "y", "z", "normal")]
+        largest = max((abs(float(v)) for v in values if v is not None and not callable(v)), default=0.0)
+        size = min(
+            (body_size(model.mesh, b) for b in model.mesh.bodies if np.isin(nodes, model.mesh.nodes_of(b)).any()),
+            default=np.inf,
+        )
+        if largest > FAR * size:
+            findings.append(
+                Finding(
+                    "warning",
+                    f"supports[{i}] on '{support.on}'",
+                    f"a displacement of {largest:.3g} is {largest / size:.2g} times the size of its body ({size:.3g}): abut "
+                    "takes displacements to be small",
+                    "give it in the mesh's unit of length, or move the body in the mesh",
+                )
+            )
+    return findings
+
+
+def _gravity(model: Model) -> list[Finding]:
+    """Gravity tells the unit of length; with it goes a speed of sound that no material is far from."""
+    findings = []
+    for i, load in enumerate(model.loads):
+        if not isinstance(load, Gravity):
+            continue
+        size = float(np.linalg.norm(load.value))
+        solids = [s for s in model.solids if load.on in (None, s.body)]
+        for solid in solids:
+            name, density = solid.body, solid.material.density
+            if density == 0.0:
+                findings.append(
+                    Finding(
+                        "warning",
+                        f"loads[{i}]",
+                        f"gravity finds no density in body '{name}'",
+                        "give its material a density",
+                    )
+                )
+                continue
+            speed = float(np.sqrt(solid.material.young / density))
+            for unit, (least, most, slow, fast) in SOUND.items():
+                if least <= size <= most and not slow <= speed <= fast:
+                    findings.append(
+                        Finding(
+                            "warning",
+                            f"loads[{i}]",
+                            f"gravity of {size:.4g} speaks of {unit}, where sound in body '{name}' would run at {speed:.1e} "
+                            f"{unit} per second",
+                            "give density and Young's modulus in the same units: kg/m^3 with Pa, or t/mm^3 (steel 7.85e-9) "
+                            "with MPa",
+                        )
+                    )
+    return findings

@@ -1,5 +1,0 @@
-"""Contact pairs found by what faces what: no surface has to be named."""
-
-from abut.facing.find import AUTO, FoundContact, add_surfaces, find_contacts
-
-__all__ = ["AUTO", "FoundContact", "add_surfaces", "find_contacts"]

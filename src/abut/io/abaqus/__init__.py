@@ -1,9 +1,0 @@
-"""Abaqus and CalculiX input decks: ``read_deck`` for all of a deck, ``read_abaqus`` for its mesh.
-
-The parser is abut's own: meshio's reads the mesh only and is no longer maintained."""
-
-from abut.io.abaqus.groups import read_abaqus
-from abut.io.abaqus.reader import read_deck
-from abut.io.abaqus.record import Deck
-
-__all__ = ["Deck", "read_abaqus", "read_deck"]

@@ -1,0 +1,1 @@
+"""Linear systems: direct and iterative solvers, static condensation, preconditioners."""

@@ -1,0 +1,100 @@
+"""Smoothed aggregation of the stiffness (PyAMG): one hierarchy for all iterations and load steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import block_product, padded_blocks
+from abut.errors import InputError
+from abut.linear.multigrid_cycle import Level, Levels, coarse_matrix, inverse, level
+from abut.linear.strength import means, near
+
+COARSEST = 100  # aggregates whose equations are solved directly
+Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Hierarchy:
+    """cycle: one V-cycle, symmetric positive (semi-)definite; product: with the stiffness; both (n_free,) -> (n_free,);
+    summary: for the log."""
+
+    cycle: Apply
+    product: Apply
+    summary: str
+
+
+def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], points: NDArray[np.float64]) -> Hierarchy:
+    """Multigrid for ``stiffness`` on the free displacements.
+
+    free: (dim n_points, n_free) change of variables, every column at one point; motions: (dim n_points, m) rigid motions,
+    each body's own; points: (n_points, dim). Points with fewer than ``dim`` free directions are filled up with trivial
+    rows, so that the matrix has whole blocks, one a point: cheaper products and aggregates of whole points. Raises
+    InputError where PyAMG is not installed.
+    """
+    try:
+        from pyamg.aggregation import fit_candidates, standard_aggregation
+    except ImportError:
+        raise InputError(
+            'solve.linear: "amg" needs PyAMG, which is not installed: pip install pyamg; or choose "direct"'
+        ) from None
+    dim = points.shape[1]
+    slot, point = slots(free, dim)
+    size, centres = dim * len(point), points[point]
+    scale = float(np.median(stiffness.diagonal()))
+    fine = level_matrix = _padded(stiffness, slot, size, dim, scale)
+    near_null = np.zeros((size, motions.shape[1]))
+    near_null[slot] = free.T @ motions
+    levels: list[Level] = []
+    entries, stretched = fine.nnz, True
+    while level_matrix.shape[0] // level_matrix.blocksize[0] > COARSEST:
+        strong = near(level_matrix, centres) if stretched else level_matrix
+        stretched = strong is not level_matrix
+        ones = np.ones(len(strong.indices), dtype=np.int8)
+        graph = sp.csr_matrix((ones, strong.indices, strong.indptr))
+        aggregates, _ = standard_aggregation(graph)
+        if aggregates.shape[1] in (0, graph.shape[0]):
+            break
+        tentative, near_null = fit_candidates(aggregates, near_null)
+        centres = means(aggregates, centres)
+        levels.append(level(level_matrix, strong, tentative))
+        level_matrix = coarse_matrix(level_matrix, levels[-1])
+        entries += level_matrix.nnz
+    ours = Levels(levels, inverse(level_matrix))
+    matrix = fine.indptr, fine.indices, fine.data
+
+    def place(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        whole = np.zeros(size)
+        whole[slot] = values
+        return whole
+
+    return Hierarchy(
+        cycle=lambda residual: ours.cycle(place(residual))[slot] / scale,
+        product=lambda values: block_product(*matrix, place(values))[slot] * scale,
+        summary=f"multigrid with {len(levels) + 1} levels, complexity {entries / fine.nnz:.2f}",
+    )
+
+
+def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale: float) -> Any:
+    """The stiffness over ``scale`` with its rows and columns at their slots and ones on the diagonal elsewhere, BSR."""
+    rows = stiffness if stiffness.has_sorted_indices else stiffness.sorted_indices()
+    indptr, indices, blocks = padded_blocks(
+        rows.indptr.astype(np.int32), rows.indices.astype(np.int32, copy=False), rows.data, slot.astype(np.int32), dim,
+        size // dim, 1.0 / scale,
+    )  # fmt: skip
+    return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
+
+
+def slots(free: Any, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where each free displacement goes among ``dim`` places a point, in ascending order, points without any left out; and
+    those points."""
+    columns = free.tocsc()
+    point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
+    points, number, count = np.unique(point, return_inverse=True, return_counts=True)
+    local = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    return dim * number + local, points

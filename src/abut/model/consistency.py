@@ -1,0 +1,106 @@
+"""Whether what is prescribed fits the mesh: names that exist, as many components as dimensions, rigid bodies apart."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from abut import checks
+from abut.errors import InputError
+from abut.mesh.mesh import Mesh
+from abut.model.conditions import (
+    COMPONENTS,
+    TURNS,
+    BodyForce,
+    Equation,
+    Force,
+    Gravity,
+    Load,
+    NodalForce,
+    Pressure,
+    Rigid,
+    Support,
+    Temperature,
+    Traction,
+)
+
+
+def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
+    """Raise InputError for places that do not exist, and components that do not."""
+    for i, support in enumerate(supports):
+        if support.normal is None:
+            checks.known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
+        else:
+            checks.known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
+        if mesh.dim == 2 and support.z is not None:
+            raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+
+
+def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str]) -> None:
+    """Raise InputError for places that do not exist, vectors of another dimension, and what rigid bodies cannot carry.
+
+    rigid: their names."""
+    for i, load in enumerate(loads):
+        if isinstance(load, (Gravity, BodyForce)):
+            if load.on is not None:
+                checks.known(load.on, mesh.bodies, f"loads[{i}].on", "body")
+            if isinstance(load, Gravity) and load.on in rigid:
+                raise InputError(f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force")
+        else:
+            _check_place(mesh, load, f"loads[{i}].on")
+            if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
+                raise InputError(f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out")
+        if isinstance(load, (Pressure, Temperature)) or callable(load.value):
+            continue
+        if len(load.value) != mesh.dim:
+            raise InputError(f"loads[{i}].value: expected {mesh.dim} components, got {len(load.value)}")
+
+
+def _check_place(mesh: Mesh, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
+    if isinstance(load, NodalForce):
+        checks.known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
+    elif isinstance(load, Temperature):
+        checks.known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
+    else:
+        checks.known(load.on, mesh.surfaces, where, "surface")
+
+
+def check_rigid(mesh: Mesh, bodies: Sequence[Rigid]) -> None:
+    """Raise InputError for bodies that do not exist, are given twice or share points, and motions that plane models lack."""
+    owner: dict[int, str] = {}
+    exist = ("y",) if mesh.axisymmetric else ("x", "y", "rz") if mesh.dim == 2 else (*COMPONENTS, *TURNS)
+    for i, rigid in enumerate(bodies):
+        checks.known(rigid.body, mesh.bodies, f"rigid[{i}].body", "body")
+        if rigid.reference is not None and len(rigid.reference) != mesh.dim:
+            raise InputError(f"rigid[{i}].reference: expected {mesh.dim} numbers, got {len(rigid.reference)}")
+        for name in (*COMPONENTS, *TURNS):
+            if name not in exist and getattr(rigid, name):
+                plane = "axisymmetric" if mesh.axisymmetric else "2D"
+                raise InputError(f"rigid[{i}].{name}: the model is {plane}; leave {name} out")
+        nodes = {int(n) for _, cells, _ in mesh.cells_of(rigid.body) for n in np.unique(cells)}
+        if rigid.body in owner.values():
+            raise InputError(f"rigid[{i}].body: body '{rigid.body}' is given twice; keep one of them")
+        shared = nodes & owner.keys()
+        if shared:
+            raise InputError(
+                f"rigid[{i}].body: '{rigid.body}' and '{owner[min(shared)]}' are rigid and share points; make "
+                "them one body"
+            )
+        owner |= dict.fromkeys(nodes, rigid.body)
+
+
+def check_equations(mesh: Mesh, equations: Sequence[Equation]) -> None:
+    """Raise InputError for terms at no point, or at several, and components that do not exist."""
+    for i, equation in enumerate(equations):
+        for j, term in enumerate(equation.terms):
+            where = f"equations[{i}].terms[{j}]"
+            if isinstance(term.on, str):
+                checks.known(term.on, mesh.node_sets, f"{where}.on", "node set")
+                if len(mesh.node_sets[term.on]) != 1:
+                    count = len(mesh.node_sets[term.on])
+                    raise InputError(f"{where}.on: node set '{term.on}' has {count} nodes; a term is for one")
+            elif not 0 <= term.on < len(mesh.points):
+                raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(mesh.points)}, from 0")
+            if term.component not in COMPONENTS[: mesh.dim]:
+                raise InputError(f"{where}.component: the model is 2D; z does not exist")

@@ -1,0 +1,1 @@
+"""Newton iterations, searches for the contact status, load steps."""

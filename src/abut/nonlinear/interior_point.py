@@ -1,0 +1,209 @@
+"""The contact problem as a convex quadratic programme: Mehrotra's predictor and corrector on displacements, pressures, gaps.
+
+Contact is made soft, row by row, by the ratio of gap and pressure; no row is ever let go, so that no active set on the way
+can be unlucky. What remains undecided in the end is few, and ``abut.nonlinear.search`` decides it exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.laws import linearise_interior
+from abut.linear import direct
+from abut.linear.saddle_point import store_diagonal
+from abut.problem.system import Rows, Solve, System, Unknowns, equilibrium, internal_force
+
+BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
+CENTRAL = 1e-3  # of the mean product of gaps and pressures: what the smallest keeps ...
+SHORTER, TRIES = 0.8, 12  # ... by steps that many times shorter, so often at most
+CORRECTORS = 2  # that make a step longer, where they cost no factorisation ...
+FARTHER, WORTH = 0.3, 0.1  # ... by that much, and the share of it from which on they do ...
+OUTLIER = 0.1  # ... by gaps times pressures that far at least from what is aimed at
+UNKNOWN = 1e3  # softness where it would cost too much to find out
+UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Interior:
+    """state: displacements and pressures, the latter positive but for tied rows; slack: (n,) gaps, positive, that
+    pressures are to be complementary to (zero on tied rows); opening, closing: (n,) d g / g and d p / p of the last
+    predictor."""
+
+    state: Unknowns
+    slack: Vector
+    opening: Vector
+    closing: Vector
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Rows on which the gap goes faster than the pressure, theory (V20)."""
+        return self.closing > self.opening
+
+    @property
+    def undecided(self) -> NDArray[np.bool_]:
+        return np.abs(self.closing + 0.5) < UNDECIDED
+
+
+@dataclass(frozen=True)
+class Programme:
+    """What stays the same over the iterations of a load step. scale: (n,) gap per pressure; tied: (n,) rows that are
+    closed whatever happens; softness: of the bodies over that of their facets."""
+
+    system: System
+    weights: Vector
+    scale: Vector
+    tied: NDArray[np.bool_]
+    softness: float
+
+    def mean(self, pressure: Vector, slack: Vector) -> float:
+        """Mean product of gaps (as pressures) and pressures, theory (V17)."""
+        free = ~self.tied
+        return float((slack[free] * pressure[free] / self.scale[free]).mean())
+
+    def central(self, pressure: Vector, slack: Vector) -> bool:
+        """Whether no product is far smaller than the mean of all, which makes the steps after it short."""
+        free = ~self.tied
+        product = slack[free] * pressure[free] / self.scale[free]
+        return bool(product.min() >= CENTRAL * product.mean())
+
+    def rows(self, state: Unknowns, softness: Vector, shift: Vector) -> Rows:
+        """The rows of theory (V18)."""
+        parts = zip(*map(self.system.split, (self.system.gap(state, self.weights), shift, softness, state.active)))
+        return self.system.rows([linearise_interior(*part) for part in parts])
+
+    def solver(self, state: Unknowns, softness: Vector) -> Solve:
+        """Solutions with rows of that softness, as often as wanted: (residual of equilibrium, shift) -> (du, dp)."""
+        rows = self.rows(state, softness, np.zeros_like(softness))
+        if self.system.factorise is None:
+            return self._iterations(rows, state)
+        factors = self.system.factorise(rows)
+        return lambda residual, shift: factors(residual, rows.residual + shift)
+
+    def _iterations(self, rows: Rows, state: Unknowns) -> Solve:
+        """The same by an iterative solver, each solution from the one before on."""
+        system = self.system
+        du, dp = np.zeros_like(state.displacement), np.zeros_like(state.pressure)
+
+        def solve(residual: Vector, shift: Vector) -> tuple[Vector, Vector]:
+            nonlocal du, dp
+            left, of_law = residual, rows.residual + shift
+            if du.any() or dp.any():
+                left = residual + system.stiffness @ du - system.operator.T @ dp
+                of_law = of_law + rows.by_displacement @ du + rows.by_pressure @ dp
+            more = system.step(replace(rows, residual=of_law), left, state.pressure, ROUGH)
+            du, dp = du + more[0], dp + more[1]
+            return du, dp
+
+        return solve
+
+    def missed(self, here: Interior) -> float:
+        """Largest difference between gaps and slacks, as a pressure."""
+        return float(np.abs((self.system.gap(here.state, self.weights) - here.slack) / self.scale).max())
+
+    def unbalanced(self, state: Unknowns) -> Vector:
+        return equilibrium(self.system, state, self.weights, internal_force(self.system, state))
+
+
+ROUGH = 1e-2  # reduction of residuals asked of iterative solvers
+
+
+def softness(system: System, scale: Vector) -> float:
+    """How far the bodies give way under a uniform pressure, over how far their facets alone would, theory (V16). Rigid
+    motions are held by springs at a few displacements, and their share is taken out."""
+    n, root = len(scale), np.sqrt(scale)
+    one = np.ones(n)
+    push = np.asarray(system.operator.T @ one)
+    if system.respond is not None:
+        moved = system.operator @ system.respond(push, _springs(system))
+    elif sp.issparse(system.stiffness):
+        moved = system.operator @ _held(system).solve(push)
+    elif isinstance(system.stiffness, np.ndarray) and system.compliance is not None:
+        held = system.stiffness + np.diag(_springs(system))
+        moved = system.operator @ (np.linalg.solve(held, push) if len(push) else push) + system.compliance @ one
+    else:
+        return UNKNOWN
+    if system.motions.shape[1]:
+        rigid = np.asarray(system.operator @ system.motions) / root[:, None]
+        moved = moved - root * (rigid @ np.linalg.lstsq(rigid, moved / root, rcond=None)[0])
+    return max(1.0, float(np.linalg.norm(moved / root) / np.linalg.norm(root)))
+
+
+def _held(system: System) -> direct.Factorization:
+    held = system.stiffness + sp.diags(_springs(system))
+    return direct.Factorization(store_diagonal(sp.triu(held, format="csr")))
+
+
+def _springs(system: System) -> Vector:
+    """Springs (n_free,) on as many displacements as hold the rigid motions, as stiff as the bodies there."""
+    springs = np.zeros(system.stiffness.shape[0])
+    if system.motions.shape[1]:
+        pivots = scipy.linalg.qr(system.motions.T, mode="r", pivoting=True)[1][: system.motions.shape[1]]
+        springs[pivots] = np.median(system.stiffness.diagonal())
+    return springs
+
+
+def begin(programme: Programme, state: Unknowns) -> Interior:
+    """The starting point, theory (V17): one solution with softness everywhere."""
+    free, soft = ~programme.tied, np.where(programme.tied, 0.0, programme.softness * programme.scale)
+    solve = programme.solver(state, soft)
+    du, dp = solve(programme.unbalanced(state), -soft * state.pressure)
+    pressure = state.pressure + dp
+    size = max(float(np.abs(pressure[free]).mean()), 1e-300)
+    pressure = np.where(free, np.maximum(pressure, 0.0) + size, pressure)
+    start = replace(state, displacement=state.displacement + du, pressure=pressure)
+    return Interior(start, soft * size, np.zeros(len(soft)), np.zeros(len(soft)))
+
+
+def iterate(programme: Programme, here: Interior) -> Interior:
+    """One iteration, theory (V18), (V19), with Gondzio's correctors."""
+    free, scale, p, g = ~programme.tied, programme.scale, here.state.pressure, here.slack
+    inverse = np.where(free, 1.0 / np.where(free, p, 1.0), 0.0)
+    solve = programme.solver(here.state, g * inverse)
+    residual, mean = programme.unbalanced(here.state), programme.mean(p, g)
+
+    def direction(product: Vector) -> tuple[Vector, Vector, Vector]:
+        """The step to gaps times pressures that are ``product`` but for the product of their steps."""
+        du, dp = solve(residual, product * inverse)
+        return du, dp, np.where(free, (product - g * p - g * dp) * inverse, 0.0)
+
+    def length_of(dp: Vector, dg: Vector) -> float:
+        return min(1.0, _longest(p, dp, free), _longest(g, dg, free))
+
+    _, closing, opening = direction(np.zeros_like(p))
+    length = length_of(closing, opening)
+    foreseen = programme.mean(p + length * closing, g + length * opening)
+    centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
+    product = centring * mean * scale - closing * opening
+    du, dp, dg = direction(product)
+    for _ in range(CORRECTORS if programme.system.factorise is not None else 0):
+        length = length_of(dp, dg)
+        aim = min(1.0, length + FARTHER)
+        reached, wanted = (p + aim * dp) * (g + aim * dg), centring * mean * scale
+        change = np.maximum(np.clip(reached, OUTLIER * wanted, wanted / OUTLIER) - reached, -wanted / OUTLIER)
+        following = product + np.where(free, change, 0.0)
+        corrected = direction(following)
+        if length_of(*corrected[1:]) < length + WORTH * FARTHER:
+            break
+        product, (du, dp, dg) = following, corrected
+    length = min(1.0, BOUNDARY * _longest(p, dp, free), BOUNDARY * _longest(g, dg, free))
+    shorter = length * SHORTER ** np.arange(TRIES)
+    length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)
+    state = replace(
+        here.state, displacement=here.state.displacement + length * du, pressure=here.state.pressure + length * dp
+    )
+    share = np.where(free, g, 1.0)
+    return Interior(
+        state, g + length * dg, np.where(free, opening / share, -1.0), np.where(free, closing * inverse, 0.0)
+    )
+
+
+def _longest(values: Vector, steps: Vector, free: NDArray[np.bool_]) -> float:
+    """How many steps it takes until the first of the positive values is zero."""
+    falling = free & (steps < 0.0)
+    return float((values[falling] / -steps[falling]).min(initial=np.inf))

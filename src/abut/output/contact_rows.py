@@ -1,0 +1,70 @@
+"""What summary.json and history.csv say of a contact at the end of a step."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.solution import ContactResult
+
+# Columns of history.csv after the force; those of ``more_columns`` come last.
+OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
+
+
+def contact_summary(contact: ContactResult) -> dict[str, Any]:
+    """The entry of a contact in summary.json; None where a number does not exist."""
+    pressure = contact.statistics
+    return {
+        "name": contact.name,
+        "force": contact.force.tolist(),
+        "max_pressure": number(contact.max_pressure),
+        "area": contact.area,
+        "max_penetration": contact.max_penetration,
+        "active": contact.active,
+        "multipliers": contact.multipliers,
+        "removed": contact.removed,
+        "segments": contact.segments,
+        "covered_share": contact.covered_share,
+        "max_pressure_at": vector(pressure.place),
+        "max_pressure_partly_covered": number(pressure.partly_covered),
+        "mean_pressure": number(pressure.mean),
+        "pressure_percentile_95": number(pressure.percentile_95),
+        "loaded_area": number(pressure.area),
+        "centre_of_pressure": vector(contact.resultant.centre),
+        "moment": vector(contact.resultant.moment),
+        "target_forces": {body: vector(force) for body, force in contact.body_forces.items()},
+    }
+
+
+def number(value: float) -> float | None:
+    """A number, or None where there is none."""
+    return float(value) if math.isfinite(value) else None
+
+
+def vector(values: NDArray[np.float64]) -> list[float] | None:
+    """Components, or None where there are none."""
+    return values.tolist() if np.isfinite(values).all() else None
+
+
+def more_columns(dim: int) -> list[str]:
+    """Names of the last columns of history.csv, dim being 2 or 3."""
+    axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
+    return [
+        *(f"max_pressure_{a}" for a in axes),
+        "max_pressure_partly_covered",
+        "mean_pressure",
+        "pressure_percentile_95",
+        "loaded_area",
+        *(f"centre_{a}" for a in axes),
+        *(f"contact_moment_{a}" for a in turns),
+    ]
+
+
+def more_values(contact: ContactResult) -> dict[str, float]:
+    """Their values by name, nan where there is no number: readers of the columns before them take it for one."""
+    s, r = contact.statistics, contact.resultant
+    values = (*s.place, s.partly_covered, s.mean, s.percentile_95, s.area, *r.centre, *r.moment)
+    return dict(zip(more_columns(contact.contactor.dim), map(float, values)))

@@ -1,0 +1,64 @@
+"""Probes in the output directory: a table of its own for each, and what of it stands in summary.json and history.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from abut.model.probe import label
+from abut.probing.table import columns, peaks
+from abut.solution import ProbeResult, Step
+
+
+def table_name(probe: str) -> str:
+    """The file of a probe."""
+    return f"probe_{label(probe)}.csv"
+
+
+def table(steps: Sequence[Step], number: int) -> str:
+    """All values of probe ``number`` of the model as CSV: a row for each step and point; empty where there is no value."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    for step in steps:
+        result = step.probes[number]
+        place = _place(result)
+        own = {**place, **columns(result)}
+        if step is steps[0]:
+            rows.writerow(["step", "factor", "converged", *own])
+        head = [step.number, step.factor, int(step.converged)]
+        listed = zip(*(values.tolist() for values in own.values()))
+        rows.writerows([*head, *("" if value != value else value for value in row)] for row in listed)
+    return text.getvalue()
+
+
+def _place(result: ProbeResult) -> dict[str, Any]:
+    """Columns that say which point it is."""
+    own: dict[str, Any] = {"point": np.arange(1, len(result.points) + 1)}
+    if result.nodes is not None:
+        own["node"] = result.nodes
+    if result.distance is not None:
+        own["distance"] = result.distance
+    return own | dict(zip("xyz", result.points.T))
+
+
+def summary(step: Step) -> list[dict[str, Any]]:
+    """Each probe in a few numbers: of one point its values, of several the values farthest from zero; None where none."""
+    return [
+        {"name": result.name, "file": table_name(result.name), "points": len(result.points), **peaks(result)}
+        for result in step.probes
+    ]
+
+
+def history_columns(steps: Sequence[Step]) -> list[str]:
+    """Columns of history.csv that probes need: none without them."""
+    names = dict.fromkeys(name for result in steps[0].probes for name in columns(result))
+    return ["probe", *names] if names else []
+
+
+def history_rows(step: Step) -> list[dict[str, Any]]:
+    """A row of history.csv for each probe, in the same few numbers as in summary.json."""
+    return [{"probe": result.name, **peaks(result)} for result in step.probes]

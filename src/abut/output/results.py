@@ -1,0 +1,195 @@
+"""The output directory of a solution: summary, fields, contact surfaces, history, log; each file whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from abut.diagnosis.advice import remedies, unsettled
+from abut.diagnosis.cures import cure
+from abut.io.atomic import make_directory, write_text
+from abut.io.versions import versions
+from abut.io.vtu import write_vtu
+from abut.model.probe import label
+from abut.output import probes
+from abut.output.contact_rows import OF_CONTACT, contact_summary, more_columns, more_values, number
+from abut.output.fields import WriteFields, found_name, is_whole, write_fields
+from abut.report import Origin, write_report
+from abut.solution import Solution, Step
+from abut.solution.grids import contact_grid
+
+
+def write(
+    solution: Solution,
+    directory: str | Path,
+    origin: Origin | None = None,
+    steps: Sequence[Step] | None = None,
+    fields: WriteFields = write_fields,
+) -> Path:
+    """Write everything about a solution to ``directory`` (made if need be) and return it.
+
+    report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
+    each contact; probe_NAME.csv for each probe. origin: what the report says of the job (its name, its text, what theory
+    expects); steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields
+    of a step.
+    Raises InputError where the directory cannot be written.
+    """
+    folder = Path(directory)
+    make_directory(folder)
+    write_steps(folder, solution, solution.steps if steps is None else steps, fields)
+    write_index(folder, solution)
+    write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
+    return folder
+
+
+def write_steps(folder: Path, solution: Solution, steps: Sequence[Step], fields: WriteFields = write_fields) -> None:
+    """The VTU files of some steps."""
+    for step in steps:
+        fields(folder, solution.model, step)
+        for contact in step.contacts:
+            grid = contact_grid(step, contact)
+            path = folder / _contact_file(contact.name, step)
+            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
+
+
+def write_index(folder: Path, solution: Solution) -> None:
+    """The files that tell of all steps."""
+    _write_collection(folder, "fields", solution.steps, [found_name(folder, step.number) for step in solution.steps])
+    for contact in solution.contacts:
+        files = [_contact_file(contact.name, step) for step in solution.steps]
+        _write_collection(folder, f"contact_{label(contact.name)}", solution.steps, files)
+    for index, probe in enumerate(solution.model.probes):
+        write_text(folder / probes.table_name(probe.name), probes.table(solution.steps, index))
+    write_text(folder / "history.csv", _history(solution))
+    write_text(folder / "run.jsonl", _log(solution))
+    write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
+
+
+def summary(solution: Solution) -> dict[str, Any]:
+    """What summary.json holds: plain numbers, lists and text; None where a number does not exist."""
+    return {
+        "schema": 1,
+        "status": status(solution),
+        "dofs": solution.dofs,
+        "solver": solution.solver,
+        "processes": solution.processes,
+        "steps": [_step_summary(step) for step in solution.steps],
+        "certificate": {
+            "passed": all(check.passed for check in solution.certificate),
+            "checks": [
+                {
+                    "contact": check.contact,
+                    "name": check.name,
+                    "value": number(check.value),
+                    "limit": check.limit,
+                    "passed": check.passed,
+                    "meaning": check.meaning,
+                    "cure": cure(check, solution),
+                }
+                for check in solution.certificate
+            ],
+        },
+        "remedies": [str(remedy) for remedy in remedies(solution)],
+        "notes": list(solution.notes),
+        "ignored": list(solution.ignored),
+        "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
+        "versions": versions(),
+    }
+
+
+def status(solution: Solution) -> str:
+    """ "converged", "not converged", or "incomplete" where steps are still to come."""
+    if not solution.converged:
+        return "not converged"
+    return "converged" if solution.complete else "incomplete"
+
+
+def is_written(folder: Path, step: Step) -> bool:
+    """Whether all files of a step are there."""
+    contacts = [_contact_file(contact.name, step) for contact in step.contacts]
+    return is_whole(folder, step.number) and all((folder / name).is_file() for name in contacts)
+
+
+def _contact_file(contact: str, step: Step) -> str:
+    return f"contact_{label(contact)}_{step.number:04d}.vtu"
+
+
+def _step_summary(step: Step) -> dict[str, Any]:
+    last = step.iterations[-1]
+    return {
+        "step": step.number,
+        "factor": step.factor,
+        "converged": step.converged,
+        "iterations": len(step.iterations),
+        "residual": last.residual,
+        "contact_residual": last.contact_residual,
+        "reaction": step.reaction.tolist(),
+        "reactions": {name: force.tolist() for name, force in step.reactions.items()},
+        "load": step.load.tolist(),
+        "balance_error": step.balance_error,
+        "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
+        "contacts": [contact_summary(c) for c in step.contacts],
+        "rigid": {
+            body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
+        },
+        "probes": probes.summary(step),
+        "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
+        "unsettled": [
+            {
+                "contact": place.contact,
+                "facets": place.facets.tolist(),
+                "nodes": place.nodes.tolist(),
+                "coordinates": place.coordinates.tolist(),
+            }
+            for place in unsettled(step)
+        ],
+    }
+
+
+def _history(solution: Solution) -> str:
+    dim = solution.model.dim
+    axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
+    force, moved = [f"force_{a}" for a in axes], [f"displacement_{a}" for a in axes]
+    rotation, moment = [f"rotation_{a}" for a in turns], [f"moment_{a}" for a in turns]
+    head = ["step", "factor", "converged", "contact", *force, *OF_CONTACT]
+    if solution.model.rigid:
+        head += ["rigid", *moved, *rotation, *moment]
+    head += [name for name in probes.history_columns(solution.steps) if name not in head]
+    head += more_columns(dim)
+    text = io.StringIO()
+    table = csv.DictWriter(text, head, lineterminator="\n")
+    table.writeheader()
+    for step in solution.steps:
+        first = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
+        for c in step.contacts:
+            values = {name: getattr(c, name) for name in OF_CONTACT} | more_values(c)
+            table.writerow({**first, "contact": c.name, **dict(zip(force, c.force.tolist())), **values})
+        for name, body in step.rigid.items():
+            row = dict(zip([*force, *moved], [*body.force.tolist(), *body.displacement.tolist()]))
+            row |= dict(zip([*rotation, *moment], [*body.rotation.tolist(), *body.moment.tolist()]))
+            table.writerow({**first, "rigid": name, **row})
+        table.writerows({**first, **row} for row in probes.history_rows(step))
+    return text.getvalue()
+
+
+def _log(solution: Solution) -> str:
+    lines = [{"note": note} for note in solution.notes]
+    lines += [dict(vars(row)) for step in solution.steps for row in step.iterations]
+    return "".join(json.dumps(line) + "\n" for line in lines)
+
+
+def _write_collection(folder: Path, stem: str, steps: Sequence[Step], files: Sequence[str]) -> None:
+    entries = "".join(
+        f'    <DataSet timestep="{step.factor:.12g}" part="0" file="{file}"/>\n' for step, file in zip(steps, files)
+    )
+    write_text(
+        folder / f"{stem}.pvd",
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>\n'
+        f"{entries}  </Collection>\n</VTKFile>\n",
+    )

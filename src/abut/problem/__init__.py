@@ -1,0 +1,1 @@
+"""What is solved: constraints, loads, contact pairs on the free displacements, put together."""

@@ -1,0 +1,310 @@
+"""Supports, equations and rigid bodies as an exact change of variables: u = Z u_free + u_prescribed; theory (F8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+
+from abut._core import principal_submatrix
+from abut.contact.geometry import nodal_normals
+from abut.errors import SingularModelError
+from abut.fields import evaluate
+from abut.mesh.mesh import Mesh
+from abut.model import Model, Support
+from abut.problem.elimination import eliminate
+from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+
+AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
+ON_AXIS = 1e-9  # radius over the model's size that counts as none
+ROUNDING = 1e-12  # of the largest prescribed value: functions of position that agree may differ by this
+STUCK = 1e-12  # square of a point's motion over its largest, by unit free displacements, that counts as none
+ORTHONORMAL = 1e-12
+SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
+
+
+@dataclass(frozen=True)
+class Links:
+    """What the forces of equations follow from. outer: (dim n_points, n) the unknowns before equations; matrix: (m, m) the
+    coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
+    (m, dim n_points) coefficients on all displacements of those that are equations."""
+
+    outer: Any
+    matrix: Any
+    pivots: NDArray[np.int64]
+    equations: Any
+
+    def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The share of equations in the forces (dim n_points,) that hold the points."""
+        if not len(self.pivots):
+            return np.zeros_like(residual)
+        multipliers = spla.splu(self.matrix.T.tocsc()).solve((self.outer.T @ residual)[self.pivots])
+        return np.asarray(self.equations.T @ multipliers)
+
+
+@dataclass(frozen=True)
+class Supports:
+    """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
+    ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
+    at any time; bodies: the rigid ones; links: where there are equations."""
+
+    free: Any
+    prescribed: NDArray[np.float64]
+    largest: float = 0.0
+    orthonormal: bool = True
+    coupled: bool = False
+    bodies: Sequence[RigidBody] = ()
+    links: Links | None = None
+
+    def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
+        moved = self.free.T @ vectors
+        if self.orthonormal or not moved.size:
+            return np.asarray(moved)
+        return np.asarray(spla.splu((self.free.T @ self.free).tocsc()).solve(moved))
+
+    def taken(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What is left of displacements of all points (dim n_points, k) that no free ones can follow, where that may not be
+        zero: most points move freely, and nothing need be computed for them."""
+        alone = np.bincount(self.free.indices, minlength=self.free.shape[1]) == 1
+        followed = np.zeros(self.free.shape[0], dtype=bool)
+        single = np.flatnonzero(np.diff(self.free.indptr) == 1)
+        followed[single] = alone[self.free.indices[self.free.indptr[single]]]
+        rows = np.flatnonzero(~followed)
+        free, own = self.free[rows], vectors[rows]
+        near = replace(self, free=free[:, np.unique(free.indices)])
+        return np.asarray(own - near.free @ near.coordinates(own))
+
+    def reduce(self, matrix: Any) -> Any:
+        """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
+        picks = self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all()
+        if picks and matrix.nnz < 2**31:
+            place = np.full(matrix.shape[0], -1, dtype=np.int32)
+            place[self.free.tocsc().indices] = np.arange(self.free.shape[1])
+            indptr, indices, data = principal_submatrix(
+                matrix.indptr.astype(np.int32), matrix.indices, matrix.data, place, self.free.shape[1]
+            )
+            return sp.csr_matrix((data, indices, indptr), shape=(self.free.shape[1], self.free.shape[1]))
+        return (self.free.T @ matrix @ self.free).tocsr()
+
+    def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How much of a direction (n, dim unit vectors) is held at each of n points: 1 fully, 0 free."""
+        return np.asarray(1.0 - (self.can_move(points, directions) ** 2).sum(axis=1))
+
+    def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
+        dim = directions.shape[1]
+        rows = (dim * points[:, None] + np.arange(dim)).ravel()
+        own = [self.free[rows[a::dim]] for a in range(dim)]
+        gram = np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in own] for p in own]).transpose(2, 0, 1)
+        if self.orthonormal:
+            return np.einsum("nab,nb->na", gram, directions)
+        size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
+        moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
+        along = np.einsum("nda,nd->na", axes, directions)
+        return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
+
+
+def supports(model: Model) -> Supports:
+    """Collect all supports, equations and rigid bodies. Raises SingularModelError where they contradict each other,
+    InputError for functions that do not return a finite number for each node."""
+    conditions, bodies = _conditions(model), rigid_bodies(model)
+    on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in bodies)]))
+    free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), bodies)
+    orthonormal, coupled, links = True, False, None
+    if bodies or model.equations:
+        free, prescribed, links = _together(
+            model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies
+        )
+        gram = free.T @ free
+        orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
+        point = sp.csr_matrix((np.ones(free.nnz), (free.tocoo().row // model.dim, free.tocoo().col)))
+        point.sum_duplicates()
+        coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
+    factors = [1.0 if history is None else history.largest for history in model.histories]
+    largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
+    return Supports(free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None)
+
+
+def _together(
+    model: Model,
+    free: Any,
+    prescribed: NDArray[np.float64],
+    conditions: tuple[NDArray[Any], ...],
+    bodies: Sequence[RigidBody],
+) -> tuple[Any, NDArray[np.float64], Links]:
+    """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12)."""
+    n_dofs, n_own = free.shape
+    free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
+    histories = model.histories
+    rows, values, names = [], [], []
+    first = n_own
+    for body in bodies:
+        given, value = body.prescribed()
+        own = sp.csr_matrix(given)
+        shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
+                              shape=(given.shape[1], free.shape[1]))  # fmt: skip
+        rows.append(own @ shift)
+        values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(body.rigid.amplitude)]))
+        names += [f"rigid body '{body.rigid.body}'"] * len(value)
+        first += given.shape[1]
+    node, direction, value, origin = conditions
+    dim = model.dim
+    entries = (np.repeat(np.arange(len(node)), dim), (dim * node[:, None] + np.arange(dim)).ravel())
+    held = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
+    linear, constants = equations(model)
+    names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
+    points = sp.vstack([held, linear], format="csr")
+    rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
+    values.append(np.concatenate([value, constants]) - points @ prescribed)
+    every = sp.vstack(rows, format="csr")
+    done = eliminate(every, np.concatenate(values), names)
+    others = sp.csr_matrix((every.shape[0] - linear.shape[0], n_dofs))
+    of_equations = sp.vstack([others, linear], format="csr")
+    links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])
+    return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links
+
+
+def equations(model: Model) -> tuple[Any, NDArray[np.float64]]:
+    """Coefficients (n_equations, dim n_points) sparse and values (n_equations, n_histories) of a model's equations."""
+    histories, dim = model.histories, model.dim
+    values = np.zeros((len(model.equations), len(histories)))
+    entries: list[tuple[int, int, float]] = []
+    for i, equation in enumerate(model.equations):
+        values[i, histories.index(equation.amplitude)] = equation.value
+        for term in equation.terms:
+            node = int(model.mesh.node_sets[term.on][0]) if isinstance(term.on, str) else int(term.on)
+            entries.append((i, dim * node + "xyz".index(term.component), term.coefficient))
+    row, column, coefficient = np.array(entries, dtype=float).reshape(-1, 3).T
+    shape = (len(model.equations), model.mesh.points.size)
+    return sp.csr_matrix((coefficient, (row.astype(np.int64), column.astype(np.int64))), shape=shape), values
+
+
+def _without_rounding(rows: Any, size: NDArray[np.float64]) -> Any:
+    """Without entries that are nothing beside the size of their row before supports were put in."""
+    entries = rows.tocoo()
+    keep = np.abs(entries.data) > ROUNDING * size[entries.row]
+    return sp.csr_matrix((entries.data[keep], (entries.row[keep], entries.col[keep])), shape=rows.shape)
+
+
+def _name(model: Model, origin: int) -> str:
+    return "the axis" if origin == AXIS else f"support on '{model.supports[origin].on}'"
+
+
+def _node_by_node(
+    model: Model, conditions: tuple[NDArray[Any], ...], bodies: Sequence[RigidBody]
+) -> tuple[Any, NDArray[np.float64]]:
+    """Supports at the points that belong to no rigid body: columns left free, and prescribed displacements."""
+    mesh, dim = model.mesh, model.dim
+    node, direction, value, origin = conditions
+    prescribed = np.zeros((len(mesh.points), dim, value.shape[1]))
+    slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
+    order = np.lexsort((np.abs(direction).argmax(axis=1), node))
+    node, direction, value, origin = node[order], direction[order], value[order], origin[order]
+    plain = _plain(node, direction)
+    picked = np.ones((len(mesh.points), dim), dtype=bool)
+    axis = np.abs(direction[plain]).argmax(axis=1)
+    picked[node[plain], axis] = False
+    prescribed[node[plain], axis] = value[plain] * direction[plain, axis][:, None]
+    node, direction, value, origin = node[~plain], direction[~plain], value[~plain], origin[~plain]
+    picked[np.concatenate([node, *(body.nodes for body in bodies)])] = False
+    rows = np.flatnonzero(picked)
+    free_rows, free_columns, free_values = [rows], [np.arange(len(rows))], [np.ones(len(rows))]
+    column = len(rows)
+    held, start = np.unique(node, return_index=True)
+    for k, first, last in zip(held, start, np.append(start[1:], len(node))):
+        matrix, target = direction[first:last], value[first:last]
+        basis, x = _solve_node(matrix, target)
+        if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
+            names = ", ".join(sorted({"the axis" if i == AXIS else model.supports[i].on for i in origin[first:last]}))
+            raise SingularModelError(
+                f"supports on {names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
+                "they prescribe different displacements in one direction; take one of them out"
+            )
+        prescribed[k] = x
+        count = basis.shape[1]
+        free_rows.append(np.tile(dim * k + np.arange(dim), count))
+        free_columns.append(np.repeat(column + np.arange(count), dim))
+        free_values.append(basis.T.ravel())
+        column += count
+    rows, columns = np.concatenate(free_rows), np.concatenate(free_columns)
+    point = np.empty(column, dtype=np.int64)
+    point[columns] = rows // dim
+    place = np.empty(column, dtype=np.int64)
+    place[np.argsort(point, kind="stable")] = np.arange(column)  # columns in the order of the points
+    free = sp.csr_matrix((np.concatenate(free_values), (rows, place[columns])), shape=(dim * len(mesh.points), column))
+    free.eliminate_zeros()
+    return free, prescribed.reshape(free.shape[0], -1)
+
+
+def _plain(node: NDArray[np.int64], direction: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Conditions, sorted by node and axis, of nodes that are held along axes only, and once along each: nothing to solve."""
+    axis = np.abs(direction).argmax(axis=1)
+    twice = np.zeros(len(node), dtype=bool)
+    twice[1:] = (node[1:] == node[:-1]) & (axis[1:] == axis[:-1])
+    odd = twice | ~(np.abs(direction) == np.eye(direction.shape[1])[axis]).all(axis=1)
+    return ~np.isin(node, node[odd])
+
+
+def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Basis (dim, n_free) of the directions left free, and the displacement of the held ones (dim, n_histories)."""
+    axis = np.abs(matrix).argmax(axis=1)
+    if np.array_equal(np.abs(matrix), np.eye(matrix.shape[1])[axis]):  # along the axes: keep zeros and ones exact
+        x = np.zeros((matrix.shape[1], target.shape[1]))
+        x[axis] = target * matrix[np.arange(len(axis)), axis][:, None]
+        return np.delete(np.eye(matrix.shape[1]), np.unique(axis), axis=1), x
+    _, singular, vt = np.linalg.svd(matrix)
+    rank = int((singular > SAME_DIRECTION * singular[0]).sum())
+    return vt[rank:].T, np.linalg.lstsq(matrix, target, rcond=SAME_DIRECTION)[0]
+
+
+def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
+    """Every held direction: node, unit vector, value by history (n, n_histories), number of its support."""
+    dim, histories = model.dim, model.histories
+    nodes: list[NDArray[Any]] = [np.empty(0, np.int64)]
+    directions: list[NDArray[Any]] = [np.empty((0, dim))]
+    values: list[NDArray[Any]] = [np.empty((0, len(histories)))]
+    origins: list[NDArray[Any]] = [np.empty(0, np.int64)]
+    for i, support in enumerate(model.supports):
+        for where, vector, value in _directions(model.mesh, support, dim):
+            nodes.append(where)
+            directions.append(np.broadcast_to(vector, (len(where), dim)))
+            values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(support.amplitude)]))
+            origins.append(np.full(len(where), i))
+    on_axis = points_on_axis(model.mesh)
+    if len(on_axis):
+        nodes.append(on_axis)
+        directions.append(np.broadcast_to(np.eye(dim)[0], (len(on_axis), dim)))
+        values.append(np.zeros((len(on_axis), len(histories))))
+        origins.append(np.full(len(on_axis), AXIS))
+    return tuple(np.concatenate(parts) for parts in (nodes, directions, values, origins))
+
+
+def points_on_axis(mesh: Mesh) -> NDArray[np.int64]:
+    """Points of an axisymmetric mesh that cannot leave the axis."""
+    if not mesh.axisymmetric:
+        return np.empty(0, np.int64)
+    return np.flatnonzero(mesh.points[:, 0] <= ON_AXIS * np.ptp(mesh.points, axis=0).max())
+
+
+def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], ...]]:
+    """Nodes (n,), unit vectors (n, dim) or (dim,), values (n,)."""
+    if support.normal is None:
+        where = mesh.nodes_of(support.on)
+        return [
+            (where, np.eye(dim)[a], evaluate(value, mesh.points[where], f"support on '{support.on}': {name}"))
+            for a, name in enumerate("xyz"[:dim])
+            if (value := getattr(support, name)) is not None
+        ]
+    surface = mesh.surface(support.on)
+    normals = nodal_normals(surface)
+    facet, local = np.nonzero(surface.nodes >= 0)
+    where = surface.nodes[facet, local].astype(np.int64)
+    both = np.round(np.column_stack([where, normals[facet, local]]), 9)
+    _, first = np.unique(both, axis=0, return_index=True)  # one condition for each normal at a node
+    return [(where[first], normals[facet, local][first], np.full(len(first), float(support.normal)))]

@@ -1,0 +1,399 @@
+"""A contact pair, discretised: operators on the free displacements, weighted gaps, scales."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.clearance import of_corners, partly_adjusted
+from abut.contact.coupling import Couple, Coupling, couple, default_reach, surface_degree
+from abut.contact.geometry import CREASE, beside_others, facet_sizes, full_moments, side_normals
+from abut.contact.node_to_segment import node_to_segment
+from abut.contact.opposite import by_target
+from abut.contact.pressure_space import (
+    DUAL,
+    DUAL_P1,
+    PressureSpace,
+    inner_facets,
+    pressure_space,
+    reduce,
+    resolve,
+    with_plain_facets,
+)
+from abut.contact.rim import Rim, ends_on_target, goes_on, rim
+from abut.contact.shared import Functions, functions, one_each
+from abut.contact.sides import Sides, words
+from abut.contact.symmetry_planes import Planes, planes
+from abut.errors import InputError
+from abut.mesh.surface import Surface
+from abut.model import LAWS, METHODS, Contact, Model
+from abut.problem.constraints import Supports
+
+HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
+SQUARE = (
+    0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
+)
+SHARPNESS = (  # theory (L8)
+    30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
+)
+SAME_DIRECTION = 0.3  # sine of the angle between normals at a crease below which their sides have one pressure
+NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
+WHOLE = 1e-2  # a facet covered to within this share is fully covered
+FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
+DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
+
+
+@dataclass(frozen=True)
+class PairPoints:
+    """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, stiffness (n_points,);
+    operator (n_points, n_free) change of the gap by the free displacements; prescribed (n_points, n_histories)."""
+
+    test: Any
+    weight: NDArray[np.float64]
+    stiffness: NDArray[np.float64]  # of the constraint function, pressure per length
+    gap: NDArray[np.float64]
+    operator: Any
+    prescribed: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One contact pair on the free displacements.
+
+    operator: (n, n_free) sparse; prescribed: (n, n_histories) change of the gap by prescribed displacements and offsets that
+    follow a history, theory (F9); gap: (n,) weighted geometric gap with the constant offset; scale: (n,) weighted gap per
+    pressure, weight h / E.
+    size: typical facet length; stiffness: E / size, pressure per length. For tied pairs the n rows hold all components
+    (dim in turn) and the gap is zero.
+    """
+
+    contact: Contact
+    contactor: Surface
+    target: Surface
+    coupling: Coupling
+    space: PressureSpace
+    rows: Any  # (n, dim n_points): operator on all displacements
+    operator: Any
+    prescribed: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    size: float
+    stiffness: float
+    compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
+    points: PairPoints | None = None  # where the law is evaluated at the integration points
+    interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
+    planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
+    repeated: bool = False  # equations tie displacements together that the constraints would take one by one
+
+    @property
+    def tied(self) -> bool:
+        return self.contact.kind == "tied"
+
+    @property
+    def redundant(self) -> bool:
+        """Whether constraints may repeat each other, so that the pressure is one of many."""
+        return self.repeated or self.contact.method == "node-to-segment-two-pass"
+
+    @property
+    def smooth(self) -> bool:
+        return not self.tied and self.contact.law == "constraint-function"
+
+    def __len__(self) -> int:
+        return int(self.operator.shape[0])
+
+
+def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
+    """All contact pairs of a model. Two-pass node-to-segment makes two of one contact, each side as contactor once.
+    couple: cuts and integrates, as ``abut.contact.coupling.couple``.
+
+    Raises InputError where two surfaces do not face each other."""
+    result = []
+    for contact in model.contacts:
+        sides = model.sides(contact)
+        result.append(pair(model, contact, held, couple, sides))
+        if contact.method == "node-to-segment-two-pass":
+            back = replace(
+                contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
+            )
+            result.append(pair(model, back, held, couple, (sides[1], sides[0])))
+    if len(result) > 1 or any(own.contactor.parts is not None for own in result):
+        kept = one_each([_shared(own) for own in result])
+        result = [
+            own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
+            for own, keep in zip(result, kept)
+        ]
+    tied_together = bool(model.equations or model.rigid)
+    return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
+
+
+def _shared(own: Pair) -> Functions | None:
+    """What others at the same points need to know of a pair's multipliers; nothing of ties and methods for comparison."""
+    if own.tied or own.contact.method != METHODS[0] or not own.space.continuous:
+        return None
+    return functions(own.space, own.contactor, own.coupling)
+
+
+def _repeats(operator: Any) -> bool:
+    """Whether rows depend on each other. Not looked for where they are too many for a dense matrix."""
+    if not 0 < operator.shape[0] <= FEW:
+        return False
+    size = sp.linalg.norm(operator, axis=1)
+    rows = sp.diags(1.0 / np.where(size > 0.0, size, 1.0)) @ operator
+    values = np.linalg.eigvalsh((rows @ rows.T).toarray())
+    return bool(values[0] < DEPENDENT * values[-1])
+
+
+def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple, sides: Sides | None = None) -> Pair:
+    """Cut, integrate and reduce one contact pair; sides: the model's own where left out. Raises InputError where the
+    surfaces do not face each other."""
+    contactor, target = model.sides(contact) if sides is None else sides
+    tied = contact.kind == "tied"
+    reach = _reach(held, contactor, target)
+    contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
+    sizes = facet_sizes(contactor)
+    size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
+    stiffness = modulus / size
+    if tied:
+        compliance = _compliance(model, contactor, target)
+        return _tied(contact, contactor, target, coupling, space, held, size, stiffness, compliance)
+    space = _without_held(space, contactor, coupling, held)
+    rows = (space.transfer.T @ coupling.operator).tocsr()
+    free = (rows @ held.free).tocsr()
+    moved = _row_norms(free) > NO_EFFECT * space.weight
+    if not moved.all():
+        space = reduce(space, coupling, moved)
+        rows = (space.transfer.T @ coupling.operator).tocsr()
+        free = (rows @ held.free).tocsr()
+    constant, varying = offsets(model, contact)
+    border = rim(contactor)
+    beyond = goes_on(contactor, border, target, reach)
+    return Pair(
+        contact, contactor, target, coupling, space, rows, free,
+        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ coupling.gap + constant * space.weight,
+        scale=space.weight / stiffness, size=size, stiffness=stiffness,
+        compliance=_compliance(model, contactor, target),
+        points=_points(coupling, space, held, modulus / sizes, constant, varying),
+        interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
+        planes=_planes(contactor, border, beyond, held),
+    )  # fmt: skip
+
+
+def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Facets (n_facets,) that are covered all over, at no edge of the contactor on the target and of no target beside
+    another."""
+    share = coupling.covered / full_moments(contactor, 0)[:, 0]
+    edge = ends_on_target(contactor, border, beyond) | beside_others(contactor)
+    return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
+
+
+def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], held: Supports) -> Planes | None:
+    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
+    target ends there too. None in 2D."""
+    if contactor.dim == 2:
+        return None
+    mirrored = ~beyond
+    out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
+    for own in border.ends.T:
+        mirrored &= held.held_share(own, out) > SQUARE
+        mirrored &= held.held_share(own, border.normal) < HELD
+    return planes(contactor, border, mirrored)
+
+
+def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
+    """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
+
+    active: (n,) bool, the multipliers in contact."""
+    if own.interior is None:
+        return own
+    inner = inner_facets(own.space, own.contactor, own.interior, active)
+    if not inner.any():
+        return own
+    return _in_space(model, own, with_plain_facets(own.space, own.contactor, own.coupling, inner), held)
+
+
+def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> Pair:
+    """A pair, not tied, with another space."""
+    rows = (space.transfer.T @ own.coupling.operator).tocsr()
+    constant, varying = offsets(model, own.contact)
+    points, at = own.points, own.coupling.points
+    if points is not None and at is not None:
+        points = replace(points, test=(at.pressure @ space.transfer).tocsr())
+    return replace(
+        own, space=space, rows=rows, operator=(rows @ held.free).tocsr(), points=points,
+        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
+    )  # fmt: skip
+
+
+def _couple(
+    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple
+) -> tuple[Surface, Coupling, PressureSpace]:
+    """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
+    space: PressureSpace | None
+    if contact.method != "segment-to-segment":
+        coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
+        seen = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
+        coupling = replace(coupling, sights=seen.sights)
+    else:
+        tied = contact.kind == "tied"
+        name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
+        of_dual = name in (DUAL, DUAL_P1)
+        cut = partial(
+            couple, contactor, target, surface_degree(contactor) if of_dual else degree,
+            rule=contact.integration.rule, points=contact.integration.points, componentwise=tied,
+            keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
+        )  # fmt: skip
+        coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
+        coupling = of_corners(contactor, coupling) if of_dual else coupling
+        contactor = contactor if tied else by_target(contactor, target, coupling)
+        space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
+    if space is None or not coupling.segments.any():
+        raise InputError(
+            f"contact '{contact.name}': no facet of {words(contact.contactor)} faces {words(contact.target)} within "
+            "reach; check the names, that both surfaces' normals point out of their bodies, and the distance between them"
+        )
+    return contactor, coupling, space
+
+
+def offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
+    """The offset that is there from the start, and that of each history (n_histories,)."""
+    varying = np.zeros(len(model.histories))
+    if contact.amplitude is None:
+        return contact.offset, varying
+    varying[model.histories.index(contact.amplitude)] = contact.offset
+    return 0.0, varying
+
+
+def _points(
+    coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64],
+    constant: float, varying: NDArray[np.float64],
+) -> PairPoints | None:  # fmt: skip
+    if coupling.points is None:
+        return None
+    at = coupling.points
+    return PairPoints(
+        test=(at.pressure @ space.transfer).tocsr(),
+        weight=at.weight,
+        stiffness=SHARPNESS * stiffness[at.facet],
+        gap=at.gap + constant,
+        operator=(at.gap_operator @ held.free).tocsr(),
+        prescribed=at.gap_operator @ held.prescribed + varying,
+    )
+
+
+def _tied(
+    contact: Contact, contactor: Surface, target: Surface, coupling: Coupling, space: PressureSpace,
+    held: Supports, size: float, stiffness: float, compliance: float,
+) -> Pair:  # fmt: skip
+    """All components of the displacement are tied, theory (L9). A multiplier component that supports hold at its node
+    on the contactor follows its neighbour, direction by direction."""
+    dim = contactor.dim
+    rows, weights, spaces = [], [], []
+    for a in range(dim):
+        own = space
+        sits = space.node >= 0
+        if sits.any():
+            share = np.zeros(len(space))
+            direction = np.broadcast_to(np.eye(dim)[a], (int(sits.sum()), dim))
+            share[sits] = held.held_share(space.node[sits], direction)
+            if (share < HELD).any():
+                own = reduce(space, coupling, share < HELD)
+        scalar = (own.transfer.T @ coupling.operator).tocsr()
+        spread = sp.csr_matrix(
+            (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dim * np.arange(scalar.shape[1]) + a)),
+            shape=(scalar.shape[1], dim * scalar.shape[1]),
+        )
+        component = (scalar @ spread).tocsr()
+        keep = _row_norms(component @ held.free) > NO_EFFECT * own.weight
+        rows.append(component[keep])
+        weights.append(own.weight[keep])
+        spaces.append((own.transfer.tocsc()[:, keep], a))
+    every = sp.vstack(rows).tocsr()
+    weight = np.concatenate(weights)
+    transfer = sp.hstack([t for t, _ in spaces]).tocsr()
+    component_of = np.concatenate([np.full(t.shape[1], a) for t, a in spaces])
+    vector_space = PressureSpace(
+        space.name, space.degree, transfer, transfer, weight, component_of, component_of, space.removed
+    )
+    return Pair(
+        contact, contactor, target, coupling, vector_space, every, (every @ held.free).tocsr(),
+        prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
+        stiffness=stiffness, compliance=compliance,
+    )  # fmt: skip
+
+
+def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
+    """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
+    theory (P7) falls from 0.8 to 0.03. Those of the sides of a crease whose normals supports leave one direction for become
+    one."""
+    sits = np.flatnonzero(space.node >= 0)
+    if not len(sits):
+        return space
+    _, at = side_normals(contactor)
+    normals = at[space.side[sits]]
+    keep = np.ones(len(space), dtype=bool)
+    keep[sits] = held.held_share(space.node[sits], normals) < HELD
+    if not keep.any():
+        return space
+    nodes, count = np.unique(space.node[sits[keep[sits]]], return_counts=True)
+    several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
+    onto = np.full(len(space), -1)
+    if len(several):
+        own = at[space.side[several]]
+        first = _repeated(space.node[several], own, held.can_move(space.node[several], own))
+        onto[several[first >= 0]] = several[first[first >= 0]]
+    return reduce(space, coupling, keep & (onto < 0), onto=onto)
+
+
+def _repeated(
+    nodes: NDArray[np.int64], normals: NDArray[np.float64], directions: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Of directions (n, dim) at nodes (n,), the first one at the same node where they add nothing to those before them,
+    else -1. Those with one of the normals (n, dim) before them are no crease's, but of another part: -1."""
+    result = np.full(len(nodes), -1)
+    before: dict[int, list[NDArray[np.float64]]] = {}
+    first: dict[int, int] = {}
+    seen: dict[int, list[NDArray[np.float64]]] = {}
+    for i, (node, normal, direction) in enumerate(zip(nodes.tolist(), normals, directions)):
+        others = seen.setdefault(node, [])
+        if any(normal @ other > CREASE for other in others):
+            continue
+        others.append(normal)
+        basis = before.setdefault(node, [])
+        rest = direction - sum(((direction @ other) * other for other in basis), np.zeros(len(direction)))
+        size = float(np.linalg.norm(rest))
+        if basis and size < SAME_DIRECTION:
+            result[i] = first[node]
+            continue
+        first.setdefault(node, i)
+        basis.append(rest / max(size, 1e-300))
+    return result
+
+
+def _row_norms(matrix: Any) -> NDArray[np.float64]:
+    return np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
+
+
+def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
+    return default_reach(contactor, target) + 2.0 * held.largest
+
+
+def _compliance(model: Model, contactor: Surface, target: Surface) -> float:
+    total = 0.0
+    for surface in (contactor, target):
+        bodies = [s for s in model.solids if np.isin(surface.cells, model.mesh.bodies[s.body]).any()]
+        total += max((2.0 * (1.0 - s.material.poisson**2) / s.material.young for s in bodies), default=0.0)
+    return total
+
+
+def _modulus(model: Model, contactor: Surface, target: Surface) -> float:
+    """The softer Young's modulus of the two sides; rigid bodies have none."""
+    young = {solid.body: solid.material.young for solid in model.solids}
+    cells = np.concatenate([contactor.cells, target.cells])
+    return min(young[body] for body in young if np.isin(cells, model.mesh.bodies[body]).any())

@@ -1,0 +1,150 @@
+"""Rigid motions that nothing resists: held without a force where loads do no work on them, theory (V14)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from abut.errors import SingularModelError
+from abut.problem.constraints import Supports
+from abut.problem.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
+
+NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
+TOGETHER = 1e-6  # share of a body's motion in a free one from which on it takes part
+CURE = "add a support, or a symmetry plane (normal = 0)"
+
+
+@dataclass(frozen=True)
+class Regularisation:
+    """Springs to the ground on as many free displacements as there are motions: by equilibrium they carry nothing.
+
+    motions: (dim n_points, m) orthonormal; columns: (m,) free displacements with a spring, stiffness: (m,) of the springs;
+    gram: (n_modes, n_modes) their resistance; notes: what is held, in words.
+    """
+
+    motions: NDArray[np.float64]
+    columns: NDArray[np.int64]
+    stiffness: NDArray[np.float64]
+    gram: NDArray[np.float64]
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def added_to(self, matrix: Any) -> Any:
+        """The stiffness on the free displacements, (n_free, n_free) CSR, with the springs."""
+        if not len(self):
+            return matrix
+        springs = sp.csr_matrix((self.stiffness, (self.columns, self.columns)), shape=matrix.shape)
+        return matrix + springs
+
+    def force(self, free: NDArray[np.float64]) -> float:
+        """Largest force in a spring at free displacements (n_free,)."""
+        return float(np.abs(self.stiffness * free[self.columns]).max(initial=0.0))
+
+    def without_motions(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The displacement (dim n_points,) with no share of the motions, whatever displacements carry the springs."""
+        return np.asarray(displacement - self.motions @ (self.motions.T @ displacement))
+
+
+def regularise(
+    rigid: RigidModes,
+    resistances: Sequence[NDArray[np.float64]],
+    held: Supports,
+    stiffness: Any,
+    loads: Sequence[NDArray[np.float64]],
+) -> Regularisation:
+    """Hold the rigid motions that nothing resists, where that takes no force.
+
+    resistances: Gram matrices of supports and all contact, closed; held: the change of variables;
+    stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step.
+    Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
+    """
+    motions = free_motions(resistances)
+    notes: list[str] = []
+    for groups, own in _independent(rigid, motions):
+        size, worst = _work(rigid, groups, own, loads)
+        if worst is not None:
+            raise SingularModelError(
+                f"{describe(rigid, worst, one_way=True)} without resistance{_others(own)}: the loads push it that way, and "
+                f"neither supports nor contact hold it; {CURE}"
+            )
+        if size == 0.0 and len(groups) == 1 and own.shape[1] == rigid.per_group:
+            raise SingularModelError(
+                f"{describe(rigid, own)} without resistance{_others(own)}: neither supports nor contact hold it, and "
+                f"nothing loads it; {CURE}"
+            )
+        notes += [
+            f"{text}, on which the loads do no work: held at rest in the mean, without a force (regularisation)"
+            for text, _ in each_motion(rigid, own)
+        ]
+    return _springs(rigid, motions, held, stiffness, tuple(notes))
+
+
+def _springs(
+    rigid: RigidModes, motions: NDArray[np.float64], held: Supports, stiffness: Any, notes: tuple[str, ...]
+) -> Regularisation:
+    m = motions.shape[1]
+    if not m:
+        none = np.zeros(0)
+        gram = np.zeros((rigid.modes.shape[1],) * 2)
+        return Regularisation(np.zeros((len(rigid.modes), 0)), none.astype(np.int64), none, gram)
+    whole = rigid.modes @ motions
+    moved = held.coordinates(whole)
+    columns = np.sort(scipy.linalg.qr(moved.T, mode="r", pivoting=True)[1][:m]).astype(np.int64)
+    resisted = held.coordinates(rigid.modes)[columns]
+    return Regularisation(
+        motions=np.asarray(scipy.linalg.qr(whole, mode="economic")[0], dtype=np.float64),
+        columns=columns,
+        stiffness=np.asarray(stiffness.diagonal()[columns]),
+        gram=np.asarray(resisted.T @ resisted) / m,
+        notes=notes,
+    )
+
+
+def _independent(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[NDArray[Any], NDArray[np.float64]]]:
+    """Free motions (n_modes, m) sorted by the groups of bodies that move together: group numbers and motions of each."""
+    n = len(rigid.groups)
+    share = (motions @ motions.T).reshape(n, rigid.per_group, n, rigid.per_group)
+    coupled = np.abs(share).max(axis=(1, 3)) > TOGETHER
+    _, label = connected_components(sp.csr_matrix(coupled), directed=False)
+    result = []
+    for number in np.unique(label):
+        groups = np.flatnonzero(label == number)
+        inside = np.repeat(label == number, rigid.per_group)
+        basis, size, _ = np.linalg.svd(np.where(inside[:, None], motions, 0.0), full_matrices=False)
+        own = basis[:, size > 0.5]  # projections of an orthonormal basis: ones and zeros
+        if own.shape[1]:
+            result.append((groups, own))
+    return result
+
+
+def _work(
+    rigid: RigidModes, groups: NDArray[np.int64], motions: NDArray[np.float64], loads: Sequence[NDArray[np.float64]]
+) -> tuple[float, NDArray[np.float64] | None]:
+    """Size of the loads on some groups of bodies, and the motion (n_modes, 1) on which they do work, if there is one."""
+    modes = (rigid.per_group * groups[:, None] + np.arange(rigid.per_group)).ravel()
+    touched = np.abs(rigid.modes[:, modes]).max(axis=1) > 0.0
+    largest = 0.0
+    for load in loads:
+        size = float(np.abs(load[touched]).sum())
+        work = motions.T @ (rigid.modes.T @ load)
+        if np.abs(work).max() > NO_WORK * size:
+            worst = motions @ work / np.linalg.norm(work)
+            plain = simple_motions(rigid, worst)
+            free = np.linalg.norm(plain - motions @ (motions.T @ plain), axis=0) < TOGETHER
+            driven = plain.T @ (rigid.modes.T @ load) > NO_WORK * size
+            return size, plain[:, free & driven][:, :1] if (free & driven).any() else worst[:, None]
+        largest = max(largest, size)
+    return largest, None
+
+
+def _others(motions: NDArray[np.float64]) -> str:
+    return f" (and {motions.shape[1] - 1} more motions)" if motions.shape[1] > 1 else ""

@@ -1,0 +1,87 @@
+"""What loads a model: nodal forces and temperatures, one column for each of its histories."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.bodies.elements import body_load, thermal_load
+from abut.bodies.loads import force_load, pressure_load, traction_load
+from abut.fields import evaluate
+from abut.model import BodyForce, Force, Gravity, Model, NodalForce, Pressure, Temperature, Traction
+from abut.model.conditions import weights
+
+
+@dataclass(frozen=True)
+class Loads:
+    """forces: (dim n_points, n_histories) nodal forces of loads and thermal strains; resultant: (dim, n_histories) of the
+    loads; temperature: (n_points, n_histories) change at the nodes, without that of whole solids."""
+
+    forces: NDArray[np.float64]
+    resultant: NDArray[np.float64]
+    temperature: NDArray[np.float64]
+
+    def at_ends(self, model: Model) -> list[NDArray[np.float64]]:
+        """The nodal forces (dim n_points,) at the end of every load step."""
+        return [self.forces @ weights(model.histories, time) for time in model.solve.ends]
+
+
+def loads(model: Model) -> Loads:
+    """Everything that loads a model, by history. Raises InputError for functions of position that do not return a finite
+    value for each point."""
+    applied, temperature = applied_load(model), nodal_temperature(model)
+    resultant = applied.reshape(-1, model.dim, applied.shape[1]).sum(axis=0)
+    return Loads(applied + strain_load(model, temperature), resultant, temperature)
+
+
+def applied_load(model: Model) -> NDArray[np.float64]:
+    """Nodal forces of all loads, (dim n_points, n_histories)."""
+    histories = model.histories
+    total = np.zeros((model.mesh.points.size, len(histories)))
+    for load in model.loads:
+        if not isinstance(load, Temperature):
+            total[:, histories.index(load.amplitude)] += _forces(model, load)
+    return total
+
+
+def nodal_temperature(model: Model) -> NDArray[np.float64]:
+    """Change of temperature at the nodes, (n_points, n_histories)."""
+    histories = model.histories
+    total = np.zeros((len(model.mesh.points), len(histories)))
+    for load in model.loads:
+        if isinstance(load, Temperature):
+            where = model.mesh.nodes_of(load.on)
+            change = evaluate(load.value, model.mesh.points[where], f"temperature on '{load.on}': value")
+            total[where, histories.index(load.amplitude)] += change
+    return total
+
+
+def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Nodal forces of thermal strains, (dim n_points, n_histories); whole solids are heated along the ramp."""
+    uniform = [model.temperatures(1.0), *({} for _ in model.histories[1:])]
+    return np.column_stack(
+        [
+            thermal_load(model.mesh, model.materials, bodies, model.plane, nodal, model.integration)
+            for bodies, nodal in zip(uniform, temperature.T)
+        ]
+    )
+
+
+def _forces(model: Model, load: Pressure | Traction | Force | NodalForce | Gravity | BodyForce) -> NDArray[np.float64]:
+    mesh = model.mesh
+    if isinstance(load, Pressure):
+        return pressure_load(mesh.surface(load.on), load.value)
+    if isinstance(load, Traction):
+        return traction_load(mesh.surface(load.on), load.value, f"traction on '{load.on}': value")
+    if isinstance(load, Force):
+        return force_load(mesh.surface(load.on), np.array(load.value))
+    if isinstance(load, NodalForce):
+        force = np.zeros(mesh.points.shape)
+        force[mesh.nodes_of(load.on)] = load.value
+        return force.ravel()
+    if isinstance(load, Gravity):
+        weights = {s.body: s.material.density * np.array(load.value) for s in model.solids}
+        return body_load(mesh, weights if load.on is None else {load.on: weights[load.on]})
+    return body_load(mesh, dict.fromkeys(mesh.bodies if load.on is None else [load.on], load.value))

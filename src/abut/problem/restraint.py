@@ -1,0 +1,244 @@
+"""What holds each body: supports, ties, contact; and what to do where an active set lets one go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from abut.errors import SingularModelError
+from abut.mesh.mesh import Mesh
+from abut.problem.constraints import Supports
+from abut.problem.contact_pairs import Pair
+from abut.problem.rigid_modes import (
+    RigidModes,
+    describe,
+    free_motions,
+    resistance_of_rows,
+    resistance_of_supports,
+    rigid_modes,
+    simple_motions,
+)
+
+UNBALANCED = 1e-9  # force that no contact balances, over the sum of all, from which on it moves a body
+SLIGHT = 1e-9  # change of a gap over the motion that is rounding
+NOTHING = 1e-10  # share of a row that works on a rigid motion below which it is rounding
+
+
+@dataclass(frozen=True)
+class Holding:
+    """Resistance against rigid motions: of the supports (with what holds loose motions), of each pair's rows."""
+
+    rigid: RigidModes
+    supports: NDArray[np.float64]
+    pairs: Sequence[Pair]
+    bare: NDArray[np.float64]  # of the supports, without what holds loose motions
+    by_supports: bool  # supports and ties alone hold every body
+    free: NDArray[np.float64]  # (dim n_points, m) rigid motions that the supports alone leave free
+
+    @property
+    def everything(self) -> list[NDArray[np.float64]]:
+        """Resistance of supports and of every pair, closed."""
+        return [self.supports, *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs)]
+
+    def helped_by(self, gram: NDArray[np.float64]) -> Holding:
+        """The same with something else that resists."""
+        return _holding(self.rigid, self.supports + gram, self.pairs, self.bare) if gram.any() else self
+
+    def complete(
+        self,
+        held: Supports,
+        load: NDArray[np.float64],
+        active: NDArray[np.bool_],
+        gap: NDArray[np.float64],
+        weights: NDArray[np.float64],
+    ) -> NDArray[np.bool_]:
+        """The active set, with the closest multipliers added where it would let a body go that the loads move, theory (V8).
+
+        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.problem.system.System``."""
+        if self.by_supports or self._holds(active) or self._moved(held, load @ weights, active) is None:
+            return active
+        result = active.copy()
+        splits = np.cumsum([len(p) for p in self.pairs])[:-1]
+        for p, g, own in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
+            if p.tied or not len(p):
+                continue
+            clearance = g / (p.scale * p.stiffness * p.size)  # over the facet size
+            own |= clearance <= clearance.min() + 0.01
+        return result if self._holds(result) else np.ones_like(active)
+
+    def pulled_off(self, held: Supports, load: NDArray[np.float64], weights: NDArray[np.float64]) -> str:
+        """The motion, in words, that loads cause though contact pushes wherever it can; empty where there is none.
+
+        load, weights: as for ``complete``."""
+        return self.unbalanced(held, load @ weights)
+
+    def unbalanced(self, held: Supports, force: NDArray[np.float64]) -> str:
+        """The same for forces (n_free,) on the free displacements."""
+        motion = self._moved(held, force)
+        return "" if motion is None else self._in_words(held, motion, [force], driven=True)
+
+    def unheld(self, held: Supports, forces: Sequence[NDArray[np.float64]]) -> str:
+        """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
+        is none. forces: (n_free,) of each load step, none of which is out of balance."""
+        free = free_motions([self.supports])
+        moves = held.coordinates(self.rigid.modes @ free)
+        works = [(moves.T @ force, float(np.abs(force).sum())) for force in forces]
+        motion = unheld(self.pairs, moves, works)
+        return "" if motion is None else self._in_words(held, free @ motion, forces, driven=False)
+
+    def _in_words(
+        self, held: Supports, motion: NDArray[np.float64], forces: Sequence[NDArray[np.float64]], driven: bool
+    ) -> str:
+        """The motion (n_modes,), or a plain shift or turn that does as well: one that closes no contact, and on which forces
+        (n_free,) do work if ``driven``, else none that turns it back."""
+        plain = simple_motions(self.rigid, motion)
+        moves = held.coordinates(self.rigid.modes @ plain)
+        free = free_motions([self.bare])
+        stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
+        opens = np.zeros(plain.shape[1])
+        for pair in self.pairs:
+            moved = np.asarray(pair.operator @ moves) / np.asarray(abs(pair.operator).sum(axis=1)).ravel()[:, None]
+            stays &= (np.abs(moved) < SLIGHT).all(axis=0) if pair.tied else (moved > -SLIGHT).all(axis=0)
+            opens += np.where(moved > SLIGHT, moved, 0.0).sum(axis=0)
+        for force in forces:
+            work, size = moves.T @ force, UNBALANCED * float(np.abs(force).sum())
+            stays &= work > size if driven else work >= -size
+        if not driven:
+            stays &= opens > 0.0
+        best = plain[:, stays][:, 0] if stays.any() else motion
+        return describe(self.rigid, best[:, None], one_way=True)
+
+    def _moved(
+        self, held: Supports, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.float64] | None:
+        """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
+        pushes where it can; None where there is none."""
+        free = free_motions([self.supports])
+        moves = held.coordinates(self.rigid.modes @ free)
+        motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
+        return None if motion is None else free @ motion
+
+    def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+        splits = np.cumsum([len(p) for p in self.pairs])[:-1]
+        return [resistance_of_rows(self.rigid, p.rows[own]) for p, own in zip(self.pairs, np.split(active, splits))]
+
+    def _holds(self, active: NDArray[np.bool_]) -> bool:
+        return free_motions([self.supports, *self._rows(active)]).shape[1] == 0
+
+
+def unbalanced(
+    pairs: Sequence[Pair],
+    moves: NDArray[np.float64],
+    work: NDArray[np.float64],
+    size: float,
+    active: NDArray[np.bool_] | None = None,
+) -> NDArray[np.float64] | None:
+    """The motion (m,) that is left where no pressures that push (ties: nor pull) balance the loads, theory (V15); None
+    where some do.
+
+    moves: (n_free, m) rigid motions that supports leave free; work: (m,) of the loads on them; size: sum of all forces,
+    of which a work of ``UNBALANCED`` is none; active: (n,) multipliers that may press, all where left out."""
+    if not _drives(work, size):
+        return None
+    chosen = [None] * len(pairs) if active is None else np.split(active, np.cumsum([len(p) for p in pairs])[:-1])
+    forces = np.concatenate([np.zeros((0, len(work))), *(_pushes(p, moves, own) for p, own in zip(pairs, chosen))])
+    if not len(forces):
+        return work
+    pressure, missing = nnls(forces.T, -work)
+    return work + forces.T @ pressure if missing > UNBALANCED * size else None
+
+
+def unheld(
+    pairs: Sequence[Pair], moves: NDArray[np.float64], works: Sequence[tuple[NDArray[np.float64], float]]
+) -> NDArray[np.float64] | None:
+    """A motion (m,) that opens all of a contact, closes none, and that no load turns back: theory (V21). None where there is
+    none, as where each contact can be under pressure while pressures balance one another or the loads.
+
+    works: (m,) of each load step and the sum of its forces, as for ``unbalanced``."""
+    own = [_pushes(pair, moves) for pair in pairs]
+    forces = np.concatenate([np.zeros((0, moves.shape[1])), *own])
+    loads = [work / np.linalg.norm(work) for work, size in works if _drives(work, size)]
+    columns = np.concatenate([forces, *(load[None] for load in loads)])
+    even = forces.sum(axis=0)  # all pressures may be one, and more: then each contact is under pressure
+    if not len(forces) or nnls(columns.T, -even)[1] <= UNBALANCED * len(forces):
+        return None
+    pair_of = np.repeat(np.arange(len(pairs)), [len(push) for push in own])
+    for i, pair in enumerate(pairs):
+        if pair.tied or not len(own[i]):
+            continue
+        carried = np.zeros(len(columns))
+        carried[: len(forces)] = pair_of == i
+        system = np.vstack([columns.T, carried])
+        wanted = np.append(np.zeros(moves.shape[1]), 1.0)  # in balance, with a pressure of one in this contact
+        amounts, missing = nnls(system, wanted)
+        if missing > UNBALANCED:
+            return np.asarray((system @ amounts - wanted)[:-1])
+    return None
+
+
+def _drives(work: NDArray[np.float64], size: float) -> bool:
+    return bool(len(work)) and bool(np.abs(work).max() > UNBALANCED * size)
+
+
+def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
+    """What a pressure of each multiplier of a pair, or of those ``active``, does on the motions, (rows, m), each of unit
+    length; those of ties both ways, and none of those that do nothing but rounding."""
+    operator = pair.operator
+    if active is not None:
+        operator = operator[active]
+    elif pair.points is not None:  # the pressure is positive there, its coefficients need not be
+        operator = pair.points.operator
+    moved = np.asarray(operator @ moves)
+    length = np.linalg.norm(moved, axis=1)
+    keep = length > NOTHING * np.asarray(abs(operator).sum(axis=1)).ravel()
+    moved = moved[keep] / length[keep, None]
+    return np.concatenate([moved, -moved]) if pair.tied else moved
+
+
+def require_held(held_by: Holding, held: Supports, loads: Sequence[NDArray[np.float64]]) -> None:
+    """Raises SingularModelError where the loads of a step pull a body off its contact, and where one can leave its contact
+    without any load that turns it back, at no step. loads: (dim n_points,) nodal forces of each load step."""
+    forces = [held.free.T @ load for load in loads]
+    for number, force in enumerate(forces, start=1):
+        require_balance(held_by, held, force, f" in step {number}" if len(forces) > 1 else "")
+    require_unmoved(held_by, held, forces)
+
+
+def require_balance(held_by: Holding, held: Supports, force: NDArray[np.float64], when: str = "") -> None:
+    """Raises SingularModelError where forces (n_free,) pull a body off its contact."""
+    motion = held_by.unbalanced(held, force)
+    if motion:
+        raise SingularModelError(
+            f"{motion}: the loads pull it off its contact{when}, which can only push; hold it by a support or turn the load "
+            "round"
+        )
+
+
+def require_unmoved(held_by: Holding, held: Supports, forces: Sequence[NDArray[np.float64]]) -> None:
+    """Raises SingularModelError where a body can leave its contact and none of the forces (n_free,) of load steps turns it
+    back."""
+    motion = held_by.unheld(held, forces)
+    if motion:
+        raise SingularModelError(
+            f"{motion}: contact can only push it that way, and neither supports, other contact nor loads hold it there; add "
+            "a support, what it rests on, or the load that keeps it in place"
+        )
+
+
+def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
+    """Work out what holds the bodies of a mesh."""
+    rigid = rigid_modes(mesh)
+    support = resistance_of_supports(rigid, held)
+    return _holding(rigid, support, pairs, support)
+
+
+def _holding(
+    rigid: RigidModes, support: NDArray[np.float64], pairs: Sequence[Pair], bare: NDArray[np.float64]
+) -> Holding:
+    ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
+    by_supports = free_motions([support, *ties]).shape[1] == 0
+    return Holding(rigid, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))

@@ -1,0 +1,107 @@
+"""The results of a contact pair, and the lines of its certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.mesh.surface import Surface
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words.
+    last: it counts in the last step only, since it is bound to fail while loads are still small."""
+
+    contact: str
+    name: str
+    value: float
+    limit: float
+    meaning: str
+    last: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is within its limit; what is no number is not."""
+        return self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class PressureStatistics:
+    """The pressure of a contact over its loaded area, at points at least half of whose support is covered.
+
+    largest: of the reported pressure, force per area; place: (dim,) where, undeformed coordinates; partly_covered: the
+    largest at points with less of their support covered, which count nowhere else, NaN where none of these is loaded;
+    area: the loaded one, of multipliers in contact above a thousandth of the largest (2D: a length; axisymmetric: of the
+    whole turn); mean: normal force over it; percentile_95: the pressure that 95 % of it stays below. Where nothing is in
+    contact place, mean and percentile are NaN.
+    """
+
+    largest: float
+    place: NDArray[np.float64]
+    partly_covered: float
+    mean: float
+    percentile_95: float
+    area: float
+
+
+@dataclass(frozen=True)
+class Resultant:
+    """What the nodal forces of a contact on its contactor amount to, in undeformed coordinates.
+
+    force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the whole turn; moment: (1,) or (3,)
+    about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the force's line
+    of action nearest to the mean of the nodes (weighted by their forces along the resultant); on a plane contact it lies in
+    that plane, in axisymmetric models on the axis; NaN where forces cancel or there are none.
+    """
+
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+    centre: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ContactResult:
+    """One contact pair at the end of a step.
+
+    force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
+    pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length. The
+    pressure is the multiplier's average over each corner's function, linear between corners: theory (P10).
+    multiplier: (n_contactor_facets, 9) the multiplier itself, which may jump between facets and swing; share:
+    (n_contactor_facets, 9) covered share of each point's support. max_pressure: the largest where that is at least a half.
+    covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
+    target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
+    covered_share: covered area over the contactor's area; checks: the certificate of this step.
+    statistics: of the pressure over the loaded area; resultant: force, moment and centre of the contactor's nodal forces.
+    contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;
+    body_forces: body of the target -> (dim,) its part of their resultant.
+    For tied pairs ``pressure`` is the normal part of the tie traction (compression positive), the forces are all of it.
+    """
+
+    name: str
+    contactor: Surface
+    target: Surface
+    force: NDArray[np.float64]
+    max_pressure: float
+    area: float
+    max_penetration: float
+    active: int
+    multipliers: int
+    removed: int
+    segments: int
+    pressure: NDArray[np.float64]
+    multiplier: NDArray[np.float64]
+    share: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    covered: NDArray[np.bool_]
+    covered_share: float
+    target_pressure: NDArray[np.float64]
+    checks: tuple[Check, ...]
+    statistics: PressureStatistics
+    resultant: Resultant
+    contactor_forces: NDArray[np.float64]
+    target_forces: NDArray[np.float64]
+    body_forces: Mapping[str, NDArray[np.float64]]

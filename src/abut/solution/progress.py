@@ -1,0 +1,42 @@
+"""What is told while solving: iterations, and stages that begin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One Newton iteration: one row of the live table, one line of run.jsonl.
+
+    active: multipliers in contact, over all pairs; changed: how many changed since the iteration before;
+    residual: equilibrium residual over the reference force; contact_residual: largest violation of the contact law over
+    the reference pressure; penetration: largest penetration over the contactor's facet size.
+    """
+
+    step: int
+    iteration: int
+    active: int
+    changed: int
+    residual: float
+    contact_residual: float
+    penetration: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stage of the run begins. ``seconds``: how long it will take, from its size (None: not known); ``done`` of
+    ``total`` load steps lie behind."""
+
+    name: str
+    seconds: float | None = None
+    done: int = 0
+    total: int = 0
+
+    def __str__(self) -> str:
+        return self.name if self.seconds is None else f"{self.name}: about {max(self.seconds, 1.0):.2g} s"
+
+
+Observer = Callable[[Iteration | Phase | str], None]  # gets each iteration, stages that begin, and notes as text

@@ -1,0 +1,233 @@
+"""What solving yields: iterations, steps and the solution, as frozen records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import isnan
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.model import Model
+from abut.model.conditions import drives
+from abut.solution.contacts import Check, ContactResult
+from abut.solution.progress import Iteration
+
+BALANCE = 1e-9  # limit of the model's balance of forces
+ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
+STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
+RESPONSE = 0.5  # nothing between 0 and 1
+REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
+
+
+@dataclass(frozen=True)
+class RigidResult:
+    """A rigid body at the end of a step: displacement (dim,) of its reference and rotation (1,) or (3,), radians; force
+    (dim,) and moment (1,) or (3,) about the reference that move it, zero where a component is free."""
+
+    displacement: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ProbeResult:
+    """What a probe reads at the end of a step.
+
+    points: (n, dim) coordinates in the undeformed mesh, length; distance: (n,) along the line from its start, length, and
+    nodes: (n,) numbers of the mesh's points, each None where the probe is no line or no set.
+    values: by name displacement (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises, pressure, gap (n,), as far as asked
+    for; NaN where a quantity does not exist at a point.
+    """
+
+    name: str
+    points: NDArray[np.float64]
+    distance: NDArray[np.float64] | None
+    nodes: NDArray[np.int64] | None
+    values: Mapping[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Step:
+    """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
+    displacements applied, where no amplitude says otherwise.
+
+    displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
+    reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
+    supported surface or node set without the share of equations (points that lie on several count for each of them, those
+    of a rigid body for the whole body); load: (dim,) resultant of all
+    loads; rigid: by the name of the body.
+    """
+
+    number: int
+    factor: float
+    converged: bool
+    iterations: tuple[Iteration, ...]
+    displacement: NDArray[np.float64]
+    stress: NDArray[np.float64]
+    reaction: NDArray[np.float64]
+    reactions: Mapping[str, NDArray[np.float64]]
+    load: NDArray[np.float64]
+    contacts: tuple[ContactResult, ...]
+    axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
+    cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+    spring: float | None = None  # largest force that holds motions without resistance; None where there are none
+    internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
+    pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
+    strain: float = (
+        0.0  # largest contact pressure over the stiffness of the two bodies, about that over Young's modulus
+    )
+    rounding: float = 0.0  # force that displacements in double precision cannot tell from none, over the whole model
+    strained: bool = True  # whether anything gives way, beyond rounding
+    rigid: Mapping[str, RigidResult] = field(default_factory=dict)
+    earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
+    probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
+
+    @property
+    def balance_error(self) -> float:
+        """Largest component of loads and reactions together, over the reference force. Radial sums of an axisymmetric
+        model balance only together with the hoop stress and are left out."""
+        if not (self.strained or self.load.any()):  # bodies that move without touching: rounding over rounding
+            return 0.0
+        return float(np.abs(self.load + self.reaction)[1 if self.axisymmetric else 0 :].max() / self.reference_force)
+
+    @property
+    def balance_limit(self) -> float:
+        """Of ``balance_error``: what rounding of the displacements alone may leave, theory (V14), at least and at most fixed
+        shares of the reference force."""
+        return min(max(BALANCE, self.rounding / self.reference_force), ROUNDED)
+
+    @property
+    def regularisation(self) -> float | None:
+        """Force that holds motions without resistance over the reference force."""
+        return None if self.spring is None else self.spring / self.reference_force
+
+    @property
+    def reference_force(self) -> float:
+        """What rounding is judged against, theory (V14): the largest of all resultants, of the forces between surfaces by
+        area, and of the sizes of all nodal forces of stresses together; loads and pressures may cancel, these do not."""
+        return max(self.largest_force, self.pressed, self.internal)
+
+    @property
+    def largest_force(self) -> float:
+        """Largest component of any resultant, now or in a step before."""
+        forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
+        forces += [body.force for body in self.rigid.values()]
+        return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), self.earlier, 1e-300)
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What it takes to go on after a converged step, and to have its results again.
+
+    displacement: (n_free,), pressure, active: (n,) the state; inside: (n,) where "dual-P1" has ordinary functions;
+    own_displacement, own_pressure: the same in the unknowns of
+    the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
+    largest_pressure: up to here, against which rounding is judged later.
+    """
+
+    number: int
+    factor: float
+    linear: str
+    largest_force: float
+    largest_pressure: float
+    displacement: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    active: NDArray[np.bool_]
+    inside: NDArray[np.bool_]
+    own_displacement: NDArray[np.float64]
+    own_pressure: NDArray[np.float64]
+    iterations: tuple[Iteration, ...]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state).
+
+    ``complete`` is False while steps are still to come, or where the run was stopped before them; ``processes``: how many
+    solved it together."""
+
+    model: Model
+    steps: tuple[Step, ...]
+    dofs: int
+    solver: str
+    notes: tuple[str, ...]
+    timings: Mapping[str, float]
+    complete: bool = True
+    ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
+    processes: int = 1
+
+    @property
+    def converged(self) -> bool:
+        """Whether every step met its tolerances."""
+        return all(step.converged for step in self.steps)
+
+    @property
+    def contacts(self) -> tuple[ContactResult, ...]:
+        """The contact results of the last step."""
+        return self.steps[-1].contacts
+
+    @property
+    def probes(self) -> tuple[ProbeResult, ...]:
+        """What the probes read in the last step."""
+        return self.steps[-1].probes
+
+    @property
+    def certificate(self) -> tuple[Check, ...]:
+        """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
+        worst: dict[tuple[str, str], Check] = {}
+        idle = _driven(self.model) and not any(step.strained for step in self.steps)
+        response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
+        for step in self.steps:
+            balance = Check(
+                "",
+                "model balance",
+                step.balance_error,
+                step.balance_limit,
+                "loads plus reactions, over the forces' size",
+            )
+            strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
+            model = [balance, response, strain]
+            if step.regularisation is not None:
+                model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
+                                   "force that holds motions without resistance, over the forces' size"))  # fmt: skip
+            for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
+                key = check.contact, check.name
+                if check.last or key not in worst or _worse(check, worst[key]):
+                    worst[key] = check
+        return tuple(worst.values())
+
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """Displacement at the end of the last step, (n_points, dim)."""
+        return self.steps[-1].displacement
+
+    def to_pyvista(self, step: int = -1) -> Any:
+        """Bodies and contacts as a ``pyvista.MultiBlock``: ``abut.to_pyvista(solution, step)``."""
+        import abut
+
+        return abut.to_pyvista(self, step)
+
+    def plot(self, what: str = "pressure", **options: Any) -> Any:
+        """A quick picture of pressure, gap, von Mises or displacement: ``abut.plot(solution, what, ...)``."""
+        import abut
+
+        return abut.plot(self, what, **options)
+
+
+def _worse(check: Check, other: Check) -> bool:
+    """Whether a line is further beyond its limit than one of another step; what is no number is worst."""
+    return not isnan(other.value) and not check.value / check.limit <= other.value / other.limit
+
+
+def _driven(model: Model) -> bool:
+    """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
+    given = (*model.supports, *model.loads, *model.equations, *model.rigid)
+    hot = any(solid.temperature for solid in model.solids)
+    return hot or any(map(drives, given)) or any(contact.offset < 0.0 for contact in model.contacts)
+
+
+OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it
