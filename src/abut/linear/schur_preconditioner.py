@@ -18,6 +18,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.contact.geometry import facet_stiffness
+from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
 from abut.problem.contact_pairs import Pair
 
@@ -49,24 +50,22 @@ def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
     """Everything about the interfaces that stays the same over all active sets."""
     result, first = [], 0
     for pair in pairs:
-        component = pair.space.node if pair.tied else np.zeros(len(pair), dtype=np.int64)
-        for a in np.unique(component):
-            own = np.flatnonzero(component == a)
-            result.append(_interface(pair, own, first + own))
-        first += len(pair)
+        for space in pair.components:
+            if len(space):
+                result.append(_interface(pair, space, first + np.arange(len(space))))
+            first += len(space)
     return result
 
 
-def _interface(pair: Pair, own: NDArray[np.int64], rows: NDArray[np.int64]) -> Interface:
-    """own: (m,) the coefficients of the pair's space that it is about."""
-    space = pair.space
+def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Interface:
+    """space: of one component of the pair's multipliers."""
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     lowest = (2.0 / extent) ** 2
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
         # No Laplacian across jumps: lumped, with the compliance of the shortest waves.
-        mass = sp.diags(space.weight[own], format="csr")
+        mass = sp.diags(space.weight, format="csr")
         return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
-    transfer, plain = space.transfer.tocsc()[:, own], space.plain.tocsc()[:, own]
+    transfer, plain = space.transfer, space.plain
     products = sp.block_diag(list(pair.coupling.mass), format="csr")
     mass = (plain.T @ products @ plain).tocsr()
     coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
@@ -133,9 +132,8 @@ def half_spaces(parts: Sequence[Interface]) -> HalfSpaces:
     full, mass, coupled = (
         sp.block_diag([getattr(part, name) for part in parts], format="csc") for name in ("full", "mass", "coupled")
     )
-    spread = max(
-        _largest(part.full, part.mass, part.lowest) / part.lowest for part in parts
-    )  # of each as wide, so that all have as many resolvents
+    # Of each as wide, so that all have as many resolvents.
+    spread = max(_largest(part.full, part.mass, part.lowest) / part.lowest for part in parts)
     terms = [inverse_root(part.lowest, spread * part.lowest, ACCURACY) for part in parts]
     sizes = [len(part.rows) for part in parts]
     shifts, weights = (np.repeat(np.stack(values), sizes, axis=0).T for values in zip(*terms))

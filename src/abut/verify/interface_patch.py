@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import BALANCE, balance
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
 from abut.bodies.loads import stress_load
 from abut.contact.coupling import couple, surface_degree
 from abut.contact.geometry import nodal_normals
@@ -27,8 +27,8 @@ from abut.model import Contact, Model, Solid
 from abut.model.conditions import support_along
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import Pair, pair
+from abut.problem.linearised import Rows
 from abut.problem.rigid_modes import rigid_modes
-from abut.problem.system import Rows
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
 FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane
@@ -91,7 +91,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     held = supports(pinned)
     own = pair(pinned, contact, held, sides=sides)
     load = _load(model.mesh, own.contactor, own.target, stress)
-    full = stiffness(pinned.mesh, {s.body: s.material for s in pinned.solids}, model.plane, model.integration)
+    full = stiffness(pinned.deformable)
     displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
     values = own.space.transfer @ pressure
     nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]
