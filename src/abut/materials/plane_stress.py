@@ -1,4 +1,4 @@
-"""Plane stress of any material: the strains out of the plane are those that leave no stress there."""
+"""Plane stress of any material: the strains out of the plane are those that leave no stress there, theory (E5)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Evaluate = Callable[[Array, Array], Evaluated]
 
 
 def law(evaluate: Evaluate, plane: str | None) -> Evaluate:
-    """A material's ``evaluate``, in plane stress with the strains out of the plane found (those given are the first guess)."""
+    """A material's ``evaluate``, in plane stress with the strains out of the plane found, beginning with those given."""
     return partial(in_plane_stress, evaluate) if plane == "stress" else evaluate
 
 
