@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 import pytest
@@ -113,13 +114,19 @@ def test_layout_has_a_place_for_each(coupled: bool) -> None:
 
 
 def test_forces_of_a_part_are_the_same_without_its_matrix() -> None:
-    """A part whose matrix has made room integrates its forces anew, for every column."""
+    """A part whose matrix has made room integrates its forces anew, for every column; one without cells has none."""
     mesh = glued()
     own = Solids(mesh, {"a": LinearElastic(2.0, 0.3), "b": LinearElastic(5.0, 0.2)})
-    store: dict[str, object] = {}
+    store: dict[str, Any] = {}
     part.assemble(store, own)
     u = np.random.default_rng(5).uniform(-1, 1, (mesh.points.size, 2))
     with_matrix = part.internal(store, u)
     del store["stiffness"]
     for moved, force in ((u, with_matrix), (u[:, 0], with_matrix[:, 0])):
         assert np.abs(part.internal(store, moved) - force).max() < 1e-14 * np.abs(force).max()
+    empty = pieces(mesh, np.zeros(mesh.n_cells, dtype=int), 2)[1].mesh
+    part.assemble(store, Solids(empty, own.materials))
+    assert store["stiffness"].shape == (0, 0)
+    del store["stiffness"]
+    assert part.internal(store, np.zeros((0, 2))).shape == (0, 2)
+    assert part.stresses(store, {}, np.zeros((0, 3)), np.zeros(0))[0].shape == (0, 6)
