@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 import abut
-from abut.nonlinear.active_set import start
-from abut.nonlinear.load_step import with_plain
-from abut.problem.assembly import Problem, problem
+from abut.problem.assembly import assemble, prescribed
+from abut.problem.backend import serial
 from abut.problem.clock import Clock
-from abut.problem.system import System
+from abut.problem.linearised import Linearised
+from abut.problem.problem import ContactProblem
 
 Array = NDArray[np.float64]
 SLACK = 1e-7  # share of the loads by which balance may be missed, as far as linprog solves
@@ -33,27 +33,29 @@ class Programme:
     size: float
 
 
-def assembled(model: abut.Model) -> Problem:
+def assembled(model: abut.Model) -> ContactProblem:
     """Supports, stiffness and pairs of a model."""
-    return problem(model, lambda _: None, lambda _: None, Clock())
+    held, loaded = prescribed(model)
+    return assemble(model, held, loaded, serial(model), lambda _: None, lambda _: None, Clock()).problem
 
 
-def final(model: abut.Model, own: Problem, inside: NDArray[np.bool_]) -> System:
-    """The system with ordinary functions where the step that was solved had them (``abut.solution.Saved.inside``)."""
-    return with_plain(model, own.held, own.system, inside) if inside.any() else own.system
+def at_the_end(problem: ContactProblem, inside: NDArray[np.bool_] | None = None) -> Linearised:
+    """The problem at the end of the loads, with ordinary functions where the step that was solved had them
+    (``abut.solution.Saved.inside``)."""
+    own = problem.with_ordinary(inside) if inside is not None and inside.any() else problem
+    state = replace(own.start(), time=1.0)
+    return own.linearise(state, state)
 
 
-def programme(system: System) -> Programme:
-    """Of a system at the end of the ramp."""
-    factors = np.ones(system.load.shape[1])
+def programme(system: Linearised) -> Programme:
+    """Of a problem, linearised."""
     motions, stiffness = system.motions, system.stiffness.toarray()
     basis = np.linalg.svd(motions, full_matrices=False)[0]
     stiffness += np.median(np.diagonal(stiffness)) * basis @ basis.T  # holds them, and nothing else where loads balance
-    operator, load = system.operator.toarray(), system.load @ factors
+    operator, load = system.operator.toarray(), system.load
     answers = np.linalg.solve(stiffness, np.column_stack([operator.T, load]))
     compliance = operator @ answers[:, :-1]
-    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
-    gap = system.gap(start(system), factors) + operator @ answers[:, -1]
+    tied, gap = system.tied, system.offset + operator @ answers[:, -1]
     return Programme(
         0.5 * (compliance + compliance.T), gap, operator @ motions, -motions.T @ load, tied, float(np.abs(load).sum())
     )

@@ -17,7 +17,7 @@ from abut.mesh import make
 from abut.solution import Saved
 from assemblies import PLANE
 from assemblies_solid import SOLID
-from oracle import assembled, exact, final, programme, solvable
+from oracle import assembled, at_the_end, exact, programme, solvable
 from units import MILLIMETRES_TO, in_units
 
 pytest.importorskip("quadprog")
@@ -41,15 +41,15 @@ def solved(model: abut.Model) -> tuple[abut.Solution, Saved] | None:
         return solution, kept[-1]
     assert "the loads pull it off its contact" in reason
     with mock.patch("abut.problem.assembly.require_balance"), mock.patch("abut.problem.assembly.require_unmoved"):
-        assert not solvable(programme(assembled(model).system))
+        assert not solvable(programme(at_the_end(assembled(model))))
     return None
 
 
 def agrees_with_quadprog(model: abut.Model, saved: Saved) -> None:
     """The pressures of the last step against a method that shares nothing with ours but the matrices."""
     own = assembled(model)
-    expected = exact(programme(final(model, own, saved.inside)))
-    assert np.abs(saved.pressure - expected).max() <= SAME * np.abs(expected).max() + nothing(model)
+    expected = exact(programme(at_the_end(own, saved.inside)))
+    assert np.abs(saved.state.multipliers - expected).max() <= SAME * np.abs(expected).max() + nothing(model)
 
 
 def nothing(model: abut.Model) -> float:
@@ -68,7 +68,7 @@ def check(build: Callable[[np.random.Generator], abut.Model], seed: int, units: 
         assert not any(others.values())
         return
     solution, saved = here
-    if len(saved.pressure) <= SMALL[0] and solution.dofs <= SMALL[1]:
+    if len(saved.state.multipliers) <= SMALL[0] and solution.dofs <= SMALL[1]:
         agrees_with_quadprog(model, saved)
     expected = pressures(solution)
     for name, other in others.items():

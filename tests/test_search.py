@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,17 +13,17 @@ from numpy.typing import NDArray
 
 import abut
 from abut.linear import direct, static_condensation
-from abut.linear.choice import Prepared
+from abut.linear.choice import Direct
+from abut.linear.solver import Prepared
 from abut.mesh import make
-from abut.model.conditions import weights
 from abut.nonlinear import active_set
-from abut.nonlinear.active_set import solve_step, start
+from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.exact import ROUGH, solve_set
+from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
-from abut.problem.assembly import Problem, problem
-from abut.problem.clock import Clock
-from abut.problem.rigid_modes import near_null
-from abut.problem.system import Outcome, Stage, active_laws
+from abut.problem.problem import ContactProblem, Problem
+from abut.solution import State
+from oracle import assembled, at_the_end, exact, programme
 from search_models import HARD, STEEL, ball, beam, line, pin
 from units import MILLIMETRES_TO, in_units
 
@@ -106,62 +105,46 @@ def test_pulled_off_is_named_at_once() -> None:
     assert counts(beam(100, "quad4", lift=9.9))[0] <= MOST
 
 
-def prepared(model: abut.Model) -> tuple[Problem, Prepared, Stage]:
+@dataclass(frozen=True)
+class Ready:
+    """A model at the end of its loads: the problem as solved, its state before, its linear solver."""
+
+    whole: ContactProblem
+    own: Problem
+    first: State
+    solver: Prepared
+
+    def ended(self, found: Found) -> State:
+        return self.own.expand(found.state, found.laws)
+
+
+def prepared(model: abut.Model) -> Ready:
     """A model and its linear solver, at the end of its loads."""
-    own = problem(model, lambda _: None, lambda _: None, Clock())
-    loose = own.held.coordinates(own.held_by.free)
-    solver = own.volume.prepare("direct", own.system, own.held, near_null(model.mesh, own.held_by.rigid), loose)
-    return own, solver, Stage(1, weights(model.histories, 1.0))
+    whole, solver = assembled(model), Direct()
+    own = solver.condensed(whole)
+    first = replace(own.start(), time=1.0)
+    return Ready(whole, own, first, solver.prepare(own.linearise(first, first), None))
 
 
-def searched(solver: Prepared, stage: Stage) -> Outcome:
-    """By interior points alone, from nothing."""
-    system = solver.system
-    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
-    outcome = search(system, start(system), stage, 50, Log([], lambda _: None, 50), tied, "solution")
-    assert outcome.converged
-    assert len(outcome.iterations) <= MOST
-    return solver.finish(outcome, stage.weights)
+def searched(ready: Ready) -> tuple[State, int]:
+    """By interior points alone, from nothing: the solution, and how many it took."""
+    found = search(
+        ready.solver, ready.first, Increment(1), 50, Log([], lambda _: None, 50), ready.solver.system.tied, "solution"
+    )
+    assert found.converged
+    assert len(found.iterations) <= MOST
+    return ready.ended(found), len(found.iterations)
 
 
-def peeled(solver: Prepared, stage: Stage) -> Outcome:
+def peeled(ready: Ready) -> State:
     """One active set after the other as the law asks for them, however many it takes: the search's slow twin."""
-    system = solver.system
-    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
-    state = start(system)
+    state, tied = ready.first, ready.solver.system.tied
     for number in range(1, LONG + 1):
-        solved = solve_set(system, state, stage, tied, number, ROUGH)
+        solved = solve_set(ready.solver, state, Increment(1), tied, number, ROUGH)
         if not solved.changed.any():
-            none = np.zeros(len(tied), dtype=bool)
-            laws = partial(active_laws, weights=stage.weights)
-            return solver.finish(Outcome(solved.state, (), True, none, laws), stage.weights)
-        state = replace(solved.state, active=solved.wanted)
+            return ready.own.expand(solved.state, active_laws)
+        state = solved.state.with_closed(solved.wanted)
     raise AssertionError("not converged")
-
-
-def programme(own: Problem, stage: Stage) -> tuple[NDArray[np.float64], ...]:
-    """Compliance (n, n), gap without pressure (n,), resultants (n, m) and what they have to be (m,): the contact problem in
-    its pressures alone, by dense matrices."""
-    system = own.system
-    motions, stiffness = system.motions, system.stiffness.toarray()
-    basis = np.linalg.svd(motions, full_matrices=False)[0]
-    stiffness += np.median(np.diagonal(stiffness)) * basis @ basis.T  # holds them, and nothing else where loads balance
-    operator, load = system.operator.toarray(), system.load @ stage.weights
-    compliance = operator @ np.linalg.solve(stiffness, operator.T)
-    gap = system.gap(replace(start(system)), stage.weights) + operator @ np.linalg.solve(stiffness, load)
-    return 0.5 * (compliance + compliance.T), gap, operator @ motions, -motions.T @ load
-
-
-def exact(own: Problem, stage: Stage) -> NDArray[np.float64]:
-    """The pressures by quadprog, scaled to a compliance with a unit diagonal and resultants of unit size."""
-    compliance, gap, moved, load = programme(own, stage)
-    size = 1.0 / np.sqrt(np.diagonal(compliance))
-    moved = moved * size[:, None]
-    unit = np.linalg.norm(moved, axis=0)
-    conditions = np.column_stack([moved / unit, np.eye(len(gap))])
-    bounds = np.concatenate([load / unit, np.zeros(len(gap))])
-    answer = quadprog.solve_qp(compliance * size[:, None] * size, -gap * size, conditions, bounds, len(load))[0]
-    return answer * size
 
 
 def random_model(seed: int) -> abut.Model:
@@ -194,10 +177,10 @@ def random_model(seed: int) -> abut.Model:
 
 @pytest.mark.parametrize("seed", range(24))
 def test_random_problems_against_quadprog(seed: int) -> None:
-    own, solver, stage = prepared(random_model(seed))
-    outcome = searched(solver, stage)
-    expected = exact(own, stage)
-    assert np.abs(outcome.unknowns.pressure - expected).max() < 1e-7 * np.abs(expected).max()
+    ready = prepared(random_model(seed))
+    found, _ = searched(ready)
+    expected = exact(programme(at_the_end(ready.whole)))
+    assert np.abs(found.multipliers - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 def touching(load: float, lift: float = 0.0) -> abut.Model:
@@ -225,20 +208,18 @@ def touching(load: float, lift: float = 0.0) -> abut.Model:
 
 
 def test_rows_without_gap_and_without_pressure() -> None:
-    _, solver, stage = prepared(touching(0.01))
-    outcome = searched(solver, stage)
-    pressed, idle = solver.system.split(outcome.unknowns.pressure)
+    ready = prepared(touching(0.01))
+    found, _ = searched(ready)
+    pressed, idle = ready.solver.system.split(found.multipliers)
     assert pressed.min() > 1.0
     assert np.abs(idle).max() < 1e-6 * pressed.max()
-    expected = peeled(solver, stage)
-    assert np.abs(outcome.unknowns.pressure - expected.unknowns.pressure).max() < 1e-6 * pressed.max()
+    assert np.abs(found.multipliers - peeled(ready).multipliers).max() < 1e-6 * pressed.max()
 
 
 def test_contact_that_opens_everywhere() -> None:
-    _, solver, stage = prepared(touching(0.0, lift=0.02))
-    outcome = searched(solver, stage)
-    assert not outcome.unknowns.active.any()
-    assert not outcome.unknowns.pressure.any()
+    found, _ = searched(prepared(touching(0.0, lift=0.02)))
+    assert not found.closed.any()
+    assert not found.multipliers.any()
 
 
 def tied_beam() -> abut.Model:
@@ -284,13 +265,13 @@ def test_same_answer_as_peeling(name: str, path: str, monkeypatch: pytest.Monkey
         monkeypatch.setattr(static_condensation, "LARGEST", 0)
     elif direct.solver_name() != "PARDISO":
         pytest.skip("only PARDISO condenses")
-    _, solver, stage = prepared(MODELS[name]())
-    expected, outcome = peeled(solver, stage), searched(solver, stage)
+    ready = prepared(MODELS[name]())
+    expected, (found, _) = peeled(ready), searched(ready)
     if name != "touching":
-        assert (outcome.unknowns.active == expected.unknowns.active).all()
-    largest = np.abs(expected.unknowns.pressure).max()
+        assert (found.closed == expected.closed).all()
+    largest = np.abs(expected.multipliers).max()
     tolerance = 1e-8 if "beam" in name else 1e-9  # long beams bend easily, which costs digits
-    assert np.abs(outcome.unknowns.pressure - expected.unknowns.pressure).max() < tolerance * largest
+    assert np.abs(found.multipliers - expected.multipliers).max() < tolerance * largest
 
 
 def test_easy_models_never_search(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -311,18 +292,17 @@ def test_when_a_set_is_hopeless() -> None:
 
 def test_foreseen_wrongly() -> None:
     """A set that half spaces foresee and that turns out worse is given up for the one that the law asks for."""
-    _, solver, stage = prepared(pin(24, 50.0))
-    expected = peeled(solver, stage).unknowns
+    ready = prepared(pin(24, 50.0))
+    expected = peeled(ready)
 
     def wrong(_: object, __: object, wanted: NDArray[np.bool_], ___: object) -> NDArray[np.bool_]:
         return ~wanted
 
-    system = replace(solver.system, predict=wrong)
-    outcome = solve_step(system, start(system), stage, 50, lambda _: None)
-    assert outcome.converged
-    assert len(outcome.iterations) <= MOST
-    found = solver.finish(outcome, stage.weights).unknowns
-    assert (found.active == expected.active).all()
+    misled = replace(ready.solver, predict=wrong)
+    found = solve_step(misled, ready.first, Increment(1), 50, lambda _: None)
+    assert found.converged
+    assert len(found.iterations) <= MOST
+    assert (ready.ended(found).closed == expected.closed).all()
 
 
 @pytest.mark.parametrize("path", bench.PATHS)
@@ -338,6 +318,5 @@ def test_units_do_not_matter_to_interior_points() -> None:
     model = beam(50, "quad4")
     taken = set()
     for own in (None, *MILLIMETRES_TO.values()):
-        _, solver, stage = prepared(model if own is None else in_units(model, own))
-        taken.add(len(searched(solver, stage).iterations))
+        taken.add(searched(prepared(model if own is None else in_units(model, own)))[1])
     assert len(taken) == 1

@@ -29,46 +29,43 @@ from abut.contact.nodal_recovery import (
 )
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
-from abut.model import METHODS, Model
-from abut.problem.backend import Volume
-from abut.problem.constraints import Supports
-from abut.problem.contact_pairs import Pair, offsets
-from abut.problem.loads import Loads
+from abut.model import METHODS
+from abut.model.offset import offsets
+from abut.nonlinear.load_step import Attempt
+from abut.problem.assembly import Assembled
+from abut.problem.contact_pairs import Pair
+from abut.problem.linearised import Linearised
 from abut.problem.rigid_bodies import RigidBody
-from abut.problem.system import Outcome, Stage, System
+from abut.problem.terms import Motion
 from abut.solution import ContactResult, RigidResult, Step
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
-def step_result(
-    model: Model,
-    volume: Volume,
-    loaded: Loads,
-    displacement: NDArray[np.float64],
-    system: System,
-    outcome: Outcome,
-    stage: Stage,
-    time: float,
-    before: Sequence[Step],
-    held: Supports,
-) -> Step:
-    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others."""
-    dim = model.dim
-    unknowns = outcome.unknowns
-    pressures = system.split(unknowns.pressure)
+def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) -> Step:
+    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others.
+
+    Raises SingularModelError for displacements that no units explain."""
+    bodies, loaded, state = assembled.bodies, assembled.loaded, attempt.state
+    problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
+    model, held, springs = problem.model, problem.held, problem.springs
+    displacement = springs.without_motions(problem.displacement(state))
+    system = problem.linearise(state, state)
+    dim, time, factors = model.dim, state.time, system.factors
+    pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    internal = volume.internal(displacement)
-    reaction = internal - loaded.forces @ stage.weights - contact_force
+    motion = Motion(time, displacement, state.history.of(bodies.name))
+    internal = bodies.evaluate(motion, motion).force
+    reaction = internal - loaded.forces @ factors - contact_force
     nodal = displacement.reshape(-1, dim)
     carried = reaction if held.links is None else reaction - held.links.forces(reaction)
     by_supports = carried.reshape(-1, dim)
     deepest = []
     for pair in system.pairs:
         constant, varying = offsets(model, pair.contact)
-        deepest.append(overlaps(pair, nodal, constant + float(varying @ stage.weights)))
+        deepest.append(overlaps(pair, nodal, constant + float(varying @ factors)))
     largest = [pair.space.transfer @ p for pair, p in zip(system.pairs, pressures) if not pair.tied]
     beside = max(
         [float(np.abs(p).max(initial=0.0)) for p in largest] + _largest_pressures(len(system.pairs), before) + [0.0]
@@ -80,7 +77,7 @@ def step_result(
             pressure,
             gap,
             active,
-            outcome.iterations[-1].contact_residual,
+            attempt.iterations[-1].contact_residual,
             reference,
             depth,
             beside,
@@ -90,31 +87,31 @@ def step_result(
         for pair, pressure, gap, active, reference, depth, elsewhere in zip(
             system.pairs,
             pressures,
-            system.split(system.gap(unknowns, stage.weights)),
-            system.split(unknowns.active),
+            system.split(system.gap(state)),
+            system.split(state.closed),
             _largest_pressures(len(system.pairs), before),
             deepest,
             covered_elsewhere(system.pairs, pressures),
         )
     )
     cycling = {}
-    for pair, own in zip(system.pairs, system.split(outcome.cycling)):
+    for pair, own in zip(system.pairs, system.split(attempt.cycling)):
         if own.any():
-            rows = np.unique(pair.space.transfer[:, own].tocoo().row // 9)
+            rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // 9)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return Step(
-        number=stage.number,
+        number=attempt.number,
         factor=time,
-        converged=outcome.converged,
-        iterations=outcome.iterations,
+        converged=attempt.converged,
+        iterations=attempt.iterations,
         displacement=nodal,
-        stress=volume.stress(nodal, time, loaded.temperature @ stage.weights),
+        stress=bodies.stress(motion),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=loaded.resultant @ stage.weights,
+        load=loaded.resultant @ factors,
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=cycling,
@@ -125,18 +122,19 @@ def step_result(
             (float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, pressures)), default=0.0
         ),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
-        rounding=_rounding(system, unknowns.displacement),
+        rounding=_rounding(system, state.unknowns),
+        spring=springs.force(state.unknowns) if len(springs) else None,
         strained=_strained(system, displacement, internal),
     )
 
 
-def _strained(system: System, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
+def _strained(system: Linearised, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
     """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
     stiffest = float(system.stiffness.diagonal().max(initial=0.0))
     return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
 
 
-def _rounding(system: System, free: NDArray[np.float64]) -> float:
+def _rounding(system: Linearised, free: NDArray[np.float64]) -> float:
     """Force that free displacements (n_free,) in double precision leave open: eps sum K_ii |u_i|."""
     return float(np.finfo(float).eps * (system.stiffness.diagonal() @ np.abs(free)))
 
@@ -167,10 +165,10 @@ def _contact(
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
-    values = _traction(pair, pressure) if pair.tied else pair.space.transfer @ pressure
+    values = pair.traction(pressure) if pair.tied else pair.space.transfer @ pressure
     own, other = nodal_forces(coupling, values, dim)
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
-    weight = pair.scale * pair.stiffness
+    weight = pair.weight
     if pair.tied:
         normal = _compression(pair, values)
         gaps = np.zeros_like(normal)
@@ -229,15 +227,6 @@ def _reported(pair: Pair, at: Averages, values: NDArray[np.float64], closed: boo
         if pair.tied or sharp.min() >= 0.0:
             return sharp
     return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
-
-
-def _traction(pair: Pair, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Traction of a tie on the contactor by components, facet-wise coefficients (9 n_facets, dim)."""
-    traction = np.zeros((pair.space.transfer.shape[0], pair.contactor.dim))
-    for a in range(pair.contactor.dim):
-        own = pair.space.node == a
-        traction[:, a] = pair.space.transfer[:, own] @ pressure[own]
-    return traction
 
 
 def _compression(pair: Pair, traction: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.results import step_result
-from abut.analysis.step_records import begin_after, check_order, restored, saved_step
+from abut.analysis.step_records import check_order, restored, saved_step
 from abut.errors import SingularModelError
-from abut.linear.choice import Prepared, expected_seconds
-from abut.linear.iterative import NotConverged
+from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.nonlinear.active_set import following, start
-from abut.nonlinear.load_step import load_step, with_plain
+from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.stepping import Control, Fixed, march
 from abut.probing import find_places, read
-from abut.problem.assembly import problem
+from abut.problem.assembly import assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.restraint import require_balance
-from abut.problem.rigid_modes import near_null
-from abut.problem.system import Outcome, Stage, System
 from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
 
 if TYPE_CHECKING:
@@ -52,6 +50,28 @@ def solve(
     work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
     Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
+
+    Two stacked blocks with meshes that do not match, pressed together:
+
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> lower = make.rectangle([0, 2], [0, 1], cells=[4, 2])
+    >>> upper = make.rectangle([0, 2], [1, 2], cells=[3, 2])
+    >>> steel = abut.LinearElastic(young=210e3, poisson=0.3)
+    >>> model = abut.Model(
+    ...     make.join({"lower": lower, "upper": upper}),
+    ...     plane="strain",
+    ...     solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
+    ...     supports=[abut.Support("lower.bottom", y=0), abut.Support("lower.left", x=0), abut.Support("upper.left", x=0)],
+    ...     loads=[abut.Pressure("upper.top", 3.0)],
+    ...     contacts=[abut.Contact("upper.bottom", "lower.top")],
+    ... )
+    >>> solution = abut.solve(model)
+    >>> contact = solution.contacts[0]
+    >>> print(f"pressure {contact.max_pressure:.6f} over a width of {contact.area:.6f}, force {contact.force[1]:.6f}")
+    pressure 3.000000 over a width of 2.000000, force 6.000000
+    >>> all(check.passed for check in solution.certificate)
+    True
     """
     observe: Observer = observer or _silent
     keep: OnStep = on_step or _silent
@@ -69,74 +89,61 @@ def solve(
         from abut.parallel.team import start_team
 
         team = start_team()
-    own = problem(model, observe, note, clock, team)
-    held, system = own.held, own.system
-    steps: list[Step] = []
-
-    def linear_solver(kind: str) -> Prepared:
-        what = "factorising" if kind == "direct" else "setting up multigrid for"
-        size = f"{own.n_free:,}".replace(",", " ")
-        observe(Phase(f"{what} {size} displacements", expected_seconds(kind, own.n_free, model.dim)))
-        loose = held.coordinates(own.held_by.free)
-        result = own.volume.prepare(kind, system, held, near_null(model.mesh, own.held_by.rigid), loose)
-        note(result.note)
-        return result
-
-    def result(outcome: Outcome, system: System, stage: Stage, time: float) -> Step:
-        displacement = held.free @ outcome.unknowns.displacement + held.prescribed @ stage.weights
-        spring = own.idle.force(outcome.unknowns.displacement) if len(own.idle) else None
-        displacement = own.idle.without_motions(displacement)
-        _check_size(model, displacement, note)
-        step = step_result(model, own.volume, own.loaded, displacement, system, outcome, stage, time, steps, held)
-        return replace(step, spring=spring, probes=tuple(read(place, step) for place in places))
-
-    def so_far(complete: bool) -> Solution:
-        return Solution(model, tuple(steps), own.n_free, solver.name, tuple(notes), dict(clock.timings), complete)
-
-    times = [t for t in model.solve.ends if not resume or t > resume[-1].factor * (1.0 + 1e-12)]
-    check_order(resume, own.n_free, system.operator.shape[0])
-    kind = own.volume.choose(system, held)
+    held, loaded = prescribed(model)
+    clock.mark("set-up")
+    backend = assembled_bodies(model, observe, note, clock, team)
+    assembled = assemble(model, held, loaded, backend, observe, note, clock)
+    problem = assembled.problem
+    check_order(resume, problem.n_free, int(problem.operator.shape[0]))
+    kind = solver_kind(problem, team)
     if resume and model.solve.linear in ("auto", "petsc"):
         kind = resume[-1].linear
-    solver = linear_solver(kind)
-    state = start(solver.system)
-    force = pressure = 0.0
+    solver = linear_solver(kind, problem, team)
+    steps: list[Step] = []
+
+    def result(attempt: Attempt) -> Step:
+        step = step_result(assembled, attempt, steps)
+        _check_size(model, step.displacement, note)
+        return replace(step, probes=tuple(read(place, step) for place in places))
+
+    def so_far(complete: bool) -> Solution:
+        return Solution(model, tuple(steps), problem.n_free, solver.name, tuple(notes), dict(clock.timings), complete)
+
+    state = problem.start()
     if resume:
         observe(Phase("restoring the steps done before"))
         for saved in resume:
-            stage = Stage(saved.number, weights(model.histories, saved.factor), force, pressure)
-            inner = with_plain(model, held, system, saved.inside) if saved.inside.any() else system
-            steps.append(result(restored(saved), inner, stage, saved.factor))
-            force, pressure = saved.largest_force, saved.largest_pressure
-        state = begin_after(resume[-1], state, note)
+            steps.append(result(restored(saved)))
+        state = resume[-1].state
         clock.mark("results")
+    times = [t for t in model.solve.ends if not resume or t > state.time * (1.0 + 1e-12)]
     count = len(steps) + len(times)
-    for number, time in enumerate(times, start=len(steps) + 1):
+
+    def begins(number: int, time: float) -> None:
         observe(Phase(f"step {number} of {count}", None, number - 1, count))
-        stage = Stage(number, weights(model.histories, time), force, pressure)
-        when = f" in step {number}" if count > 1 else ""
-        require_balance(own.held_by, held, held.free.T @ (own.loaded.forces @ stage.weights), when)
-        try:
-            reached = load_step(model, held, system, solver, state, stage, observe)
-        except NotConverged as reason:
-            note(f"step {number}: {reason}: going on with the direct solver")
-            kind = "direct"
-            solver = linear_solver(kind)
-            reached = load_step(model, held, system, solver, start(solver.system), stage, observe)
-        outcome = reached.outcome
-        state = outcome.unknowns
-        after = following(reached.solver.system, stage, outcome, stage.weights)
-        force, pressure = after.force, after.pressure
-        outcome = reached.solver.finish(outcome, stage.weights)
+        loads = held.free.T @ (loaded.forces @ weights(model.histories, time))
+        require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
+
+    def prepares(what: LinearSolver) -> None:
+        observe(Phase(*setting_up(what, problem)))
+
+    def fallback(number: int, reason: NotConverged) -> LinearSolver:
+        nonlocal solver, kind
+        note(f"step {number}: {reason}: going on with the direct solver")
+        solver, kind = linear_solver("direct", problem, team), "direct"
+        return solver
+
+    control = Control(model.solve.max_iterations, observe, begins, prepares, note, fallback)
+    for attempt in march(problem, state, Fixed(times), solver, control, len(steps) + 1):
         clock.mark("solve")
-        observe(Phase(f"stresses and checks of step {number}", None, number - 1, count))
-        steps.append(result(outcome, reached.system, stage, time))
+        observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
+        steps.append(result(attempt))
         clock.mark("results")
-        if not outcome.converged:
-            note(f"step {number} did not converge in {len(outcome.iterations)} iterations")
-            break
-        keep(so_far(complete=False), saved_step(outcome, state, after, time, kind, reached.inside))
-        clock.mark("writing")
+        if attempt.converged:
+            keep(so_far(complete=False), saved_step(attempt, kind))
+            clock.mark("writing")
+        else:
+            note(f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations")
     if solver.count is not None:
         note(f"{solver.count.iterations} linear iterations in all")
     return so_far(complete=True)

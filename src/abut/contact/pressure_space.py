@@ -215,6 +215,15 @@ def reduce(
     )
 
 
+def only(space: PressureSpace, keep: NDArray[np.bool_]) -> PressureSpace:
+    """The space without some functions, which vanish. keep: (n,) bool."""
+    transfer = space.transfer.tocsc()[:, keep]
+    plain = transfer if space.ordinary else space.plain.tocsc()[:, keep]
+    return replace(
+        space, transfer=transfer, plain=plain, weight=space.weight[keep], node=space.node[keep], side=space.side[keep]
+    )
+
+
 def facet_functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Row (9 facet + function) and point of every facet-wise pressure function, each (n_functions,)."""
     count = np.zeros(len(contactor), dtype=np.int64)

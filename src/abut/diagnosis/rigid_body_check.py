@@ -15,7 +15,7 @@ from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair
 from abut.problem.free_modes import regularise
 from abut.problem.loads import loads
-from abut.problem.restraint import Holding, holding, require_held
+from abut.problem.restraint import Restraint, require_held, restraint
 from abut.problem.rigid_modes import each_motion, free_motions
 
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
@@ -23,7 +23,7 @@ SHOWN = 0.1  # size of a motion over that of its body, for the eye
 
 def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[Finding], list[Motion]]:
     """Findings, and each motion that supports leave free with its displacement. ``pairs``: all that could be built."""
-    held_by = holding(model.mesh, held, pairs)
+    held_by = restraint(model.mesh, held, pairs)
     findings: list[Finding] = []
     complete = len(pairs) == len(model.contacts)
     every = free_motions([held_by.supports])
@@ -42,17 +42,17 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
         )
     shown += _motions(model, held_by, lost, "nothing")
     if complete:
-        findings += _unheld(model, held_by, held)
+        findings += _unheld(model, held_by)
     return findings, shown
 
 
-def _unheld(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
+def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
     """An error for a motion that nothing holds; else those on which no load does any work, which need no holding."""
-    ends = loads(model).at_ends(model)
+    ends, held = loads(model).at_ends(model), held_by.held
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
         loose = regularise(held_by.rigid, held_by.everything, held, unit, ends)
-        require_held(held_by.helped_by(loose.gram), held, ends)
+        require_held(held_by.helped_by(loose.gram), ends)
     except SingularModelError as error:
         return [from_error(error, "bodies")]
     return [
@@ -66,7 +66,7 @@ def _unheld(model: Model, held_by: Holding, held: Supports) -> list[Finding]:
     ]
 
 
-def _motions(model: Model, held_by: Holding, free: NDArray[np.float64], resisted_by: str) -> list[Motion]:
+def _motions(model: Model, held_by: Restraint, free: NDArray[np.float64], resisted_by: str) -> list[Motion]:
     """The motions (n_modes, m), each a single shift or turn of one body where that is possible."""
     result = []
     for text, motion in each_motion(held_by.rigid, free):

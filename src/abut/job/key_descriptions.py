@@ -97,7 +97,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "ContactTable": {
         "name": "your own name for it; left out: CONTACTOR-TARGET",
-        "contactor": "surface or body that carries the pressure, or a list; better the softer one, and not the finer one",
+        "contactor": "surface or body that carries the pressure, or a list; better the softer, among equals the finer one",
         "target": "surface or body opposite, or a list, of which the nearest counts everywhere",
         "kind": "contact without friction, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",

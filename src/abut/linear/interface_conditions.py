@@ -11,7 +11,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, soft_inverse
-from abut.problem.system import Rows
+from abut.problem.linearised import Rows
 
 ACCURACY, ITERATIONS = 0.1, 30  # of the pressures' preconditioner where rows are no multiples of the operator's
 FAINT = 1e-3  # share of the largest, below which how much a row looks at the gap counts as that

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from abut.linear.interface_conditions import Conditions, conditions
 from abut.linear.krylov import fgmres
-from abut.linear.multigrid import Hierarchy
-from abut.linear.schur_preconditioner import Apply, PressureBlock, predictor, pressure_block
-from abut.problem.system import Rows, System
+from abut.linear.multigrid import Hierarchy, hierarchy
+from abut.linear.schur_preconditioner import Apply, Predict, PressureBlock, foresight, pressure_block
+from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
+from abut.problem.linearised import Linearised, Rows
+from abut.problem.problem import Problem
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
@@ -21,36 +23,23 @@ LOOSE = 1e-9  # resistance of contact to a motion, over the largest, below which
 FAILED = "multigrid does not converge on this model"
 
 
-class NotConverged(Exception):
-    """The linear iteration gave up; a direct solver may not."""
-
-
-@dataclass
-class Count:
-    """Linear iterations so far."""
-
-    iterations: int = 0
-
-
 @dataclass(frozen=True)
 class Iterative:
-    """motions: (n_free, m) rigid motions that supports leave free, which multigrid does not see."""
+    """As ``abut.linear.solver.Prepared``. count: of iterations, goes on counting."""
 
-    operator: Any
+    system: Linearised
     hierarchy: Hierarchy
     pressures: PressureBlock
-    motions: NDArray[np.float64]
+    predict: Predict
     count: Count
+    exact: bool = False
+    accurate: float = ACCURATE
 
-    def step(
-        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
-
-        Raises NotConverged."""
+    def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Prepared``, preconditioned by theory (V11)."""
         fixed, active = rows.fixed, ~rows.decoupled
-        own = conditions(rows, self.operator, self.pressures)
-        operator, n = self.operator[active], len(residual)
+        own = conditions(rows, self.system.operator, self.pressures)
+        operator, n = self.system.operator[active], len(residual)
         coarse = self._rigid(operator, own)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -64,7 +53,7 @@ class Iterative:
             r = x[:n] + operator.T @ p
             return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / own.columns])
 
-        rhs = np.concatenate([-residual + self.operator.T @ fixed, -own.rows * rows.residual[active]])
+        rhs = np.concatenate([-residual + self.system.operator.T @ fixed, -own.rows * rows.residual[active]])
         solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
         self.count.iterations += iterations
         if not done or not np.isfinite(solution).all():
@@ -73,10 +62,18 @@ class Iterative:
         dp[active] = own.columns * solution[n:]
         return solution[:n], dp
 
-    def respond(self, force: NDArray[np.float64], springs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacements by forces where ``springs`` (n_free,) hold what supports do not, to ``RESPONSE`` or as near as
-        it gets."""
-        motions = self.motions
+    def factorise(self, rows: Rows) -> None:
+        """No factors are kept."""
+
+    def foresee(
+        self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """As in ``Prepared``."""
+        return self.predict(gap, pressure, active, tied)
+
+    def respond(self, force: Vector, springs: Vector) -> Vector:
+        """As in ``Prepared``, to ``RESPONSE`` or as near as it gets."""
+        motions = self.system.motions
         small = np.linalg.pinv(motions.T @ (springs[:, None] * motions))
         answer, iterations, _ = fgmres(
             lambda u: self.hierarchy.product(u) + springs * u,
@@ -88,10 +85,11 @@ class Iterative:
 
     def _rigid(self, operator: Any, own: Conditions) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
-        if not self.motions.shape[1]:
+        motions = self.system.motions
+        if not motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        small = compliance(operator @ self.motions, own.inverse, -np.asarray(own.lower @ self.motions))
-        return lambda r: np.asarray(self.motions @ (small @ (self.motions.T @ r)))
+        small = compliance(operator @ motions, own.inverse, -np.asarray(own.lower @ motions))
+        return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
 
 
 def compliance(
@@ -103,9 +101,33 @@ def compliance(
     return np.asarray(np.linalg.pinv(moved.T @ answers, rcond=LOOSE))
 
 
-def iterate(system: System, hierarchy: Hierarchy, motions: NDArray[np.float64], count: Count) -> System:
-    """The system with its linear systems solved iteratively; ``count`` goes on counting."""
-    pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
-    solver = Iterative(system.operator, hierarchy, pressures, motions, count)
-    predict = predictor(pressures.forward, np.asarray(system.operator @ motions))
-    return replace(system, step=solver.step, factorise=None, respond=solver.respond, exact=False, predict=predict)
+@dataclass(frozen=True)
+class Multigrid:
+    """As ``abut.linear.solver.LinearSolver``. free: (dim n_points, n_free) change of variables; near_null: (dim n_points, m)
+    motions that strain bodies least; points: (n_points, dim)."""
+
+    free: Any
+    near_null: NDArray[np.float64]
+    points: NDArray[np.float64]
+    count: Count
+    name: str = "multigrid (PyAMG)"
+
+    def condensed(self, problem: Problem) -> Problem:
+        """The problem as it is."""
+        return problem
+
+    def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
+        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too."""
+        if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness:
+            if previous.system.operator is system.operator:
+                return replace(previous, system=system)
+            levels = previous.hierarchy
+        else:
+            levels = hierarchy(system.stiffness, self.free, self.near_null, self.points)
+        pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
+        predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
+        return Iterative(system, levels, pressures, predict, self.count)
+
+    def note(self, prepared: Prepared) -> str:
+        """As in ``LinearSolver``."""
+        return prepared.hierarchy.summary if isinstance(prepared, Iterative) else self.name

@@ -10,7 +10,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.linear import direct
-from abut.problem.system import Rows, Solve
+from abut.linear.schur_preconditioner import Predict
+from abut.linear.solver import ACCURATE, Solve, Vector
+from abut.problem.linearised import Linearised, Rows
 
 
 @dataclass(frozen=True)
@@ -61,13 +63,10 @@ def newton_step(
     rows: Rows,
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
-    accuracy: float = 0.0,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
-    stiffness: (n_u, n_u) sparse symmetric; operator and residual as in ``saddle``.
-    accuracy: not needed, the solution is direct.
-    """
+    stiffness: (n_u, n_u) sparse symmetric; operator and residual as in ``saddle``."""
     if len(pressure) == 0:
         return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
@@ -90,6 +89,36 @@ def factorise(stiffness: Any, operator: Any, rows: Rows) -> Solve:
         return solution[:n], s.pressure(solution[n:])
 
     return solve
+
+
+@dataclass(frozen=True)
+class SaddlePoint:
+    """As ``abut.linear.solver.Prepared``: the whole system factorised anew for every set of rows. predict: as
+    ``foresee``."""
+
+    system: Linearised
+    predict: Predict
+    exact: bool = True
+    accurate: float = ACCURATE
+
+    def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Prepared``."""
+        return newton_step(self.system.stiffness, self.system.operator, rows, residual, pressure)
+
+    def factorise(self, rows: Rows) -> Solve:
+        """As in ``Prepared``."""
+        return factorise(self.system.stiffness, self.system.operator, rows)
+
+    def respond(self, force: Vector, springs: Vector) -> Vector:
+        """As in ``Prepared``."""
+        held = self.system.stiffness + sp.diags(springs)
+        return direct.Factorization(store_diagonal(sp.triu(held, format="csr"))).solve(force)
+
+    def foresee(
+        self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """As in ``Prepared``."""
+        return self.predict(gap, pressure, active, tied)
 
 
 def _whole(stiffness: Any, s: Saddle) -> Any:

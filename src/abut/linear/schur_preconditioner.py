@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -18,13 +18,16 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.contact.geometry import facet_stiffness
+from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
 from abut.problem.contact_pairs import Pair
 
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
 SOFT_ACCURACY, SOFT_ITERATIONS = 0.1, 30
-PREDICTIONS = 15  # active sets tried on the interface alone
+FORESEEN, SOLVES = 1e-4, 100  # of gaps closed on the interface alone, where the edge of contact is sharp; iterations
+LOOSE = 1e-9  # resistance of rows to a motion, over the largest, below which it is none
+PREDICTIONS = 30  # active sets tried on the interface alone
 Predict = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -47,24 +50,22 @@ def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
     """Everything about the interfaces that stays the same over all active sets."""
     result, first = [], 0
     for pair in pairs:
-        component = pair.space.node if pair.tied else np.zeros(len(pair), dtype=np.int64)
-        for a in np.unique(component):
-            own = np.flatnonzero(component == a)
-            result.append(_interface(pair, own, first + own))
-        first += len(pair)
+        for space in pair.components:
+            if len(space):
+                result.append(_interface(pair, space, first + np.arange(len(space))))
+            first += len(space)
     return result
 
 
-def _interface(pair: Pair, own: NDArray[np.int64], rows: NDArray[np.int64]) -> Interface:
-    """own: (m,) the coefficients of the pair's space that it is about."""
-    space = pair.space
+def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Interface:
+    """space: of one component of the pair's multipliers."""
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     lowest = (2.0 / extent) ** 2
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
         # No Laplacian across jumps: lumped, with the compliance of the shortest waves.
-        mass = sp.diags(space.weight[own], format="csr")
+        mass = sp.diags(space.weight, format="csr")
         return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
-    transfer, plain = space.transfer.tocsc()[:, own], space.plain.tocsc()[:, own]
+    transfer, plain = space.transfer, space.plain
     products = sp.block_diag(list(pair.coupling.mass), format="csr")
     mass = (plain.T @ products @ plain).tocsr()
     coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
@@ -91,20 +92,55 @@ def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Appl
     return apply
 
 
-def schur(parts: Sequence[Interface]) -> Apply:
-    """S on all rows, (n,) pressures -> (n,) gaps."""
+@dataclass(frozen=True)
+class HalfSpaces:
+    """S of all interfaces at once: work goes with their size, however many they are.
 
-    @cache  # not before it is needed: what is closed all over has no next active set
-    def factorised() -> list[tuple[NDArray[np.int64], Apply]]:
-        return [(part.rows, _forward(part)) for part in parts]
+    rows: (n,) where the matrices full, mass and coupled of ``Interface`` lie in the system; compliance: (n,); resolvents:
+    (full + s mass)^-1, each with its weight w, (n,), s and w each interface's own; size: (n,) root of S's diagonal, by which
+    pressures are multiplied and gaps divided to compare rows."""
 
-    def forward(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    rows: NDArray[np.int64]
+    full: Any
+    mass: Any
+    coupled: Any
+    compliance: NDArray[np.float64]
+    resolvents: Sequence[tuple[NDArray[np.float64], Apply]]
+    uncouple: Apply
+    size: NDArray[np.float64]
+
+    def forward(self, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+        """S, (n,) -> (n,)."""
         gap = np.zeros_like(pressure)
-        for rows, apply in factorised():
-            gap[rows] = apply(pressure[rows])
+        gap[self.rows] = self.compliance * (self.coupled @ self._root(self.coupled @ pressure[self.rows]))
         return gap
 
-    return forward
+    def inverse(self, gap: NDArray[np.float64]) -> NDArray[np.float64]:
+        """S^-1, (n,) -> (n,)."""
+        pressure = np.zeros_like(gap)
+        rooted = self._root(self.mass @ self.uncouple(gap[self.rows]))
+        pressure[self.rows] = self.uncouple(self.full @ rooted) / self.compliance
+        return pressure
+
+    def _root(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(sum(weight * solve(values) for weight, solve in self.resolvents))
+
+
+def half_spaces(parts: Sequence[Interface]) -> HalfSpaces:
+    """Everything factorised."""
+    rows = np.concatenate([part.rows for part in parts])
+    full, mass, coupled = (
+        sp.block_diag([getattr(part, name) for part in parts], format="csc") for name in ("full", "mass", "coupled")
+    )
+    # Of each as wide, so that all have as many resolvents.
+    spread = max(_largest(part.full, part.mass, part.lowest) / part.lowest for part in parts)
+    terms = [inverse_root(part.lowest, spread * part.lowest, ACCURACY) for part in parts]
+    sizes = [len(part.rows) for part in parts]
+    shifts, weights = (np.repeat(np.stack(values), sizes, axis=0).T for values in zip(*terms))
+    resolvents = [(w, spla.splu((full + sp.diags(s) @ mass).tocsc()).solve) for s, w in zip(shifts, weights)]
+    compliance = np.repeat([part.compliance for part in parts], sizes)
+    size = np.sqrt(schur_diagonal(parts, len(rows)))
+    return HalfSpaces(rows, full, mass, coupled, compliance, resolvents, spla.splu(coupled).solve, size)
 
 
 def schur_diagonal(parts: Sequence[Interface], n: int) -> NDArray[np.float64]:
@@ -133,21 +169,28 @@ def soft_inverse(forward: Apply, diagonal: NDArray[np.float64], softness: NDArra
 
 @dataclass(frozen=True)
 class PressureBlock:
-    """What preconditions pressures. forward, diagonal: of S on all rows; scale: of pressures, theory (V2); unit: size of the
+    """What preconditions pressures. diagonal: of S on all rows; scale: of pressures, theory (V2); unit: size of the
     stiffness' entries."""
 
     parts: Sequence[Interface]
-    forward: Apply
     diagonal: NDArray[np.float64]
     scale: float
     unit: float
+
+    @cached_property  # not before it is needed: what is closed all over has no next active set
+    def half_spaces(self) -> HalfSpaces:
+        return half_spaces(self.parts)
+
+    def forward(self, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+        """S on all rows, (n,) pressures -> (n,) gaps."""
+        return self.half_spaces.forward(pressure)
 
 
 def pressure_block(pairs: Sequence[Pair], operator: Any, diagonal: NDArray[np.float64]) -> PressureBlock:
     """operator: (n, n_free) of all pairs; diagonal: (n_free,) of the stiffness."""
     parts, unit = interfaces(pairs), float(np.median(diagonal))
     own = schur_diagonal(parts, operator.shape[0])
-    return PressureBlock(parts, schur(parts), own, pressure_scale(operator, unit), unit)
+    return PressureBlock(parts, own, pressure_scale(operator, unit), unit)
 
 
 def pressure_scale(operator: Any, unit: float) -> float:
@@ -157,90 +200,112 @@ def pressure_scale(operator: Any, unit: float) -> float:
     return float(unit / np.median(largest)) if len(largest) else 1.0
 
 
-def predictor(forward: Apply, moved: NDArray[np.float64]) -> Predict:
+def foresight(spaces: Callable[[], HalfSpaces], moved: NDArray[np.float64]) -> Predict:
     """A guess at the next active set: contact of half spaces, g = g0 + S (p - p0) + C a, solved on the interface alone.
 
-    forward: S; moved: (n, m) change of the weighted gaps by rigid motions that supports leave free (C), which the
-    pressures keep in balance. The function takes gap g0, pressure p0, a first active set, the rows that are never open."""
+    spaces: asked when they are first needed; moved: (n, m) change of the weighted gaps by rigid motions that supports leave
+    free (C), of any size, which the pressures keep in balance. The function takes gap g0, pressure p0, a first active set,
+    the rows that are never open."""
+
+    @cache
+    def ready() -> Foresight:
+        size = np.linalg.norm(moved, axis=0)
+        return Foresight(spaces(), sp.csr_matrix(moved / np.where(size > 0.0, size, 1.0)))
+
+    return lambda *state: ready().predict(*state)
+
+
+@dataclass(frozen=True)
+class Foresight:
+    """Contact of half spaces; moved: as in ``foresight``, sparse."""
+
+    half_spaces: HalfSpaces
+    moved: Any
 
     def predict(
-        gap: NDArray[np.float64], pressure: NDArray[np.float64], active: NDArray[np.bool_], tied: NDArray[np.bool_]
+        self,
+        gap: NDArray[np.float64],
+        pressure: NDArray[np.float64],
+        active: NDArray[np.bool_],
+        tied: NDArray[np.bool_],
     ) -> NDArray[np.bool_]:
-        rest = gap - forward(np.where(tied, 0.0, pressure))
+        p = np.where(tied, 0.0, pressure)
+        rest, force = gap - self.half_spaces.forward(p), self.moved.T @ p
         for _ in range(PREDICTIONS):
-            own = np.flatnonzero(active & ~tied)
-            if not len(own):
+            own = active & ~tied
+            if not own.any():
                 return active
-            p, shift = _balanced(forward, rest, moved, moved.T @ np.where(tied, 0.0, pressure), own)
-            g = rest + forward(p) + moved @ shift
+            p, shift = self._closed(rest, force, own, p)
+            g = rest + self.half_spaces.forward(p) + self.moved @ shift
             following = np.where(active, p > 0.0, g < 0.0) | tied
             if (following == active).all() or not following[~tied].any():
                 return active
             active = following
         return active
 
-    return predict
+    def _closed(
+        self, rest: NDArray[np.float64], force: NDArray[np.float64], own: NDArray[np.bool_], guess: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Pressures on the rows ``own`` that close the gap there, with the resultants ``force`` on loose bodies, and the
+        bodies' motions: conjugate gradients among pressures of these resultants, from ``guess`` on."""
+        size = self.half_spaces.size[own]
+        motions = sp.diags(1.0 / size) @ self.moved[own]
+        small = np.linalg.pinv((motions.T @ motions).toarray(), rcond=LOOSE, hermitian=True)
+
+        def balanced(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(x - motions @ (small @ (motions.T @ x)))
+
+        def whole(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            result = np.zeros(len(own))
+            result[own] = values
+            return result
+
+        def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(self.half_spaces.forward(whole(x / size))[own] / size)
+
+        def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            return balanced(self.half_spaces.inverse(whole(x * size))[own] * size)
+
+        fixed = rest[own] / size
+        start = balanced(guess[own] * size) + motions @ (small @ force)
+        left = -fixed - multiply(start)
+        accuracy = FORESEEN * float(np.linalg.norm(balanced(fixed)))
+        found, left = _conjugate_gradients(multiply, precondition, balanced, start, left, accuracy)
+        return whole(found / size), small @ (motions.T @ left)
 
 
-def foresight(pairs: Sequence[Pair], moved: NDArray[np.float64]) -> Predict:
-    """``predictor`` of the pairs' own half spaces, set up when it is first asked."""
-
-    @cache
-    def ready() -> Predict:
-        return predictor(schur(interfaces(pairs)), moved)
-
-    return lambda *state: ready()(*state)
-
-
-def _balanced(
-    forward: Apply, rest: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
-    own: NDArray[np.int64],
+def _conjugate_gradients(
+    multiply: Apply, precondition: Apply, balanced: Apply,
+    x: NDArray[np.float64], residual: NDArray[np.float64], accuracy: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
-    """Pressures on the rows ``own`` that close the gap there, with the resultants ``force`` on loose bodies."""
-
-    def restricted(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        whole = np.zeros_like(rest)
-        whole[own] = values
-        return forward(whole)[own]
-
-    operator = spla.LinearOperator((len(own), len(own)), matvec=restricted, dtype=float)
-
-    def solve(rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(spla.cg(operator, rhs, rtol=ACCURACY, maxiter=200)[0])
-
-    pressure = np.zeros_like(rest)
-    closing = solve(-rest[own])
-    if not moved.shape[1]:
-        pressure[own] = closing
-        return pressure, np.zeros(0)
-    answers = np.column_stack([solve(column) for column in moved[own].T])
-    shift = np.linalg.lstsq(moved[own].T @ answers, moved[own].T @ closing - force, rcond=1e-9)[0]
-    pressure[own] = closing - answers @ shift
-    return pressure, np.asarray(shift)
+    """From x and its residual on, in the space that ``balanced`` projects to, until the residual there is below
+    ``accuracy``: solution and residual."""
+    direction, before = np.zeros_like(x), np.inf
+    for _ in range(SOLVES):
+        inside = balanced(residual)
+        if np.linalg.norm(inside) <= accuracy:
+            break
+        better = precondition(inside)
+        product = float(inside @ better)
+        direction = better + product / before * direction
+        before, image = product, multiply(direction)
+        energy = float(direction @ image)
+        if not (product > 0.0 and energy > 0.0):  # rounding is all that is left
+            break
+        length = product / energy
+        x, residual = x + length * direction, residual - length * image
+    return x, residual
 
 
-def _forward(part: Interface) -> Apply:
-    shifts, weights = _resolvents(part.full, part.mass, part.lowest)
-    solves = [spla.splu((part.full + s * part.mass).tocsc()).solve for s in shifts]
-
-    def apply(pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-        spread = part.coupled @ pressure
-        return np.asarray(
-            part.compliance * (part.coupled @ sum(w * solve(spread) for w, solve in zip(weights, solves)))
-        )
-
-    return apply
-
-
-def _resolvents(full: Any, mass: Any, lowest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _largest(full: Any, mass: Any, lowest: float) -> float:
+    """An upper bound of the pencil's eigenvalues."""
     rows = np.asarray(abs(mass).sum(axis=1)).ravel()
-    largest = 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)
-    return inverse_root(lowest, largest, ACCURACY)
+    return 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)
 
 
 def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
     full, mass = part.full[own][:, own], part.mass[own][:, own]
-    shifts, weights = _resolvents(full, mass, part.lowest)
+    shifts, weights = inverse_root(part.lowest, _largest(full, mass, part.lowest), ACCURACY)
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
     undo = spla.splu(part.coupled[own][:, own].tocsc()).solve
     ordinary = part.coupled is part.mass

@@ -4,6 +4,7 @@ iteration of every load step solves dense systems of the size of the interface."
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,8 +16,12 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.linear.saddle_point import store_diagonal
+from abut.linear.schur_preconditioner import Predict, foresight, half_spaces, interfaces
+from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.problem.contact_pairs import Pair
-from abut.problem.system import Laws, Rows, Solve, System, Unknowns, weight
+from abut.problem.linearised import Linearised, Rows
+from abut.problem.problem import ContactProblem, Laws, Problem
+from abut.solution.state import State
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
@@ -31,42 +36,115 @@ UNBALANCED_LOADS = "the loads move a body that nothing holds; check supports, co
 
 
 @dataclass(frozen=True)
-class Condensed:
-    """A system on the multipliers and the displacements that had to be kept, and the way back to all of them."""
+class CondensedProblem:
+    """A constant problem on the multipliers and the displacements that had to be kept: ``abut.problem.problem.Problem``.
 
-    system: System
+    Everything but ``whole`` is its own affair: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
+    operator, compliance: theory (V3); pairs: on the kept displacements."""
+
+    whole: ContactProblem
     kept: NDArray[np.int64]
     factorization: direct.PartialFactorization
-    load: NDArray[np.float64]  # of free displacements, then multipliers, after forward substitution; by history
-    whole: System
+    stiffness: NDArray[np.float64]
+    operator: NDArray[np.float64]
+    compliance: NDArray[np.float64]
+    pairs: Sequence[Pair]
+    motions: NDArray[np.float64]
+    constant: bool = True
 
-    def expand(self, state: Unknowns, weights: NDArray[np.float64], laws: Laws) -> Unknowns:
-        """All free displacements. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the
-        whole system are met anew by refinement."""
-        n = len(self.whole.load)
-        inner, load = self.load @ weights, self.whole.load @ weights
-        inner[self.kept], inner[n:] = state.displacement, state.pressure
-        state = replace(state, displacement=self.factorization.backward(inner)[:n])
+    def start(self) -> State:
+        """As in ``Problem``."""
+        return self.restrict(self.whole.start())
+
+    def linearise(self, before: State, now: State) -> Linearised:
+        """As in ``Problem``; the unknowns of ``before`` and ``now`` do not matter."""
+        full = self.whole.linearise(before, now)
+        n = len(full.load)
+        load = self.factorization.forward(np.concatenate([full.load, np.zeros(len(full.offset))]))
+        return Linearised(
+            full.time, full.factors, self.stiffness, load[self.kept], self.pairs, self.operator, full.offset + load[n:],
+            self.motions, full.restraint, full.load, full.unit, self.compliance,
+        )  # fmt: skip
+
+    def accepted(self, before: State, now: State) -> State:
+        """As in ``Problem``: nothing constant has a history."""
+        return now
+
+    def restrict(self, state: State) -> State:
+        """As in ``Problem``."""
+        return replace(state, unknowns=state.unknowns[self.kept])
+
+    def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
+        """As in ``Problem``."""
+        other = self.whole.with_ordinary(closed)
+        if other is self.whole:
+            return self
+        return condense(other) or other
+
+    def expand(self, state: State, laws: Laws) -> State:
+        """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
+        problem are met anew by refinement."""
+        near = self.linearise(state, state)
+        whole = self.whole.linearise(state, state)
+        solver = dense(near)
+        n = len(whole.load)
+        inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))
+        inner[self.kept], inner[n:] = state.unknowns, state.multipliers
+        state = replace(state, unknowns=self.factorization.backward(inner)[:n])
         for _ in range(REFINEMENTS):
-            p = state.pressure
-            miss = load + self.whole.operator.T @ p - self.whole.stiffness @ state.displacement
-            inner = self.factorization.forward(np.concatenate([miss, np.zeros(len(p))]))
-            linear = laws(self.whole, state)
+            inner = self.factorization.forward(np.concatenate([-whole.unbalanced(state), np.zeros(len(whole))]))
+            linear = laws(whole, state)
             opened = [law.residual for law in linear]
-            for i, shift in enumerate(self.whole.split(inner[n:])):
+            for i, shift in enumerate(whole.split(inner[n:])):
                 if not linear[i].at_points:  # what those see has been kept
                     opened[i] = opened[i] + linear[i].by_gap @ shift
-            rows = replace(self.system.rows(linear), residual=np.concatenate(opened))
+            rows = replace(near.rows(linear), residual=near.join(opened))
             try:
-                inner[self.kept], inner[n:] = self.system.step(rows, -inner[self.kept], p, 0.0)
+                inner[self.kept], inner[n:] = solver.solve(rows, -inner[self.kept], state.multipliers, 0.0)
             except SingularModelError:  # laws that have not been met may be too far off to go on from
                 return state
             state = replace(
                 state,
-                displacement=state.displacement + self.factorization.backward(inner)[:n],
-                pressure=p + inner[n:],
+                unknowns=state.unknowns + self.factorization.backward(inner)[:n],
+                multipliers=state.multipliers + inner[n:],
             )
         return state
+
+
+@dataclass(frozen=True)
+class Dense:
+    """As ``abut.linear.solver.Prepared``, of a condensed problem. predict: as ``foresee``."""
+
+    system: Linearised
+    flexibility: Flexibility
+    predict: Predict
+    exact: bool = True
+    accurate: float = ACCURATE
+
+    def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Prepared``."""
+        return self.flexibility.step(rows, residual, pressure, float(np.abs(self.system.forces).sum()))
+
+    def factorise(self, rows: Rows) -> Solve:
+        """As in ``Prepared``."""
+        return self.flexibility.factorise(rows, float(np.abs(self.system.forces).sum()))
+
+    def respond(self, force: Vector, springs: Vector) -> Vector:
+        """As in ``Prepared``."""
+        return np.asarray(np.linalg.solve(self.system.stiffness + np.diag(springs), force)) if len(force) else force
+
+    def foresee(
+        self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """As in ``Prepared``."""
+        return self.predict(gap, pressure, active, tied)
+
+
+def dense(system: Linearised) -> Dense:
+    """A solver for the linearised problem of a ``CondensedProblem``."""
+    pairs = system.pairs
+    predict = foresight(lambda: half_spaces(interfaces(pairs)), np.asarray(system.operator @ system.motions))
+    return Dense(system, _flexibility(system), predict)
 
 
 @dataclass(frozen=True)
@@ -75,7 +153,7 @@ class Flexibility:
 
     factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
     the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures;
-    weight: (n_multipliers,) gap of each by a displacement of one; force: sum of the loads;
+    weight: (n_multipliers,) gap of each by a displacement of one;
     redundant: constraints may repeat each other, then the smallest pressure that serves is taken.
     """
 
@@ -84,14 +162,14 @@ class Flexibility:
     response: NDArray[np.float64]
     operator: NDArray[np.float64]
     weight: NDArray[np.float64]
-    force: float
     redundant: bool
 
     def step(
-        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], accuracy: float = 0.0
+        self, rows: Rows, residual: NDArray[np.float64], pressure: NDArray[np.float64], force: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r): du = K^-1 (B^T dp - residual) + R a, with R^T of the
         bracket zero, theory (V5), put into the rows of the laws. Motions that the rows leave free stay where they are.
+        force: sum of the loads, beside which what is left of forces in balance is rounding.
 
         Raises SingularModelError, also where ``residual`` does work on such motions."""
         known, wanted = rows.decoupled, -rows.residual
@@ -101,7 +179,7 @@ class Flexibility:
         push = self.operator.T @ dp - residual
         du = scipy.linalg.cho_solve(self.factor, push)
         law = rows.by_displacement[free]
-        motions = self._resisted(free, law, push, np.abs(pressure) + np.abs(dp))
+        motions = self._resisted(free, law, push, self.weight @ (np.abs(pressure) + np.abs(dp)) + force)
         n, m = len(free), motions.shape[1]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
@@ -113,20 +191,20 @@ class Flexibility:
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
-        self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], pressure: NDArray[np.float64]
+        self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], force: float
     ) -> NDArray[np.float64]:
         """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance;
-        pressure: (n_multipliers,) sizes, beside which what is left of forces in balance is rounding."""
+        force: sum of all others, beside which what is left of forces in balance is rounding."""
         if not self.motions.shape[1]:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
         loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
         work = np.abs((self.motions @ loose).T @ push).max(initial=0.0)
-        if work > UNBALANCED * (np.abs(push).sum() + self.weight @ pressure + self.force):
+        if work > UNBALANCED * (np.abs(push).sum() + force):
             raise SingularModelError(UNBALANCED_LOADS)
         return self.motions @ held if loose.shape[1] else self.motions
 
-    def factorise(self, rows: Rows) -> Solve:
+    def factorise(self, rows: Rows, force: float) -> Solve:
         """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows
         add is definite, and the rigid motions are a small Schur complement of it."""
         n, m = len(rows.residual), self.motions.shape[1]
@@ -136,7 +214,7 @@ class Flexibility:
         try:
             factor = scipy.linalg.cho_factor(stiff / size[:, None] / size, lower=True, check_finite=False)
         except np.linalg.LinAlgError:  # rows that repeat each other
-            return lambda residual, of_law: self.step(replace(rows, residual=of_law), residual, np.zeros(n))
+            return lambda residual, of_law: self.step(replace(rows, residual=of_law), residual, np.zeros(n), force)
 
         def inverse(gap: NDArray[np.float64]) -> NDArray[np.float64]:
             scale = size if gap.ndim == 1 else size[:, None]
@@ -164,73 +242,52 @@ class Flexibility:
         return solve
 
 
-def condense(system: System, motions: NDArray[np.float64]) -> Condensed | None:
-    """The system with all displacements eliminated but those that pairs with a law at the integration points look at, and
-    as many as hold the bodies that supports leave free. None where what is left is too large for dense matrices, or no
-    solver for it is installed.
-
-    motions: (n_free, m) the rigid motions of bodies that supports leave free.
-    """
-    n, n_p = len(system.load), system.operator.shape[0]
-    kept = _kept(system, motions)
-    if not 0 < n_p + len(kept) <= LARGEST or n_p == 0:
+def condense(problem: ContactProblem) -> CondensedProblem | None:
+    """The problem with all displacements eliminated but those that pairs with a law at the integration points look at, and
+    as many as hold the bodies that supports leave free. None where the problem is not constant, where what is left is too
+    large for dense matrices, or no solver for it is installed."""
+    n, n_p = problem.n_free, problem.operator.shape[0]
+    kept = _kept(problem.pairs, problem.motions)
+    if not problem.constant or not 0 < n_p + len(kept) <= LARGEST or n_p == 0:
         return None
-    matrix = sp.bmat([[sp.triu(system.stiffness), -system.operator.T], [None, sp.csr_matrix((n_p, n_p))]], format="csr")
+    upper, none = sp.triu(problem.stiffness), sp.csr_matrix((n_p, n_p))
+    matrix = sp.bmat([[upper, -problem.operator.T], [None, none]], format="csr")
     factorization = direct.partial_factorization(store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)]))
     if factorization is None:
         return None
-    none = np.zeros(n_p)
-    load = np.column_stack([factorization.forward(np.concatenate([own, none])) for own in system.load.T])
-    n_u = len(kept)
-    schur = factorization.schur
+    n_u, schur = len(kept), factorization.schur
     stiffness, operator, compliance = schur[:n_u, :n_u], -schur[n_u:, :n_u], -schur[n_u:, n_u:]  # theory (V3)
-    redundant = any(pair.redundant for pair in system.pairs)
-    unit = float(np.median(system.stiffness.diagonal()))
-    sizes = system.join([weight(pair) for pair in system.pairs])
-    force = float(np.abs(system.load).sum())
-    flexibility = _flexibility(stiffness, motions[kept], operator, unit, sizes, force, redundant)
-    if flexibility is None:
-        return None
-    small = replace(
-        system,
-        stiffness=stiffness,
-        load=load[kept],
-        pairs=[_restricted(pair, kept) for pair in system.pairs],
-        operator=operator,
-        step=flexibility.step,
-        motions=motions[kept],
-        factorise=flexibility.factorise,
-        compliance=compliance,
-        opening=load[n:],
-    )
-    return Condensed(small, kept, factorization, load, system)
-
-
-def _kept(system: System, motions: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Numbers of the displacements that stay."""
-    m = motions.shape[1]
-    holding = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][:m] if m else np.zeros(0, dtype=int)
-    points = [p.points.operator for p in system.pairs if p.points is not None]
-    looked_at = np.flatnonzero(np.diff(sp.vstack(points).tocsc().indptr)) if points else np.zeros(0, dtype=int)
-    return np.union1d(holding, looked_at).astype(np.int64)
-
-
-def _flexibility(
-    stiffness: NDArray[np.float64],
-    motions: NDArray[np.float64],
-    operator: NDArray[np.float64],
-    unit: float,
-    sizes: NDArray[np.float64],
-    force: float,
-    redundant: bool,
-) -> Flexibility | None:
-    basis = np.linalg.svd(motions, full_matrices=False)[0] if motions.size else motions
+    pairs, motions = [_restricted(pair, kept) for pair in problem.pairs], problem.motions[kept]
     try:
-        factor = scipy.linalg.cho_factor(stiffness + unit * (basis @ basis.T), lower=True)
+        _factor(stiffness, motions, problem.unit)
     except np.linalg.LinAlgError:
         return None  # a zero-energy motion that is not rigid, as of bodies joined in a hinge
-    response = scipy.linalg.cho_solve(factor, operator.T)
-    return Flexibility(factor, basis, response, operator, sizes, force, redundant)
+    return CondensedProblem(problem, kept, factorization, stiffness, operator, compliance, pairs, motions)
+
+
+def _kept(pairs: Sequence[Pair], motions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Numbers of the displacements that stay."""
+    m = motions.shape[1]
+    held = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][:m] if m else np.zeros(0, dtype=int)
+    points = [p.points.operator for p in pairs if p.points is not None]
+    looked_at = np.flatnonzero(np.diff(sp.vstack(points).tocsc().indptr)) if points else np.zeros(0, dtype=int)
+    return np.union1d(held, looked_at).astype(np.int64)
+
+
+def _flexibility(system: Linearised) -> Flexibility:
+    factor, basis = _factor(system.stiffness, system.motions, system.unit)
+    response = scipy.linalg.cho_solve(factor, system.operator.T)
+    redundant = any(pair.redundant for pair in system.pairs)
+    return Flexibility(factor, basis, response, system.operator, system.weight, redundant)
+
+
+def _factor(
+    stiffness: NDArray[np.float64], motions: NDArray[np.float64], unit: float
+) -> tuple[tuple[NDArray[np.float64], bool], NDArray[np.float64]]:
+    """Cholesky factor of the condensed stiffness with rigid motions held, and an orthonormal basis of these. Raises
+    LinAlgError."""
+    basis = np.linalg.svd(motions, full_matrices=False)[0] if motions.size else motions
+    return scipy.linalg.cho_factor(stiffness + unit * (basis @ basis.T), lower=True), basis
 
 
 def _restricted(pair: Pair, kept: NDArray[np.int64]) -> Pair:

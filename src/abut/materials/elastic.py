@@ -19,6 +19,11 @@ class LinearElastic:
     poisson:   Poisson's ratio, -1 < nu < 0.5.
     density:   mass per volume, used by gravity.
     expansion: thermal expansion per degree, used by temperature changes.
+
+    >>> import abut
+    >>> steel = abut.LinearElastic(young=210e3, poisson=0.3)  # N, mm
+    >>> steel.expansion
+    0.0
     """
 
     young: float

@@ -11,15 +11,8 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.errors import InputError, nearest
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.surface import Surface
-
-
-@dataclass(frozen=True)
-class CellBlock:
-    """Cells of one type: ``kind`` a name in ``abut.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32."""
-
-    kind: str
-    nodes: NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -33,6 +26,18 @@ class Mesh:
     node_sets: name -> (n,) int64 point numbers, sorted.
     axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
     notes:     what was changed when the mesh was read, in words.
+
+    >>> import numpy as np
+    >>> import abut
+    >>> from abut.mesh.mesh import CellBlock
+    >>> mesh = abut.Mesh(
+    ...     points=np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]),
+    ...     blocks=(CellBlock("quad4", np.array([[0, 1, 2, 3]], dtype=np.int32)),),
+    ...     bodies={"plate": np.array([0])},
+    ...     surfaces={"right": np.array([[0, 1]])},  # its second edge
+    ... )
+    >>> mesh.nodes_of("right").tolist()
+    [1, 2]
     """
 
     points: NDArray[np.float64]
@@ -43,15 +48,15 @@ class Mesh:
     axisymmetric: bool = False
     notes: tuple[str, ...] = ()
 
-    @staticmethod
-    def read(path: str | Path) -> Mesh:
+    @classmethod
+    def read(cls, path: str | Path) -> Mesh:
         """Read a Gmsh ``.msh`` (2.2 or 4.1), ``.vtu``, or Abaqus or CalculiX ``.inp`` file and check it.
 
         Raises InputError for a file that is missing, truncated, of another kind, or whose mesh is unsound.
         """
         from abut.mesh.read import read_mesh
 
-        return read_mesh(Path(path))
+        return read_mesh(cls, Path(path))
 
     @property
     def dim(self) -> int:

@@ -3,34 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
-from abut.nonlinear.constraint_function import finish_smooth
+from abut.linear.solver import Prepared
 from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, finer, settled, solve_set
+from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
-from abut.problem.system import (
-    Outcome,
-    Stage,
-    System,
-    Unknowns,
-    active_laws,
-    internal_force,
-    largest_force,
-    largest_pressure,
-    weight,
-)
+from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
+from abut.solution.state import State
 
-TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once sets repeat
-FEW = 0.05  # share of the active set below which changes are too few to foresee where they lead ...
-EARLY = 3  # ... but for those of the first iterations
 PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
 ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
 MISLED = 0.25  # share of the active set that changes, and more than before, where a set was foreseen wrongly
@@ -39,67 +26,52 @@ LAST = 12  # row of a step by which the violation should be gone, at its pace of
 HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
 
 
-def start(system: System) -> Unknowns:
-    """Zero displacement; multipliers that touch at the outset are active, theory (V6)."""
-    n = sum(map(len, system.pairs))
-    rest = Unknowns(np.zeros(system.stiffness.shape[0]), np.zeros(n), np.zeros(n, dtype=bool))
-    gap = system.gap(rest, np.zeros(system.load.shape[1]))
-    active = system.join(
-        [
-            np.full(len(pair), True) if pair.tied else g <= TOUCHING * pair.size * weight(pair)
-            for pair, g in zip(system.pairs, system.split(gap))
-        ]
-    ).astype(bool)
-    return replace(rest, active=active)
-
-
 def solve_step(
-    system: System,
-    begin: Unknowns,
-    stage: Stage,
+    solver: Prepared,
+    begin: State,
+    increment: Increment,
     limit: int,
     observe: Callable[[Iteration], None],
     earlier: Sequence[Iteration] = (),
     aim: Aim = "solution",
     settle: bool = False,
-) -> Outcome:
+) -> Found:
     """Find the state at the end of a load step, from the state ``begin``.
 
     earlier: iterations of the same step before; aim: "set" where only the active set is wanted, of laws that have one, "this
     set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
-    state = begin
-    tied = system.join([np.full(len(pair), pair.tied) for pair in system.pairs]).astype(bool)
-    laws = partial(active_laws, weights=stage.weights)
+    state, system = begin, solver.system
+    tied = system.tied
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
     log = Log(list(earlier), observe, len(earlier) + limit)
     changes: list[int] = []
     violations: list[float] = []
-    foresight, doubtful = system.predict, False
+    foresee, doubtful = True, False
     lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
     finest, before = ROUGH, np.inf
     accuracy = STRIDE if settle else ROUGH
-    if state.active.all() and not settle:
-        accuracy = 0.1 * system.accurate  # closed all over may well be the answer
+    if state.closed.all() and not settle:
+        accuracy = 0.1 * solver.accurate  # closed all over may well be the answer
     while not log.full:
         try:
-            solved = solve_set(system, state, stage, tied, log.next, accuracy)
+            solved = solve_set(solver, state, increment, tied, log.next, accuracy)
         except SingularModelError:
-            _check_balance(system, stage)
+            _check_balance(solver)
             if tied.all() or aim == "this set":
                 raise
-            return search(system, begin, stage, limit, log, tied, aim)
+            return search(solver, begin, increment, limit, log, tied, aim)
         log.add(solved.row)
         state, wanted, changed = solved.state, solved.wanted, solved.changed
-        active = state.active
+        active = state.closed
         history.append(active)
         if not changed.any():
-            if settled(system, solved, aim, before):
+            if settled(solver, solved, aim, before):
                 if aim == "set":
-                    return Outcome(state, tuple(log.done), True, changed, laws)
-                return finish_smooth(system, state, stage, limit, log.done, observe)
-            accuracy, before = finer(system, solved, aim), solved.error
+                    return Found(state, tuple(log.done), True, changed, active_laws)
+                return finish_smooth(solver, state, increment, limit, log.done, observe)
+            accuracy, before = finer(solver, solved, aim), solved.error
             continue
         before = np.inf
         if aim == "this set":
@@ -108,37 +80,37 @@ def solve_step(
         misled = lawful is not None and count > max(changes[-1], MISLED * active.sum())
         if misled and lawful is not None:  # back to what the law asked for, and no more foresight
             seen.add(active.tobytes())
-            state, lawful, foresight, doubtful = replace(state, active=lawful), None, None, True
+            state, lawful, foresee, doubtful = state.with_closed(lawful), None, False, True
             continue
         changes.append(count)
         violations.append(float(solved.violation.max()))
-        gap = system.gap(state, stage.weights)
+        gap = system.gap(state)
         rows = len(log.done) - len(earlier)
         lawful = None
-        if foresight is not None and (rows <= EARLY or count > FEW * active.sum()):
-            guess = foresight(gap, state.pressure, wanted, tied)
+        if foresee:
+            guess = solver.foresee(gap, state.multipliers, wanted, tied)
             if guess.tobytes() not in {*seen, active.tobytes()}:
-                told = system.exact or solved.error <= TOLD
+                told = solver.exact or solved.error <= TOLD
                 lawful, wanted = wanted if told else None, guess
         accuracy = finest
-        stuck = np.array_equal(system.complete(wanted, gap, stage.weights) | tied, active)
+        stuck = np.array_equal(system.restraint.complete(system.forces, wanted, gap) | tied, active)
         seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in seen
-        settling = foresight is not None and count <= SETTLING * active.sum() and rows < SETTLED
+        settling = foresee and count <= SETTLING * active.sum() and rows < SETTLED
         settling = settling or closing(violations, rows)
         slow = repeated or (hopeless(changes, rows) and not settling) or (doubtful and count >= HALVED * changes[-2])
         doubtful = False
         if slow:
-            _check_balance(system, stage)
-        if repeated and not stuck and not system.exact and finest > FINE:
+            _check_balance(solver)
+        if repeated and not stuck and not solver.exact and finest > FINE:
             accuracy = finest = FINE  # sets may repeat because they were not solved well enough
             seen.clear()
         elif slow:
-            return search(system, begin, stage, limit, log, tied, aim)
-        state = replace(state, active=wanted)
+            return search(solver, begin, increment, limit, log, tied, aim)
+        state = state.with_closed(wanted)
     recent = np.stack(history[-6:])
     cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | changed
-    return Outcome(replace(state, active=active), tuple(log.done), False, cycling, laws)
+    return Found(state.with_closed(active), tuple(log.done), False, cycling, active_laws)
 
 
 def stalled(changes: Sequence[int]) -> bool:
@@ -163,21 +135,10 @@ def closing(violations: Sequence[float], rows: int) -> bool:
     return rows + last[-1] * PATIENCE / (last[0] - last[-1]) <= LAST
 
 
-def _check_balance(system: System, stage: Stage) -> None:
+def _check_balance(solver: Prepared) -> None:
     """Raises SingularModelError where no contact that only pushes balances the loads, and names what they move."""
-    motion = system.pulled_off(stage.weights)
+    motion = solver.system.restraint.unbalanced(solver.system.forces)
     if motion:
         raise SingularModelError(
             f"{motion}: the loads pull it off its contact; hold it by a support or turn the load round"
         )
-
-
-def following(system: System, stage: Stage, outcome: Outcome, weights: NDArray[np.float64]) -> Stage:
-    """The stage after one that ended with ``outcome``."""
-    state = outcome.unknowns
-    return Stage(
-        stage.number + 1,
-        weights,
-        largest_force(system, state, internal_force(system, state), stage),
-        largest_pressure(state, stage),
-    )

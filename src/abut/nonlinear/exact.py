@@ -9,17 +9,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.system import (
-    Stage,
-    System,
-    Unknowns,
-    active_laws,
-    advance,
-    largest_pressure,
-    next_active,
-    report,
-)
+from abut.linear.solver import Prepared
+from abut.nonlinear.iteration import Increment, active_laws, advance, largest_pressure, next_active, report
 from abut.solution import Iteration
+from abut.solution.state import State
 
 Aim = Literal["solution", "set", "this set"]
 ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
@@ -37,7 +30,7 @@ class Solved:
     """state: with the active set that was used; wanted: the one that the law asks for then, theory (V7); violation: (n,)
     by how much (pressure) each multiplier breaks the law; closure: see ``closure``; row: of the table."""
 
-    state: Unknowns
+    state: State
     wanted: NDArray[np.bool_]
     violation: NDArray[np.float64]
     closure: float
@@ -45,7 +38,7 @@ class Solved:
 
     @property
     def changed(self) -> NDArray[np.bool_]:
-        return self.wanted != self.state.active
+        return self.wanted != self.state.closed
 
     @property
     def error(self) -> float:
@@ -54,45 +47,46 @@ class Solved:
 
 
 def solve_set(
-    system: System, state: Unknowns, stage: Stage, tied: NDArray[np.bool_], count: int, accuracy: float
+    solver: Prepared, state: State, increment: Increment, tied: NDArray[np.bool_], count: int, accuracy: float
 ) -> Solved:
     """Solve with the active set of ``state``, completed where it lets a body go, as iteration ``count`` of the step.
 
     An iterative solver goes on where a rough solution says nothing, as after a state that was far off."""
     clock = time.perf_counter()
-    active = system.complete(state.active, system.gap(state, stage.weights), stage.weights) | tied
-    state = replace(state, active=active)
-    for _ in range(MOST if not system.exact else 1):
-        state = advance(system, state, stage.weights, active_laws(system, state, stage.weights), accuracy)
-        wanted, violation = next_active(system, state, stage, tied)
+    system = solver.system
+    active = system.restraint.complete(system.forces, state.closed, system.gap(state)) | tied
+    state = state.with_closed(active)
+    for _ in range(MOST if not solver.exact else 1):
+        state = advance(solver, state, active_laws(system, state), accuracy)
+        wanted, violation = next_active(system, state, increment, tied)
         changed = int((wanted != active).sum())
-        row = report(system, state, stage, count, changed, violation, time.perf_counter() - clock)
-        solved = Solved(state, wanted, violation, closure(system, state, stage), row)
+        row = report(system, state, increment, count, changed, violation, time.perf_counter() - clock)
+        solved = Solved(state, wanted, violation, closure(solver, state, increment), row)
         if solved.error <= TOLD:
             break
         accuracy = max(TOLD / solved.error, STRIDE)
     return replace(solved, row=replace(row, contact_residual=max(row.contact_residual, solved.closure)))
 
 
-def settled(system: System, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
+def settled(solver: Prepared, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
     """Whether a set that stands still has been solved well enough. before: its error after the solution before this one:
     what no longer falls is rounding."""
     rounding = solved.error <= ROUNDING and solved.error > 0.5 * before
-    return system.exact or solved.error <= _wanted(system, aim) or rounding
+    return solver.exact or solved.error <= _wanted(solver, aim) or rounding
 
 
-def finer(system: System, solved: Solved, aim: Aim) -> float:
+def finer(solver: Prepared, solved: Solved, aim: Aim) -> float:
     """The reduction of the residual to ask for next where it has not."""
-    return max(0.3 * _wanted(system, aim) / solved.error, STRIDE)
+    return max(0.3 * _wanted(solver, aim) / solved.error, STRIDE)
 
 
-def _wanted(system: System, aim: Aim) -> float:
-    return max(SEARCHED, system.accurate) if aim == "set" else system.accurate
+def _wanted(solver: Prepared, aim: Aim) -> float:
+    return max(SEARCHED, solver.accurate) if aim == "set" else solver.accurate
 
 
-def closure(system: System, state: Unknowns, stage: Stage) -> float:
+def closure(solver: Prepared, state: State, increment: Increment) -> float:
     """Largest weighted gap left where contact is closed, as a pressure over the largest pressure."""
-    if system.exact or not state.active.any():
+    if solver.exact or not state.closed.any():
         return 0.0
-    gap = system.gap(state, stage.weights) / system.join([pair.scale for pair in system.pairs])
-    return float(np.abs(gap[state.active]).max() / largest_pressure(state, stage))
+    gap = solver.system.gap(state) / solver.system.scale
+    return float(np.abs(gap[state.closed]).max() / largest_pressure(state, increment))

@@ -10,18 +10,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.laws import linearise_interior
-from abut.linear import direct
-from abut.linear.saddle_point import store_diagonal
-from abut.problem.system import Rows, Solve, System, Unknowns, equilibrium, internal_force
+from abut.linear.solver import Prepared, Solve
+from abut.problem.laws import softened
+from abut.problem.linearised import Rows
+from abut.solution.state import State
 
 BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
 CENTRAL = 1e-3  # of the mean product of gaps and pressures: what the smallest keeps ...
 SHORTER, TRIES = 0.8, 12  # ... by steps that many times shorter, so often at most
-UNKNOWN = 1e3  # softness where it would cost too much to find out
 UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
 Vector = NDArray[np.float64]
 
@@ -32,7 +30,7 @@ class Interior:
     pressures are to be complementary to (zero on tied rows); opening, closing: (n,) d g / g and d p / p of the last
     predictor."""
 
-    state: Unknowns
+    state: State
     slack: Vector
     opening: Vector
     closing: Vector
@@ -49,11 +47,10 @@ class Interior:
 
 @dataclass(frozen=True)
 class Programme:
-    """What stays the same over the iterations of a load step. scale: (n,) gap per pressure; tied: (n,) rows that are
-    closed whatever happens; softness: of the bodies over that of their facets."""
+    """What stays the same over the iterations of a load step. prepared: the linear solver; scale: (n,) gap per pressure;
+    tied: (n,) rows that are closed whatever happens; softness: of the bodies over that of their facets."""
 
-    system: System
-    weights: Vector
+    prepared: Prepared
     scale: Vector
     tied: NDArray[np.bool_]
     softness: float
@@ -69,23 +66,24 @@ class Programme:
         product = slack[free] * pressure[free] / self.scale[free]
         return bool(product.min() >= CENTRAL * product.mean())
 
-    def rows(self, state: Unknowns, softness: Vector, shift: Vector) -> Rows:
+    def rows(self, state: State, softness: Vector, shift: Vector) -> Rows:
         """The rows of theory (V18)."""
-        parts = zip(*map(self.system.split, (self.system.gap(state, self.weights), shift, softness, state.active)))
-        return self.system.rows([linearise_interior(*part) for part in parts])
+        system = self.prepared.system
+        parts = zip(*map(system.split, (system.gap(state), shift, softness, state.closed)))
+        return system.rows([softened(*part) for part in parts])
 
-    def solver(self, state: Unknowns, softness: Vector) -> Solve:
+    def solver(self, state: State, softness: Vector) -> Solve:
         """Solutions with rows of that softness, as often as wanted: (residual of equilibrium, shift) -> (du, dp)."""
         rows = self.rows(state, softness, np.zeros_like(softness))
-        if self.system.factorise is None:
+        factors = self.prepared.factorise(rows)
+        if factors is None:
             return self._iterations(rows, state)
-        factors = self.system.factorise(rows)
         return lambda residual, shift: factors(residual, rows.residual + shift)
 
-    def _iterations(self, rows: Rows, state: Unknowns) -> Solve:
+    def _iterations(self, rows: Rows, state: State) -> Solve:
         """The same by an iterative solver, each solution from the one before on."""
-        system = self.system
-        du, dp = np.zeros_like(state.displacement), np.zeros_like(state.pressure)
+        system = self.prepared.system
+        du, dp = np.zeros_like(state.unknowns), np.zeros_like(state.multipliers)
 
         def solve(residual: Vector, shift: Vector) -> tuple[Vector, Vector]:
             nonlocal du, dp
@@ -93,7 +91,7 @@ class Programme:
             if du.any() or dp.any():
                 left = residual + system.stiffness @ du - system.operator.T @ dp
                 of_law = of_law + rows.by_displacement @ du + rows.by_pressure @ dp
-            more = system.step(replace(rows, residual=of_law), left, state.pressure, ROUGH)
+            more = self.prepared.solve(replace(rows, residual=of_law), left, state.multipliers, ROUGH)
             du, dp = du + more[0], dp + more[1]
             return du, dp
 
@@ -101,65 +99,55 @@ class Programme:
 
     def missed(self, here: Interior) -> float:
         """Largest difference between gaps and slacks, as a pressure."""
-        return float(np.abs((self.system.gap(here.state, self.weights) - here.slack) / self.scale).max())
+        return float(np.abs((self.prepared.system.gap(here.state) - here.slack) / self.scale).max())
 
-    def unbalanced(self, state: Unknowns) -> Vector:
-        return equilibrium(self.system, state, self.weights, internal_force(self.system, state))
+    def unbalanced(self, state: State) -> Vector:
+        return self.prepared.system.unbalanced(state)
 
 
 ROUGH = 1e-2  # reduction of residuals asked of iterative solvers
 
 
-def softness(system: System, scale: Vector) -> float:
+def softness(solver: Prepared) -> float:
     """How far the bodies give way under a uniform pressure, over how far their facets alone would, theory (V16). Rigid
     motions are held by springs at a few displacements, and their share is taken out."""
-    n, root = len(scale), np.sqrt(scale)
-    one = np.ones(n)
-    push = np.asarray(system.operator.T @ one)
-    if system.respond is not None:
-        moved = system.operator @ system.respond(push, _springs(system))
-    elif sp.issparse(system.stiffness):
-        moved = system.operator @ _held(system).solve(push)
-    elif isinstance(system.stiffness, np.ndarray) and system.compliance is not None:
-        held = system.stiffness + np.diag(_springs(system))
-        moved = system.operator @ (np.linalg.solve(held, push) if len(push) else push) + system.compliance @ one
-    else:
-        return UNKNOWN
+    system = solver.system
+    root = np.sqrt(system.scale)
+    one = np.ones(len(root))
+    moved = system.operator @ solver.respond(np.asarray(system.operator.T @ one), _springs(solver))
+    if system.compliance is not None:
+        moved = moved + system.compliance @ one
     if system.motions.shape[1]:
         rigid = np.asarray(system.operator @ system.motions) / root[:, None]
         moved = moved - root * (rigid @ np.linalg.lstsq(rigid, moved / root, rcond=None)[0])
     return max(1.0, float(np.linalg.norm(moved / root) / np.linalg.norm(root)))
 
 
-def _held(system: System) -> direct.Factorization:
-    held = system.stiffness + sp.diags(_springs(system))
-    return direct.Factorization(store_diagonal(sp.triu(held, format="csr")))
-
-
-def _springs(system: System) -> Vector:
+def _springs(solver: Prepared) -> Vector:
     """Springs (n_free,) on as many displacements as hold the rigid motions, as stiff as the bodies there."""
-    springs = np.zeros(system.stiffness.shape[0])
-    if system.motions.shape[1]:
-        pivots = scipy.linalg.qr(system.motions.T, mode="r", pivoting=True)[1][: system.motions.shape[1]]
-        springs[pivots] = np.median(system.stiffness.diagonal())
+    motions = solver.system.motions
+    springs = np.zeros(len(motions))
+    if motions.shape[1]:
+        pivots = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][: motions.shape[1]]
+        springs[pivots] = solver.system.unit
     return springs
 
 
-def begin(programme: Programme, state: Unknowns) -> Interior:
+def begin(programme: Programme, state: State) -> Interior:
     """The starting point, theory (V17): one solution with softness everywhere."""
     free, soft = ~programme.tied, np.where(programme.tied, 0.0, programme.softness * programme.scale)
     solve = programme.solver(state, soft)
-    du, dp = solve(programme.unbalanced(state), -soft * state.pressure)
-    pressure = state.pressure + dp
+    du, dp = solve(programme.unbalanced(state), -soft * state.multipliers)
+    pressure = state.multipliers + dp
     size = max(float(np.abs(pressure[free]).mean()), 1e-300)
     pressure = np.where(free, np.maximum(pressure, 0.0) + size, pressure)
-    start = replace(state, displacement=state.displacement + du, pressure=pressure)
+    start = replace(state, unknowns=state.unknowns + du, multipliers=pressure)
     return Interior(start, soft * size, np.zeros(len(soft)), np.zeros(len(soft)))
 
 
 def iterate(programme: Programme, here: Interior) -> Interior:
     """One iteration, theory (V18), (V19)."""
-    free, scale, p, g = ~programme.tied, programme.scale, here.state.pressure, here.slack
+    free, scale, p, g = ~programme.tied, programme.scale, here.state.multipliers, here.slack
     inverse = np.where(free, 1.0 / np.where(free, p, 1.0), 0.0)
     solve = programme.solver(here.state, g * inverse)
     residual, mean = programme.unbalanced(here.state), programme.mean(p, g)
@@ -178,7 +166,7 @@ def iterate(programme: Programme, here: Interior) -> Interior:
     shorter = length * SHORTER ** np.arange(TRIES)
     length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)
     state = replace(
-        here.state, displacement=here.state.displacement + length * du, pressure=here.state.pressure + length * dp
+        here.state, unknowns=here.state.unknowns + length * du, multipliers=here.state.multipliers + length * dp
     )
     share = np.where(free, g, 1.0)
     return Interior(

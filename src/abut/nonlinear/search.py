@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
-from abut.nonlinear.constraint_function import finish_smooth
+from abut.linear.solver import Prepared
 from abut.nonlinear.exact import STRIDE, Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.interior_point import Programme, begin, iterate, softness
-from abut.problem.system import Outcome, Stage, System, Unknowns, active_laws, largest_pressure, report
+from abut.nonlinear.iteration import Found, Increment, active_laws, largest_pressure, report
+from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
+from abut.solution.state import State
 
 SOLUTIONS, HALVED = 3, 0.5  # exact ones at a time, while ever fewer multipliers change; more while these halve
 SHARE = 0.02  # of the multipliers that may be undecided, or change, for exact solutions to be worth a try
@@ -46,27 +47,26 @@ class Log:
 
 
 def search(
-    system: System, state: Unknowns, stage: Stage, limit: int, log: Log, tied: NDArray[np.bool_], aim: Aim
-) -> Outcome:
+    solver: Prepared, state: State, increment: Increment, limit: int, log: Log, tied: NDArray[np.bool_], aim: Aim
+) -> Found:
     """The state at the end of a load step. limit: of iterations of the constraint function, which come last."""
-    scale = system.join([pair.scale for pair in system.pairs])
+    system = solver.system
     few = max(int(SHARE * (~tied).sum()), 1)
-    laws = partial(active_laws, weights=stage.weights)
 
-    def finish(solved: Solved) -> Outcome:
+    def finish(solved: Solved) -> Found:
         if aim == "set":
-            return Outcome(solved.state, tuple(log.done), True, solved.changed, laws)
-        return finish_smooth(system, solved.state, stage, limit, log.done, log.observe)
+            return Found(solved.state, tuple(log.done), True, solved.changed, active_laws)
+        return finish_smooth(solver, solved.state, increment, limit, log.done, log.observe)
 
     clock = time.perf_counter()
-    programme = Programme(system, stage.weights, scale, tied, softness(system, scale))
+    programme = Programme(solver, system.scale, tied, softness(solver))
     if system.compliance is None:  # it took a solution
-        log.add(_row(programme, state, stage, log.next, 0, clock))
+        log.add(_row(programme, state, increment, log.next, 0, clock))
     if log.full:
-        return Outcome(state, tuple(log.done), False, ~tied, laws)
+        return Found(state, tuple(log.done), False, ~tied, active_laws)
     clock = time.perf_counter()
     here = begin(programme, state)
-    log.add(_row(programme, here.state, stage, log.next, 0, clock))
+    log.add(_row(programme, here.state, increment, log.next, 0, clock))
     active = tied
     best, idle = (np.inf, np.inf), 0
     solved: Solved | None = None
@@ -75,51 +75,53 @@ def search(
         here = iterate(programme, here)
         changed = int((here.active != active).sum())
         active = here.active
-        log.add(_row(programme, replace(here.state, active=active), stage, log.next, changed, clock))
-        mean = programme.mean(here.state.pressure, here.slack)
+        log.add(_row(programme, here.state.with_closed(active), increment, log.next, changed, clock))
+        mean = programme.mean(here.state.multipliers, here.slack)
         missed = programme.missed(here)
         idle = 0 if mean < best[0] or missed < best[1] else idle + 1
         best = min(mean, best[0]), min(missed, best[1])
-        floor = idle >= PATIENCE or mean < FLOOR * largest_pressure(here.state, stage) ** 2
+        floor = idle >= PATIENCE or mean < FLOOR * largest_pressure(here.state, increment) ** 2
         if not floor and (int(here.undecided.sum()) > few or changed > max(few, 2)):
             continue
-        solved = polish(system, replace(here.state, active=active), stage, log, tied, aim)
+        solved = polish(solver, here.state.with_closed(active), increment, log, tied, aim)
         if solved is not None and not solved.changed.any():
             return finish(solved)
         if floor:
             break
-    if solved is not None and solved.violation.max() <= ROUNDING * largest_pressure(solved.state, stage):
+    if solved is not None and solved.violation.max() <= ROUNDING * largest_pressure(solved.state, increment):
         return finish(solved)
-    return Outcome(replace(here.state, active=active), tuple(log.done), False, here.undecided, laws)
+    return Found(here.state.with_closed(active), tuple(log.done), False, here.undecided, active_laws)
 
 
-def polish(system: System, state: Unknowns, stage: Stage, log: Log, tied: NDArray[np.bool_], aim: Aim) -> Solved | None:
+def polish(
+    solver: Prepared, state: State, increment: Increment, log: Log, tied: NDArray[np.bool_], aim: Aim
+) -> Solved | None:
     """Exact solutions, beginning with the active set of ``state``, while ever fewer multipliers change: the last of them,
     and the answer where its set stands still. None where none was possible."""
     solved, fewest, accuracy, count, error = None, len(tied) + 1, STRIDE, 0, np.inf
     while not log.full:
         try:
-            following = solve_set(system, state, stage, tied, log.next, accuracy)
+            following = solve_set(solver, state, increment, tied, log.next, accuracy)
         except SingularModelError:
             return solved
         log.add(following.row)
         solved = following
         changed = int(solved.changed.sum())
-        if changed == 0 and settled(system, solved, aim, error):
+        if changed == 0 and settled(solver, solved, aim, error):
             return solved
         if changed == 0:
-            state, accuracy, error = solved.state, finer(system, solved, aim), solved.error
+            state, accuracy, error = solved.state, finer(solver, solved, aim), solved.error
             continue
         if changed >= fewest or (count + 1 >= SOLUTIONS and changed > HALVED * fewest):
             return solved
         fewest, count, error = changed, count + 1, np.inf
-        state, accuracy = replace(solved.state, active=solved.wanted), STRIDE
+        state, accuracy = solved.state.with_closed(solved.wanted), STRIDE
     return solved
 
 
-def _row(programme: Programme, state: Unknowns, stage: Stage, count: int, changed: int, clock: float) -> Iteration:
+def _row(programme: Programme, state: State, increment: Increment, count: int, changed: int, clock: float) -> Iteration:
     """The row of the table for a state between: how far gaps and pressures are from one of them being zero."""
-    system = programme.system
-    gap = system.gap(state, stage.weights) / programme.scale
-    violation = np.abs(np.where(programme.tied, gap, np.minimum(gap, state.pressure)))
-    return report(system, state, stage, count, changed, violation, time.perf_counter() - clock)
+    system = programme.prepared.system
+    gap = system.gap(state) / programme.scale
+    violation = np.abs(np.where(programme.tied, gap, np.minimum(gap, state.multipliers)))
+    return report(system, state, increment, count, changed, violation, time.perf_counter() - clock)

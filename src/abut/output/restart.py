@@ -16,10 +16,11 @@ import abut
 from abut.errors import InputError
 from abut.io.atomic import make_directory, write_file
 from abut.model import Model
-from abut.solution import Iteration, Saved
+from abut.solution import History, Iteration, Largest, Saved, State
 
 FOLDER = "restart"
-ARRAYS = ("displacement", "pressure", "active", "inside", "own_displacement", "own_pressure")
+ARRAYS = ("unknowns", "multipliers", "status")  # of the state
+HISTORY = "history."  # what the names of the other ones begin with
 NAMED = 4  # differences of a changed model that the message lists
 
 
@@ -58,19 +59,22 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
     folder = directory / FOLDER
     make_directory(folder)
     head = {
-        "schema": 1,
+        "schema": 2,
         "abut": abut.__version__,
         "number": saved.number,
-        "factor": saved.factor,
+        "time": saved.state.time,
         "linear": saved.linear,
-        "largest": [saved.largest_force, saved.largest_pressure],
+        "largest": [saved.state.largest.force, saved.state.largest.pressure],
         "iterations": [vars(row) for row in saved.iterations],
         "model": dict(model),
     }
 
+    arrays = {name: getattr(saved.state, name) for name in ARRAYS}
+    arrays |= {HISTORY + name: values for name, values in saved.state.history.arrays.items()}
+
     def write(temporary: Path) -> None:
         with open(temporary, "wb") as file:  # not a name: NumPy would add an ending to it
-            np.savez(file, head=np.array(json.dumps(head)), **{name: getattr(saved, name) for name in ARRAYS})
+            np.savez(file, head=np.array(json.dumps(head)), inside=saved.inside, **arrays)
 
     write_file(folder / f"{saved.number:04d}.npz", write)
 
@@ -94,15 +98,15 @@ def _load(path: Path, model: Mapping[str, str]) -> Saved:
         with np.load(path, allow_pickle=False) as data:
             head = json.loads(str(data["head"]))
             arrays = {name: data[name] for name in ARRAYS}
+            history = {name.removeprefix(HISTORY): data[name] for name in data.files if name.startswith(HISTORY)}
+            state = State(head["time"], **arrays, history=History(history), largest=Largest(*head["largest"]))
             version, before = head["abut"], head["model"]
             saved = Saved(
                 number=head["number"],
-                factor=head["factor"],
+                state=state,
+                inside=data["inside"],
                 linear=head["linear"],
-                largest_force=head["largest"][0],
-                largest_pressure=head["largest"][1],
                 iterations=tuple(Iteration(**row) for row in head["iterations"]),
-                **arrays,
             )
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
         raise InputError(
@@ -155,4 +159,4 @@ def clear(directory: Path) -> None:
 
 def last(steps: Sequence[Saved]) -> str:
     """Where a restart goes on, in words."""
-    return f"going on after step {steps[-1].number} ({100.0 * steps[-1].factor:.4g} % of the load)"
+    return f"going on after step {steps[-1].number} ({100.0 * steps[-1].state.time:.4g} % of the load)"

@@ -12,27 +12,19 @@ from numpy.typing import NDArray
 from abut.bodies.stress import averaged
 from abut.contact.coupling import Coupling
 from abut.errors import InputError
-from abut.linear.choice import Prepared, chosen
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
 from abut.parallel.interface import couple
-from abut.parallel.linear import prepare_direct, prepare_iterative, wants_factors, wants_iterations
 from abut.parallel.matrix import Distributed, reduce
 from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
 from abut.parallel.team import Team
 from abut.problem.constraints import Supports
-from abut.problem.system import System
-
-LARGE = {
-    1: 5_000,
-    2: 5_000,
-}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 
 
 @dataclass(frozen=True)
-class Spread:
-    """As ``abut.problem.backend.Volume``, by a team. owner: (n_cells,) process of each cell, points: (n_points,) of each
+class DistributedBodies:
+    """As ``abut.problem.backend.Backend``, by a team. owner: (n_cells,) process of each cell, points: (n_points,) of each
     point; pieces: by process."""
 
     model: Model
@@ -47,7 +39,7 @@ class Spread:
         cells = [len(piece.cells) for piece in self.pieces]
         return f"{self.team.size} processes with {min(cells)} to {max(cells)} cells each"
 
-    def assembled(self) -> Spread:
+    def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
         own = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
         self.team.each(part.assemble, own=own)
@@ -58,7 +50,7 @@ class Spread:
         return couple(self.team, self.owner[contactor.cells], contactor, target, degree, **options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``abut.problem.backend.Volume``."""
+        """As in ``abut.problem.backend.Backend``."""
         dim = self.model.dim
         nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
         own = [
@@ -70,7 +62,7 @@ class Spread:
         return total.reshape(displacement.shape)
 
     def reduce(self, held: Supports) -> Distributed:
-        """As in ``Volume``, a matrix of PETSc's."""
+        """As in ``Backend``, a matrix of PETSc's."""
         dim = self.model.dim
         places = layout(held.free, self.points, dim, self.team.size, held.coupled)
         own = []
@@ -85,7 +77,7 @@ class Spread:
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """As in ``Volume``."""
+        """As in ``Backend``."""
         own = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
         total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
         sums = self.team.each(part.stresses, self.model.temperatures(time), own=own)
@@ -94,32 +86,16 @@ class Spread:
             count[piece.points] += cells
         return averaged(total, count)
 
-    def choose(self, system: System, held: Supports) -> str:
-        """As in ``Volume``; PETSc options come first."""
-        if wants_factors():
-            return "direct"
-        if wants_iterations() and held.coupled:
-            raise InputError(
-                "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
-                "which multigrid cannot: leave -ksp_type and -pc_type out"
-            )
-        linear = "amg" if wants_iterations() else "auto"
-        return chosen(linear, len(system.load), system.pairs, self.model.mesh, held.coupled, LARGE)
 
-    def prepare(
-        self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
-    ) -> Prepared:
-        """As in ``Volume``."""
-        matrix: Distributed = system.stiffness
-        if kind == "direct":
-            return prepare_direct(matrix, system, loose)
-        return prepare_iterative(matrix, system, held.free.T @ motions, loose)
-
-
-def deal_out(model: Model, team: Team) -> Spread:
-    """Divide the cells of a model among the processes of a team."""
+def deal_out(model: Model, team: Team) -> DistributedBodies:
+    """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
+    if not model.deformable.constant:
+        raise InputError(
+            'solve.linear "petsc" and several processes know linear elastic materials only; run without mpiexec, with '
+            'linear = "auto"'
+        )
     owner = owners(model.mesh, team)
     points = point_owners(model.mesh, owner)
     dealt = pieces(model.mesh, owner, team.size, points)
     team.store["owner"], team.store["pieces"] = owner, dealt
-    return Spread(model, team, owner, points, dealt)
+    return DistributedBodies(model, team, owner, points, dealt)

@@ -10,12 +10,21 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
-from abut.linear.choice import Prepared
+from abut.linear.choice import chosen
+from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
-from abut.linear.iterative import RESPONSE, Count, NotConverged, compliance
+from abut.linear.iterative import RESPONSE, compliance
 from abut.linear.saddle_point import saddle
-from abut.linear.schur_preconditioner import PressureBlock, foresight, predictor, pressure_block
+from abut.linear.schur_preconditioner import (
+    Predict,
+    PressureBlock,
+    foresight,
+    half_spaces,
+    interfaces,
+    pressure_block,
+)
+from abut.linear.solver import Count, NotConverged, Prepared, Solve
 from abut.parallel.krylov import (
     FACTORS,
     Answer,
@@ -30,36 +39,58 @@ from abut.parallel.krylov import (
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.team import Team
-from abut.problem.system import Rows, Solve, System
+from abut.problem.linearised import Linearised, Rows
+from abut.problem.problem import ContactProblem, Problem
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
+LARGE = {
+    1: 5_000,
+    2: 5_000,
+}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Iterative:
-    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes."""
+    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes. kind: of
+    preconditioner."""
 
-    matrix: Distributed
-    operator: Any
+    system: Linearised
     pressures: PressureBlock
-    motions: Vector
+    predict: Predict
     count: Count
+    kind: str
+    exact: bool = False
+    accurate: float = ACCURATE
 
-    def step(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
+    @property
+    def matrix(self) -> Distributed:
+        return self.system.stiffness
+
+    def factorise(self, rows: Rows) -> None:
+        """No factors are kept."""
+
+    def foresee(
+        self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """As in ``Prepared``."""
+        return self.predict(gap, pressure, active, tied)
+
+    def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
         fixed, active = rows.fixed, ~rows.decoupled
-        operator, own = self.operator[active], conditions(rows, self.operator, self.pressures)
+        operator, own = self.system.operator[active], conditions(rows, self.system.operator, self.pressures)
+        motions = self.system.motions
         s, inverse, layout = own.columns, own.inverse, self.matrix.layout
-        small = compliance(operator @ self.motions, inverse) if self.motions.shape[1] else np.zeros((0, 0))
+        small = compliance(operator @ motions, inverse) if motions.shape[1] else np.zeros((0, 0))
         lower, corner = spread(sp.diags(s) @ own.lower, layout), sp.diags(s) @ own.corner @ sp.diags(s)
         beside = Conditions(
             lower, lower, corner.tocsr(), -s * rows.residual[active],
             lambda gap: inverse(gap / s) / s if len(gap) else gap,
         )  # fmt: skip
-        answers = self._solve(accuracy, -residual + self.operator.T @ fixed, small, beside)
+        answers = self._solve(accuracy, -residual + self.system.operator.T @ fixed, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
@@ -68,14 +99,14 @@ class Iterative:
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As ``abut.linear.iterative.Iterative.respond``."""
-        motions = self.motions
+        motions = self.system.motions
         small = np.asarray(np.linalg.pinv(motions.T @ (springs[:, None] * motions)))
         with self.matrix.held(springs):
             return displacement(self._solve(RESPONSE, force, small, None), self.matrix.layout)
 
     def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
         n = 0 if beside is None else len(beside.rhs)
-        shares = self.matrix.layout.shares(np.column_stack([rhs, self.motions]))
+        shares = self.matrix.layout.shares(np.column_stack([rhs, self.system.motions]))
         answers: list[Answer] = self.matrix.team.each(
             iterate, accuracy, n, small,
             own=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
@@ -86,18 +117,29 @@ class Iterative:
 
 @dataclass(frozen=True)
 class Direct:
-    """As ``abut.linear.saddle_point.newton_step``."""
+    """As ``abut.linear.saddle_point.SaddlePoint``."""
 
-    matrix: Distributed
-    operator: Any
-    unit: float
+    system: Linearised
+    predict: Predict
+    exact: bool = True
+    accurate: float = ACCURATE
 
-    def step(self, rows: Rows, residual: Vector, pressure: Vector, _: float) -> tuple[Vector, Vector]:
+    @property
+    def matrix(self) -> Distributed:
+        return self.system.stiffness
+
+    def foresee(
+        self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """As in ``Prepared``."""
+        return self.predict(gap, pressure, active, tied)
+
+    def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """Solve theory (V1). Raises SingularModelError."""
         layout, n = self.matrix.layout, len(pressure)
         if n == 0:
             return self._solve(0, True, -residual, None)[0], pressure
-        s = saddle(self.unit, self.operator, rows, residual)
+        s = saddle(self.system.unit, self.system.operator, rows, residual)
         beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
         solution, q = self._solve(n, s.symmetric, s.rhs_u, beside)
         return solution, s.pressure(q)
@@ -105,13 +147,13 @@ class Direct:
     def factorise(self, rows: Rows) -> Solve:
         """As ``abut.linear.saddle_point.factorise``."""
         layout, n = self.matrix.layout, len(rows.residual)
-        s = saddle(self.unit, self.operator, rows, np.zeros(self.matrix.shape[0]))
+        s = saddle(self.system.unit, self.system.operator, rows, np.zeros(self.matrix.shape[0]))
         beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
         team = self.matrix.team
         team.each(keep_factors, n, s.symmetric, own=[(None if rank else beside,) for rank in range(team.size)])
 
         def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
-            s = saddle(self.unit, self.operator, replace(rows, residual=of_law), residual)
+            s = saddle(self.system.unit, self.system.operator, replace(rows, residual=of_law), residual)
             shares = layout.shares(s.rhs_u)
             own = [(share, np.zeros(0) if rank else s.rhs_p) for rank, (share,) in enumerate(shares)]
             solution, q = self._checked(team.each(by_factors, own=own))
@@ -140,54 +182,92 @@ class Direct:
         return displacement(answers, self.matrix.layout), answers[0].pressure
 
 
-def prepare_iterative(matrix: Distributed, system: System, motions: Vector, loose: Vector) -> Prepared:
-    """motions: (n_free, m) rigid motions of the bodies, which multigrid must reproduce; loose: those that supports leave
-    free. Raises InputError for the constraint function, whose rows the preconditioner does not know."""
-    smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-    if smooth:
+@dataclass(frozen=True)
+class PetscIterations:
+    """As ``abut.linear.solver.LinearSolver``. motions: (n_free, m) rigid motions of the bodies, which multigrid must
+    reproduce."""
+
+    motions: Vector
+    count: Count
+    name: str = "PETSc Krylov"
+
+    def condensed(self, problem: Problem) -> Problem:
+        """The problem as it is."""
+        return problem
+
+    def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
+        """As in ``LinearSolver``. Raises InputError for the constraint function, whose rows the preconditioner does not
+        know."""
+        matrix: Distributed = system.stiffness
+        kept = isinstance(previous, Iterative) and previous.system.stiffness is matrix
+        if isinstance(previous, Iterative) and previous.system.same_matrices(system):
+            return replace(previous, system=system)
+        smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
+        if smooth:
+            raise InputError(
+                f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
+                '"complementarity", or leave the option -pc_type out'
+            )
+        if kept and isinstance(previous, Iterative):
+            kind = previous.kind
+        else:
+            kind = matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))[0]
+        pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
+        predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
+        return Iterative(system, pressures, predict, self.count, kind)
+
+    def note(self, prepared: Prepared) -> str:
+        """As in ``LinearSolver``."""
+        if not isinstance(prepared, Iterative):
+            return self.name
+        return f"{self.name} with {prepared.kind}, {_processes(prepared.matrix.team)}"
+
+
+@dataclass(frozen=True)
+class PetscDirect:
+    """As ``abut.linear.solver.LinearSolver``, by whichever direct solver PETSc has."""
+
+    count: None = None
+
+    @property
+    def name(self) -> str:
+        return f"PETSc direct ({direct_solver()})"
+
+    def condensed(self, problem: Problem) -> Problem:
+        """The problem as it is."""
+        return problem
+
+    def prepare(self, system: Linearised, previous: Prepared | None) -> Direct:
+        """As in ``LinearSolver``. Raises InputError where PETSc has no solver for several processes."""
+        if isinstance(previous, Direct) and previous.system.same_matrices(system):
+            return replace(previous, system=system)
+        matrix: Distributed = system.stiffness
+        if direct_solver() == "petsc" and matrix.team.size > 1:
+            raise InputError(
+                "this PETSc has neither MUMPS nor SuperLU_DIST, so that it factorises on one process only; install one of "
+                "them"
+            )
+        pairs = system.pairs
+        moved = np.asarray(system.operator @ system.motions)
+        return Direct(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
+
+    def note(self, prepared: Prepared) -> str:
+        """As in ``LinearSolver``."""
+        return f"PETSc's direct solver {direct_solver()}, {_processes(prepared.system.stiffness.team)}"
+
+
+def choose(problem: ContactProblem) -> str:
+    """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
+    coupled = problem.held.coupled
+    if wants_factors():
+        return "direct"
+    if wants_iterations() and coupled:
         raise InputError(
-            f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
-            '"complementarity", or leave the option -pc_type out'
+            "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
+            "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
-    kind = matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(motions)[0]))[0]
-    return _iterative(matrix, system, loose, kind, Count())
-
-
-def _iterative(matrix: Distributed, system: System, loose: Vector, kind: str, count: Count) -> Prepared:
-    pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
-    solver = Iterative(matrix, system.operator, pressures, loose, count)
-    predict = predictor(pressures.forward, np.asarray(system.operator @ loose))
-    iterative = replace(
-        system,
-        step=solver.step,
-        factorise=None,
-        respond=solver.respond,
-        exact=False,
-        accurate=ACCURATE,
-        predict=predict,
-    )
-    name = f"PETSc Krylov with {kind}"
-    return Prepared(
-        iterative, lambda outcome, _: outcome, lambda other: _iterative(matrix, other, loose, kind, count), name,
-        f"{name}, {_processes(matrix.team)}", count,
-    )  # fmt: skip
-
-
-def prepare_direct(matrix: Distributed, system: System, loose: Vector) -> Prepared:
-    """loose: (n_free, m) rigid motions that supports leave free. Raises InputError where PETSc has no solver for several
-    processes."""
-    name = direct_solver()
-    if name == "petsc" and matrix.team.size > 1:
-        raise InputError(
-            "this PETSc has neither MUMPS nor SuperLU_DIST, so that it factorises on one process only; install one of them"
-        )
-    solver = Direct(matrix, system.operator, float(np.median(matrix.diagonal())) if matrix.shape[0] else 1.0)
-    predict = foresight(system.pairs, np.asarray(system.operator @ loose))
-    direct = replace(system, step=solver.step, factorise=solver.factorise, respond=solver.respond, predict=predict)
-    return Prepared(
-        direct, lambda outcome, _: outcome, lambda other: prepare_direct(matrix, other, loose),
-        f"PETSc direct ({name})", f"PETSc's direct solver {name}, {_processes(matrix.team)}",
-    )  # fmt: skip
+    linear = "amg" if wants_iterations() else "auto"
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
 
 def wants_factors() -> bool:

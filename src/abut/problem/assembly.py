@@ -1,107 +1,85 @@
-"""What stays the same over all load steps of a model: supports, stiffness, loads, pairs, the system to solve."""
+"""From a model to its problem: what stays the same over all load steps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError
-from abut.linear.saddle_point import factorise, newton_step
 from abut.model import Model
-from abut.problem.backend import Volume, whole
+from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
-from abut.problem.free_modes import Regularisation, regularise
+from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, loads
-from abut.problem.restraint import Holding, holding, require_balance, require_unmoved
-from abut.problem.system import System
+from abut.problem.problem import ContactProblem, stacked, unit_of
+from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.solution import Observer, Phase
-
-if TYPE_CHECKING:
-    from abut.parallel.team import Team
 
 
 @dataclass(frozen=True)
-class Problem:
-    """volume: the bodies, assembled; idle: motions that nothing resists nor drives; system: in the
-    free displacements, without a linear solver yet."""
+class Assembled:
+    """A problem, and what its results need beside it."""
 
-    held: Supports
-    volume: Volume
+    problem: ContactProblem
+    bodies: Bodies
     loaded: Loads
-    held_by: Holding
-    idle: Regularisation
-    system: System
-
-    @property
-    def n_free(self) -> int:
-        return len(self.system.load)
 
 
-def problem(
-    model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None = None
-) -> Problem:
-    """Assemble a model, by a team of processes where there is one. Raises InputError and SingularModelError for one that
-    cannot be solved."""
-    held, loaded = supports(model), loads(model)
-    clock.mark("set-up")
-    volume = _volume(model, observe, note, clock, team)
-    load = held.free.T @ (loaded.forces - volume.internal(held.prescribed))  # theory (F9)
-    reduced = volume.reduce(held)
+def prescribed(model: Model) -> tuple[Supports, Loads]:
+    """What holds and what loads a model. Raises InputError and SingularModelError for what contradicts itself."""
+    return supports(model), loads(model)
+
+
+def assemble(
+    model: Model,
+    held: Supports,
+    loaded: Loads,
+    backend: Backend,
+    observe: Observer,
+    note: Callable[[str], None],
+    clock: Clock,
+) -> Assembled:
+    """The problem of a model. Raises InputError and SingularModelError for one that cannot be solved."""
+    reduced = backend.reduce(held)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    every = pairs(model, held, volume.couple)
+    every = pairs(model, held, backend.couple)
     _describe(every, note)
     clock.mark("interface")
-    observe(Phase("looking for motions that nothing holds"))
-    held_by = holding(model.mesh, held, every)
-    idle = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
-    for text in idle.notes:
+    observe(Phase("checking for unconstrained rigid-body motions"))
+    held_by = restraint(model.mesh, held, every)
+    springs = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
+    for text in springs.notes:
         note(text)
-    held_by, reduced = held_by.helped_by(idle.gram), idle.added_to(reduced)
+    held_by, reduced = held_by.helped_by(springs.gram), springs.added_to(reduced)
     forces = [held.free.T @ force for force in loaded.at_ends(model)]
-    require_balance(held_by, held, forces[0], " in step 1" if len(forces) > 1 else "")
-    require_unmoved(held_by, held, forces)
-    n_free = reduced.shape[0]
-    operator = sp.vstack([p.operator for p in every]).tocsr() if every else sp.csr_matrix((0, n_free))
+    require_balance(held_by, forces[0], " in step 1" if len(forces) > 1 else "")
+    require_unmoved(held_by, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
-    system = System(
-        stiffness=reduced,
-        load=load,
+    n_free = reduced.shape[0]
+    constant = model.deformable.constant
+    bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
+    problem = ContactProblem(
+        model=model,
+        terms=(bodies, DeadLoads(loaded, model.histories)),
+        held=held,
         pairs=every,
-        operator=operator,
-        complete=partial(held_by.complete, held, load),
-        pulled_off=partial(held_by.pulled_off, held, load),
-        step=partial(newton_step, reduced, operator),
+        operator=stacked(every, n_free),
+        restraint=held_by,
+        springs=springs,
+        stiffness=reduced if constant else None,
         motions=held.coordinates(held_by.free),
-        factorise=partial(factorise, reduced, operator),
+        unit=unit_of(reduced) if constant else 0.0,
     )
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
-    return Problem(held, volume, loaded, held_by, idle, system)
-
-
-def _volume(model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None) -> Volume:
-    if team is None:
-        observe(Phase("assembling the stiffness"))
-        result: Volume = whole(model)
-    else:
-        from abut.parallel.backend import deal_out
-
-        observe(Phase(f"dealing the cells out to {team.size} processes"))
-        parts = deal_out(model, team)
-        note(parts.summary)
-        clock.mark("partition")
-        observe(Phase("assembling the stiffness"))
-        result = parts.assembled()
-    return result
+    return Assembled(problem, bodies, loaded)
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
@@ -110,7 +88,7 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         covered = int((p.coupling.segments > 0).sum())
         note(
             f"contact '{p.contact.name}': {p.coupling.segments.sum()} segments on {covered} of {facets} facets, "
-            f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (without support or fixed)"
+            f"pressure {p.space.name}, {len(p)} multipliers, {p.space.removed} removed (no target opposite, or constrained)"
         )
         if p.repeated:
             note(

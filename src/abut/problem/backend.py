@@ -1,5 +1,5 @@
-"""What a solution asks of the volume of the bodies: everything whose work grows with the cells. One process does it here;
-``abut.parallel`` has many do it."""
+"""The bodies of a model, assembled: operations whose cost grows with the number of cells. One process does them here;
+``abut.parallel`` has many do them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,12 @@ from abut.bodies.assemble import stiffness
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import nodal_stress
 from abut.contact.coupling import Coupling, couple
-from abut.linear.choice import Prepared, choose, prepare
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports
-from abut.problem.system import System
 
 
-class Volume(Protocol):
+class Backend(Protocol):
     """The bodies of a model, assembled."""
 
     def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
@@ -42,55 +40,34 @@ class Volume(Protocol):
         whole solids are heated by their share at ``time``."""
         ...
 
-    def choose(self, system: System, held: Supports) -> str:
-        """ "direct" or "amg", by what the user asked for, by size, and by what the solvers can do. Raises InputError."""
-        ...
-
-    def prepare(
-        self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
-    ) -> Prepared:
-        """Set the linear solver up. motions: (dim n_points, m) that strain bodies least; loose: (n_free, k) those that
-        supports leave free. Raises InputError where the solver is not installed or cannot serve the system."""
-        ...
-
 
 @dataclass(frozen=True)
-class Whole:
+class Serial:
     """All of it in this process. matrix: stiffness over all points, (dim n_points, dim n_points) CSR."""
 
     model: Model
     matrix: Any
 
     def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
-        """As in ``Volume``."""
+        """As in ``Backend``."""
         return couple(contactor, target, degree, **options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``Volume``."""
+        """As in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
     def reduce(self, held: Supports) -> Any:
-        """As in ``Volume``, CSR."""
+        """As in ``Backend``, CSR."""
         return held.reduce(self.matrix)
 
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """As in ``Volume``."""
+        """As in ``Backend``."""
         change = TemperatureChange(self.model.temperatures(time), temperature)
         return nodal_stress(self.model.deformable, displacement, change)
 
-    def choose(self, system: System, held: Supports) -> str:
-        """As in ``Volume``."""
-        return choose(self.model.solve.linear, system, self.model.mesh, held.coupled)
 
-    def prepare(
-        self, kind: str, system: System, held: Supports, motions: NDArray[np.float64], loose: NDArray[np.float64]
-    ) -> Prepared:
-        """As in ``Volume``."""
-        return prepare(kind, system, held.free, motions, loose, self.model.mesh.points)
-
-
-def whole(model: Model) -> Whole:
+def serial(model: Model) -> Serial:
     """Assemble a model in this process."""
-    return Whole(model, stiffness(model.deformable))
+    return Serial(model, stiffness(model.deformable))

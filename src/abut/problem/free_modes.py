@@ -49,6 +49,12 @@ class Regularisation:
         """Largest force in a spring at free displacements (n_free,)."""
         return float(np.abs(self.stiffness * free[self.columns]).max(initial=0.0))
 
+    def forces(self, free: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of the springs on the free displacements, (n_free,)."""
+        result = np.zeros_like(free)
+        result[self.columns] = self.stiffness * free[self.columns]
+        return result
+
     def without_motions(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """The displacement (dim n_points,) with no share of the motions, whatever displacements carry the springs."""
         return np.asarray(displacement - self.motions @ (self.motions.T @ displacement))

@@ -29,10 +29,11 @@ NOTHING = 1e-10  # share of a row that works on a rigid motion below which it is
 
 
 @dataclass(frozen=True)
-class Holding:
+class Restraint:
     """Resistance against rigid motions: of the supports (with what holds loose motions), of each pair's rows."""
 
     rigid: RigidModes
+    held: Supports
     supports: NDArray[np.float64]
     pairs: Sequence[Pair]
     bare: NDArray[np.float64]  # of the supports, without what holds loose motions
@@ -44,22 +45,17 @@ class Holding:
         """Resistance of supports and of every pair, closed."""
         return [self.supports, *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs)]
 
-    def helped_by(self, gram: NDArray[np.float64]) -> Holding:
+    def helped_by(self, gram: NDArray[np.float64]) -> Restraint:
         """The same with something else that resists."""
-        return _holding(self.rigid, self.supports + gram, self.pairs, self.bare) if gram.any() else self
+        return _restraint(self.rigid, self.held, self.supports + gram, self.pairs, self.bare) if gram.any() else self
 
     def complete(
-        self,
-        held: Supports,
-        load: NDArray[np.float64],
-        active: NDArray[np.bool_],
-        gap: NDArray[np.float64],
-        weights: NDArray[np.float64],
+        self, force: NDArray[np.float64], active: NDArray[np.bool_], gap: NDArray[np.float64]
     ) -> NDArray[np.bool_]:
         """The active set, with the closest multipliers added where it would let a body go that the loads move, theory (V8).
 
-        load: (n_free, n_histories), weights: (n_histories,) as in ``abut.problem.system.System``."""
-        if self.by_supports or self._holds(active) or self._moved(held, load @ weights, active) is None:
+        force: (n_free,) loads on the free displacements; gap: (n,) weighted."""
+        if self.by_supports or self._holds(active) or self._moved(force, active) is None:
             return active
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
@@ -70,33 +66,26 @@ class Holding:
             own |= clearance <= clearance.min() + 0.01
         return result if self._holds(result) else np.ones_like(active)
 
-    def pulled_off(self, held: Supports, load: NDArray[np.float64], weights: NDArray[np.float64]) -> str:
-        """The motion, in words, that loads cause though contact pushes wherever it can; empty where there is none.
+    def unbalanced(self, force: NDArray[np.float64]) -> str:
+        """The motion, in words, that forces (n_free,) cause though contact pushes wherever it can; empty where there is
+        none."""
+        motion = self._moved(force)
+        return "" if motion is None else self._in_words(motion, [force], driven=True)
 
-        load, weights: as for ``complete``."""
-        return self.unbalanced(held, load @ weights)
-
-    def unbalanced(self, held: Supports, force: NDArray[np.float64]) -> str:
-        """The same for forces (n_free,) on the free displacements."""
-        motion = self._moved(held, force)
-        return "" if motion is None else self._in_words(held, motion, [force], driven=True)
-
-    def unheld(self, held: Supports, forces: Sequence[NDArray[np.float64]]) -> str:
+    def unheld(self, forces: Sequence[NDArray[np.float64]]) -> str:
         """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
         is none. forces: (n_free,) of each load step, none of which is out of balance."""
         free = free_motions([self.supports])
-        moves = held.coordinates(self.rigid.modes @ free)
+        moves = self.held.coordinates(self.rigid.modes @ free)
         works = [(moves.T @ force, float(np.abs(force).sum())) for force in forces]
         motion = unheld(self.pairs, moves, works)
-        return "" if motion is None else self._in_words(held, free @ motion, forces, driven=False)
+        return "" if motion is None else self._in_words(free @ motion, forces, driven=False)
 
-    def _in_words(
-        self, held: Supports, motion: NDArray[np.float64], forces: Sequence[NDArray[np.float64]], driven: bool
-    ) -> str:
+    def _in_words(self, motion: NDArray[np.float64], forces: Sequence[NDArray[np.float64]], driven: bool) -> str:
         """The motion (n_modes,), or a plain shift or turn that does as well: one that closes no contact, and on which forces
         (n_free,) do work if ``driven``, else none that turns it back."""
         plain = simple_motions(self.rigid, motion)
-        moves = held.coordinates(self.rigid.modes @ plain)
+        moves = self.held.coordinates(self.rigid.modes @ plain)
         free = free_motions([self.bare])
         stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
         opens = np.zeros(plain.shape[1])
@@ -112,13 +101,11 @@ class Holding:
         best = plain[:, stays][:, 0] if stays.any() else motion
         return describe(self.rigid, best[:, None], one_way=True)
 
-    def _moved(
-        self, held: Supports, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None
-    ) -> NDArray[np.float64] | None:
+    def _moved(self, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64] | None:
         """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
         pushes where it can; None where there is none."""
         free = free_motions([self.supports])
-        moves = held.coordinates(self.rigid.modes @ free)
+        moves = self.held.coordinates(self.rigid.modes @ free)
         motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
         return None if motion is None else free @ motion
 
@@ -199,18 +186,18 @@ def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | 
     return np.concatenate([moved, -moved]) if pair.tied else moved
 
 
-def require_held(held_by: Holding, held: Supports, loads: Sequence[NDArray[np.float64]]) -> None:
+def require_held(restraint: Restraint, loads: Sequence[NDArray[np.float64]]) -> None:
     """Raises SingularModelError where the loads of a step pull a body off its contact, and where one can leave its contact
     without any load that turns it back, at no step. loads: (dim n_points,) nodal forces of each load step."""
-    forces = [held.free.T @ load for load in loads]
+    forces = [restraint.held.free.T @ load for load in loads]
     for number, force in enumerate(forces, start=1):
-        require_balance(held_by, held, force, f" in step {number}" if len(forces) > 1 else "")
-    require_unmoved(held_by, held, forces)
+        require_balance(restraint, force, f" in step {number}" if len(forces) > 1 else "")
+    require_unmoved(restraint, forces)
 
 
-def require_balance(held_by: Holding, held: Supports, force: NDArray[np.float64], when: str = "") -> None:
+def require_balance(restraint: Restraint, force: NDArray[np.float64], when: str = "") -> None:
     """Raises SingularModelError where forces (n_free,) pull a body off its contact."""
-    motion = held_by.unbalanced(held, force)
+    motion = restraint.unbalanced(force)
     if motion:
         raise SingularModelError(
             f"{motion}: the loads pull it off its contact{when}, which can only push; hold it by a support or turn the load "
@@ -218,10 +205,10 @@ def require_balance(held_by: Holding, held: Supports, force: NDArray[np.float64]
         )
 
 
-def require_unmoved(held_by: Holding, held: Supports, forces: Sequence[NDArray[np.float64]]) -> None:
+def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]]) -> None:
     """Raises SingularModelError where a body can leave its contact and none of the forces (n_free,) of load steps turns it
     back."""
-    motion = held_by.unheld(held, forces)
+    motion = restraint.unheld(forces)
     if motion:
         raise SingularModelError(
             f"{motion}: contact can only push it that way, and neither supports, other contact nor loads hold it there; add "
@@ -229,16 +216,16 @@ def require_unmoved(held_by: Holding, held: Supports, forces: Sequence[NDArray[n
         )
 
 
-def holding(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Holding:
+def restraint(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Restraint:
     """Work out what holds the bodies of a mesh."""
     rigid = rigid_modes(mesh)
     support = resistance_of_supports(rigid, held)
-    return _holding(rigid, support, pairs, support)
+    return _restraint(rigid, held, support, pairs, support)
 
 
-def _holding(
-    rigid: RigidModes, support: NDArray[np.float64], pairs: Sequence[Pair], bare: NDArray[np.float64]
-) -> Holding:
+def _restraint(
+    rigid: RigidModes, held: Supports, support: NDArray[np.float64], pairs: Sequence[Pair], bare: NDArray[np.float64]
+) -> Restraint:
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
     by_supports = free_motions([support, *ties]).shape[1] == 0
-    return Holding(rigid, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))
+    return Restraint(rigid, held, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))

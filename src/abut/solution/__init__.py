@@ -3,8 +3,10 @@
 from abut.solution.contacts import Check, ContactResult, PressureStatistics, Resultant
 from abut.solution.progress import Iteration, Observer, Phase
 from abut.solution.records import OnStep, ProbeResult, RigidResult, Saved, Solution, Step
+from abut.solution.state import History, Largest, State
 
 __all__ = [
-    "Check", "ContactResult", "Iteration", "Observer", "OnStep", "Phase", "PressureStatistics", "ProbeResult", "Resultant",
-    "RigidResult", "Saved", "Solution", "Step",
+    "Check", "ContactResult", "History", "Iteration", "Largest", "Observer", "OnStep", "Phase",
+    "PressureStatistics", "ProbeResult", "Resultant",
+    "RigidResult", "Saved", "Solution", "State", "Step",
 ]  # fmt: skip

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import drives
+from abut.model.offset import smallest_offset
 from abut.solution.contacts import Check, ContactResult
 from abut.solution.progress import Iteration
+from abut.solution.state import State
 
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
@@ -123,23 +125,14 @@ class Step:
 class Saved:
     """What it takes to go on after a converged step, and to have its results again.
 
-    displacement: (n_free,), pressure, active: (n,) the state; inside: (n,) where "dual-P1" has ordinary functions;
-    own_displacement, own_pressure: the same in the unknowns of
-    the linear solver, ``linear``, from which the next step starts; iterations: for the log; largest_force,
-    largest_pressure: up to here, against which rounding is judged later.
+    state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
+    iterations: for the log.
     """
 
     number: int
-    factor: float
-    linear: str
-    largest_force: float
-    largest_pressure: float
-    displacement: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    active: NDArray[np.bool_]
+    state: State
     inside: NDArray[np.bool_]
-    own_displacement: NDArray[np.float64]
-    own_pressure: NDArray[np.float64]
+    linear: str
     iterations: tuple[Iteration, ...]
 
 
@@ -227,7 +220,7 @@ def _driven(model: Model) -> bool:
     """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
     given = (*model.supports, *model.loads, *model.equations, *model.rigid)
     hot = any(solid.temperature for solid in model.solids)
-    return hot or any(map(drives, given)) or any(contact.offset < 0.0 for contact in model.contacts)
+    return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
 
 
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it

@@ -27,8 +27,8 @@ from abut.model import Contact, Model, Solid
 from abut.model.conditions import support_along
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import Pair, pair
+from abut.problem.linearised import Rows
 from abut.problem.rigid_modes import rigid_modes
-from abut.problem.system import Rows
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
 FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane

@@ -1,0 +1,129 @@
+"""What every search for the contact status shares: one Newton step, the status that the law asks for, what is told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.contact.laws import Complementarity, Tied
+from abut.linear.solver import Prepared
+from abut.problem.laws import LawRows, at_multipliers
+from abut.problem.linearised import Linearised
+from abut.problem.problem import Laws
+from abut.solution import Iteration
+from abut.solution.state import Largest, State
+
+FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
+NO_PRESSURE = 1e-300
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Increment:
+    """A load step: its number, and the largest force and pressure of the steps before, against which rounding is judged
+    where the loads are taken off again."""
+
+    number: int
+    largest: Largest = field(default_factory=Largest)
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search ends with. cycling: (n,) bool, multipliers that go in and out for ever, or whose law stays violated;
+    laws: those of all pairs as the last iteration saw them, near any state."""
+
+    state: State
+    iterations: tuple[Iteration, ...]
+    converged: bool
+    cycling: NDArray[np.bool_]
+    laws: Laws
+
+
+def active_laws(system: Linearised, state: State) -> list[LawRows]:
+    """Complementarity with the active set as it is, and ties."""
+    return [
+        at_multipliers(pair, Tied() if pair.tied else Complementarity(pair.stiffness), g, p, closed)
+        for pair, g, p, closed in zip(
+            system.pairs, system.split(system.gap(state)), system.split(state.multipliers), system.split(state.closed)
+        )
+    ]
+
+
+def advance(solver: Prepared, state: State, laws: Sequence[LawRows], accuracy: float = 0.0) -> State:
+    """One Newton step on equilibrium and laws."""
+    system = solver.system
+    du, dp = solver.solve(system.rows(laws), system.unbalanced(state), state.multipliers, accuracy)
+    return replace(state, unknowns=state.unknowns + du, multipliers=state.multipliers + dp)
+
+
+def next_active(
+    system: Linearised, state: State, increment: Increment, tied: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], Vector]:
+    """The active set that the law asks for, theory (V7), and by how much (pressure) each multiplier breaks it now."""
+    if not len(state.multipliers):
+        return state.closed, np.zeros(0)
+    closed = state.closed
+    push = -system.gap(state) / system.scale  # penetration as a pressure
+    reference = np.abs(state.multipliers[~tied]).max(initial=increment.largest.pressure)
+    small = FLAT * max(reference, 1e-300)
+    tension = np.where(closed & ~tied, -state.multipliers, 0.0)
+    penetration = np.where(~closed, push, 0.0)
+    wanted = np.where(closed, tension <= small, penetration > small) | tied
+    return wanted, np.maximum(np.maximum(tension, penetration), 0.0)
+
+
+def report(
+    system: Linearised,
+    state: State,
+    increment: Increment,
+    count: int,
+    changed: int,
+    violation: Vector,
+    seconds: float,
+) -> Iteration:
+    """The row of the table for a state."""
+    internal = system.internal(state)
+    residual = system.unbalanced(state, internal)
+    gap = system.split(system.gap(state))
+    depth = [
+        float((-g / (pair.weight * pair.size)).max(initial=0.0)) for pair, g in zip(system.pairs, gap) if not pair.tied
+    ]
+    return Iteration(
+        step=increment.number,
+        iteration=count,
+        active=int(state.closed.sum()),
+        changed=changed,
+        residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment)),
+        contact_residual=_relative(violation, largest_pressure(state, increment)),
+        penetration=max(depth, default=0.0),
+        seconds=seconds,
+    )
+
+
+def largest_force(system: Linearised, state: State, internal: Vector, increment: Increment) -> float:
+    """Largest nodal force of stresses (``internal``), of loads and of single multipliers, now or in a step before. Where
+    displacements have been condensed, those that are left see nothing of contact forces that balance each other on a body,
+    as round a press fit."""
+    push = system.weight * state.multipliers
+    largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
+    return max(*largest, increment.largest.force, 1e-300)
+
+
+def _relative(violation: Vector, largest: float) -> float:
+    """Largest violation over the largest pressure; 1 while there is no pressure."""
+    worst = float(violation.max(initial=0.0))
+    return worst / largest if largest > NO_PRESSURE else float(worst > 0.0)
+
+
+def largest_pressure(state: State, increment: Increment) -> float:
+    """Largest pressure, now or in a step before."""
+    return max(np.abs(state.multipliers).max(initial=0.0), increment.largest.pressure, NO_PRESSURE)
+
+
+def largest_so_far(system: Linearised, state: State, increment: Increment) -> Largest:
+    """Of the steps up to the one that ended with ``state``."""
+    force = largest_force(system, state, system.internal(state), increment)
+    return Largest(force, largest_pressure(state, increment))

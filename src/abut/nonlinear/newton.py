@@ -1,0 +1,72 @@
+"""Newton's method on a problem: linearise at the trial state, solve the contact problem that this makes, go on from its
+solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.active_set import solve_step
+from abut.nonlinear.exact import Aim
+from abut.nonlinear.iteration import Found, Increment, largest_force
+from abut.problem.linearised import Linearised
+from abut.problem.problem import Problem
+from abut.solution import Iteration
+from abut.solution.state import State
+
+BALANCED = 1e-9  # of nonlinear equilibrium, over the largest force
+ROUNDING = 1e-7  # the same that may be left where it no longer falls
+
+
+@dataclass(frozen=True)
+class Task:
+    """A load step to solve. before: the last converged state; limit: of iterations; observe: is told each of them."""
+
+    problem: Problem
+    before: State
+    solver: LinearSolver
+    increment: Increment
+    limit: int
+    observe: Callable[[Iteration], None]
+
+
+def newton(
+    task: Task,
+    guess: State,
+    previous: Prepared | None,
+    earlier: Sequence[Iteration] = (),
+    aim: Aim = "solution",
+    settle: bool = False,
+) -> tuple[Found, Prepared]:
+    """The state at the end of a load step, from ``guess`` on, and the linear solver as it was last set up.
+
+    A constant problem is linearised once: what remains is the search for the contact status. Any other one is linearised
+    anew at each state that this search finds, until its forces are in balance there. earlier, aim, settle: as for
+    ``abut.nonlinear.active_set.solve_step``."""
+    problem, solver = task.problem, task.solver
+    system = problem.linearise(task.before, guess)
+    prepared = solver.prepare(system, previous)
+    found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
+    error = np.inf
+    while found.converged and not problem.constant:
+        system = problem.linearise(task.before, found.state)
+        before, error = error, _unbalanced(system, found.state, task.increment)
+        if error <= BALANCED or (error <= ROUNDING and error > 0.5 * before):
+            break
+        left = task.limit - len(found.iterations) + len(earlier)
+        if left <= 0 or not np.isfinite(error):
+            return replace(found, converged=False), prepared
+        prepared = solver.prepare(system, prepared)
+        found = solve_step(
+            prepared, found.state, task.increment, left, task.observe, found.iterations, aim, settle=True
+        )
+    return found, prepared
+
+
+def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
+    internal = system.internal(state)
+    largest = largest_force(system, state, internal, increment)
+    return float(np.abs(system.unbalanced(state, internal)).max(initial=0.0)) / largest

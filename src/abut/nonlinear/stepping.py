@@ -1,0 +1,82 @@
+"""From load step to load step: when the next one ends, and what follows an attempt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from abut.linear.solver import LinearSolver, NotConverged
+from abut.nonlinear.iteration import Increment
+from abut.nonlinear.load_step import Attempt, load_step
+from abut.nonlinear.newton import Task
+from abut.problem.problem import ContactProblem
+from abut.solution import Iteration
+from abut.solution.state import State
+
+
+class Schedule(Protocol):
+    """When load steps end."""
+
+    def next(self, attempt: Attempt | None) -> float | None:
+        """The time at which the next attempt ends, after the last one (None: before the first); None at the end."""
+        ...
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """Load steps that end at given times, each attempted once."""
+
+    times: Sequence[float]
+
+    def next(self, attempt: Attempt | None) -> float | None:
+        """As in ``Schedule``."""
+        if attempt is None:
+            return self.times[0] if self.times else None
+        if not attempt.converged:
+            return None
+        return next((time for time in self.times if time > attempt.state.time), None)
+
+
+@dataclass(frozen=True)
+class Control:
+    """limit: of iterations in a step; observe: is told each of them; begins: is told each step's number and end; prepares:
+    sets a linear solver up, with what is told about it; fallback: another solver where one gives up, with its reason."""
+
+    limit: int
+    observe: Callable[[Iteration], None]
+    begins: Callable[[int, float], None]
+    prepares: Callable[[LinearSolver], None]
+    prepared: Callable[[str], None]
+    fallback: Callable[[int, NotConverged], LinearSolver]
+
+
+def march(
+    problem: ContactProblem, first: State, schedule: Schedule, solver: LinearSolver, control: Control, number: int = 1
+) -> Iterator[Attempt]:
+    """Load step after load step, from the state ``first``; number: of the next one.
+
+    Each attempt starts from the last converged state: one that fails leaves nothing behind, and a solver that gives up is
+    replaced by another one, which begins the step anew."""
+    before, attempt = first, None
+    own, prepared = None, None
+    while (time := schedule.next(attempt)) is not None:
+        told = False
+        while True:
+            if own is None or prepared is None:
+                control.prepares(solver)
+                own = solver.condensed(problem)
+                prepared = solver.prepare(own.linearise(before, before), None)
+                control.prepared(solver.note(prepared))
+            if not told:
+                control.begins(number, time)
+                told = True
+            task = Task(own, before, solver, Increment(number, before.largest), control.limit, control.observe)
+            try:
+                attempt = load_step(task, time, prepared)
+                break
+            except NotConverged as reason:
+                solver, own, prepared = control.fallback(number, reason), None, None
+        yield attempt
+        if attempt.converged:
+            before, number = attempt.state, number + 1

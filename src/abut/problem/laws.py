@@ -1,0 +1,125 @@
+"""Contact laws as rows of the linear system: at the multipliers, or in the mean over integration points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.laws import Law, LawResult, LawState
+from abut.problem.contact_pairs import Pair, PairPoints
+
+Vector = NDArray[np.float64]
+FAINT = 1e-12  # of a jump over what its traction gives way: a row that hardly sees it holds the traction alone
+
+
+@dataclass(frozen=True)
+class LawRows:
+    """A law near the present state, for one pair, in its n multipliers.
+
+    residual: (n,); closed: (n,) bool, multipliers in contact; by_gap: (n, n_gaps) sparse, derivative by the gaps that the
+    law looks at; by_pressure: (n, n) sparse, derivative by the multipliers. at_points: the gaps are those at the
+    integration points, else the n weighted ones; decoupled: (n,) bool, rows that hold nothing but their own multiplier;
+    symmetric: all others look at minus their own weighted gap.
+    """
+
+    residual: Vector
+    closed: NDArray[np.bool_]
+    by_gap: Any
+    by_pressure: Any
+    at_points: bool
+    decoupled: NDArray[np.bool_]
+    symmetric: bool = True
+
+
+def at_multipliers(pair: Pair, law: Law, gap: Vector, multipliers: Vector, closed: NDArray[np.bool_]) -> LawRows:
+    """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump.
+
+    Normal laws are divided by minus their derivative by the gap, so that every linear solver meets rows of one kind."""
+    where, weight = pair.index, pair.weight
+    there = where >= 0
+    mean = np.zeros(len(pair)) if not len(pair) else gap / weight
+    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), LawState(_status(closed, where)))
+    number = np.broadcast_to(where[:, :, None], (*where.shape, where.shape[1]))
+    other = np.broadcast_to(where[:, None, :], number.shape)
+    both = (number >= 0) & (other >= 0)
+    n = len(pair)
+    residual, by_gap, by_pressure = np.zeros(n), _matrix(result.by_jump, number, other, both, n), None
+    residual[where[there]] = result.residual[there]
+    by_pressure = _matrix(result.by_traction, number, other, both, n)
+    if where.shape[1] == 1:
+        by_gap, by_pressure, residual = _normalised(by_gap, by_pressure, residual, weight, pair.stiffness)
+    decoupled = np.diff(by_gap.indptr) == 0
+    own = by_gap.diagonal()
+    shut = np.zeros(n, dtype=bool)
+    shut[where[there]] = np.broadcast_to(result.closed[:, None], where.shape)[there]
+    return LawRows(
+        weight * residual, shut, by_gap, (sp.diags(weight) @ by_pressure).tocsr(), False, decoupled,
+        bool((own[~decoupled] == -1.0).all()),
+    )  # fmt: skip
+
+
+def in_the_mean(points: PairPoints, law: Law, gap: Vector, multipliers: Vector) -> LawRows:
+    """Rows of a law that holds at integration points in the mean under every multiplier's function: int H_k r = 0.
+
+    gap: (n_points,)."""
+    n = len(multipliers)
+    pressure = points.test @ multipliers
+    none = LawState(np.zeros(len(gap), dtype=bool))
+    result: LawResult = law.evaluate(gap[:, None], pressure[:, None], none)
+    weighted = (points.test.T @ sp.diags(points.weight)).tocsr()
+    return LawRows(
+        residual=weighted @ result.residual[:, 0],
+        closed=np.asarray(weighted @ (result.closed - 0.5)) > 0.0,
+        by_gap=(weighted @ sp.diags(result.by_jump[:, 0, 0])).tocsr(),
+        by_pressure=(weighted @ sp.diags(result.by_traction[:, 0, 0]) @ points.test).tocsr(),
+        at_points=True,
+        decoupled=np.zeros(n, dtype=bool),
+        symmetric=False,
+    )
+
+
+def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bool_]) -> LawRows:
+    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V18).
+
+    gap, shift: (n,) weighted gaps; softness: (n,) gap per pressure, positive, or zero where a gap is to close."""
+    n = len(gap)
+    return LawRows(
+        residual=shift - gap,
+        closed=closed,
+        by_gap=-sp.identity(n, format="csr"),
+        by_pressure=sp.diags(-softness, format="csr"),
+        at_points=False,
+        decoupled=np.zeros(n, dtype=bool),
+    )
+
+
+def _spread(values: Vector, where: NDArray[np.int64]) -> Vector:
+    """Values of multipliers by function and component, zero where there is no multiplier."""
+    return np.where(where >= 0, values[np.maximum(where, 0)], 0.0) if len(values) else np.zeros(where.shape)
+
+
+def _status(closed: NDArray[np.bool_], where: NDArray[np.int64]) -> NDArray[np.bool_]:
+    first = where.max(axis=1, initial=-1)
+    return np.where(first >= 0, closed[np.maximum(first, 0)], False) if len(closed) else np.zeros(len(where), bool)
+
+
+def _matrix(
+    blocks: Vector, row: NDArray[np.int64], column: NDArray[np.int64], both: NDArray[np.bool_], n: int
+) -> sp.csr_matrix:
+    keep = both & (blocks != 0.0)
+    return sp.csr_matrix((blocks[keep], (row[keep], column[keep])), shape=(n, n))
+
+
+def _normalised(
+    by_gap: Any, by_pressure: Any, residual: Vector, weight: Vector, stiffness: float
+) -> tuple[Any, Any, Vector]:
+    """Rows of a normal law divided by minus their derivative by the gap; those that hardly look at it do not at all."""
+    slope, give = by_gap.diagonal(), by_pressure.diagonal()
+    sees = np.abs(slope) > FAINT * np.abs(give) * stiffness
+    by = np.where(sees, -1.0 / np.where(sees, slope, 1.0), 1.0)
+    divide = sp.diags(by)
+    return (sp.diags(np.where(sees, -1.0, 0.0)).tocsr(), (divide @ by_pressure).tocsr(), by * residual)

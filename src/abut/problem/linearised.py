@@ -1,0 +1,137 @@
+"""A problem near a state: balance of forces and gaps, both affine in displacements and multipliers, and rows of the laws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.problem.contact_pairs import Pair
+from abut.problem.laws import LawRows
+from abut.problem.restraint import Restraint
+from abut.solution.state import State
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The laws of all pairs near the present state, in the unknowns: residual + by_displacement du + by_pressure dp = 0.
+
+    ``decoupled`` rows hold nothing but their own pressure. ``symmetric``: all others are minus the rows of the operator.
+    """
+
+    residual: Vector
+    by_displacement: Any
+    by_pressure: Any
+    decoupled: NDArray[np.bool_]
+    symmetric: bool
+
+    @property
+    def fixed(self) -> Vector:
+        """Change of the pressures that decoupled rows give at once; zero for all others."""
+        own = np.where(self.decoupled, self.by_pressure.diagonal(), 1.0)
+        return np.where(self.decoupled, -self.residual / own, 0.0)
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """K q - B^T p = f, theory (F6), and weighted gaps g = B q + C p + g0, theory (F9), near a state: exactly where
+    the problem is constant, so that K, B and C are the same objects at every state and a linear solver keeps its factors.
+
+    factors: (n_histories,) of the histories at ``time``; stiffness K: (n_free, n_free); load f: (n_free,); operator B:
+    (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed, theory
+    (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where contact
+    lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
+    """
+
+    time: float
+    factors: Vector
+    stiffness: Any
+    load: Vector
+    pairs: Sequence[Pair]
+    operator: Any
+    offset: Vector
+    motions: NDArray[np.float64]
+    restraint: Restraint
+    forces: Vector
+    unit: float
+    compliance: NDArray[np.float64] | None = None
+
+    def __len__(self) -> int:
+        """Number of multipliers."""
+        return int(self.operator.shape[0])
+
+    def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+        """Values of all multipliers, pair by pair."""
+        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
+
+    def join(self, values: Sequence[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(values) if len(values) else np.zeros(0)
+
+    @property
+    def tied(self) -> NDArray[np.bool_]:
+        """(n,) multipliers that are closed whatever happens."""
+        return self.join([np.full(len(pair), pair.tied) for pair in self.pairs]).astype(bool)
+
+    @property
+    def scale(self) -> Vector:
+        """(n,) weighted gap per pressure, theory (L2)."""
+        return self.join([pair.scale for pair in self.pairs])
+
+    @property
+    def weight(self) -> Vector:
+        """(n,) int H_k."""
+        return self.join([pair.weight for pair in self.pairs])
+
+    def same_matrices(self, other: Linearised) -> bool:
+        """Whether stiffness, operator and compliance are the very objects of another state's."""
+        mine, its = ((s.stiffness, s.operator, s.compliance) for s in (self, other))
+        return all(a is b for a, b in zip(mine, its))
+
+    def internal(self, state: State) -> Vector:
+        """K q: nodal forces of stresses on the free displacements; the longest product of all."""
+        return np.asarray(self.stiffness @ state.unknowns)
+
+    def unbalanced(self, state: State, internal: Vector | None = None) -> Vector:
+        """K q - B^T p - f; internal: K q where it is known."""
+        residual = (self.internal(state) if internal is None else internal) - self.load
+        if len(state.multipliers):
+            residual = residual - self.operator.T @ state.multipliers
+        return np.asarray(residual)
+
+    def gap(self, state: State) -> Vector:
+        """Weighted gaps of all multipliers, (n,)."""
+        if not len(self.offset):
+            return self.offset
+        gap = self.offset + self.operator @ state.unknowns
+        return np.asarray(gap if self.compliance is None else gap + self.compliance @ state.multipliers)
+
+    def rows(self, laws: Sequence[LawRows]) -> Rows:
+        """The laws of all pairs in terms of the unknowns."""
+        if not self.pairs:
+            none = np.zeros(0)
+            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), True)
+        by_displacement, by_compliance, first = [], [], 0
+        for pair, law in zip(self.pairs, laws):
+            here = slice(first, first + len(pair))
+            first += len(pair)
+            own = pair.points.operator if law.at_points and pair.points is not None else self.operator[here]
+            by_displacement.append(sp.csr_matrix(law.by_gap @ own))
+            if self.compliance is not None:
+                empty = law.at_points  # all displacements of such pairs have been kept
+                by_compliance.append(
+                    np.zeros((len(pair), len(self.compliance))) if empty else law.by_gap @ self.compliance[here]
+                )
+        by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
+        return Rows(
+            residual=np.concatenate([law.residual for law in laws]),
+            by_displacement=sp.vstack(by_displacement).tocsr(),
+            by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
+            decoupled=np.concatenate([law.decoupled for law in laws]),
+            symmetric=not any(law.at_points for law in laws) and all(law.symmetric for law in laws),
+        )

@@ -1,0 +1,173 @@
+"""A contact problem: residual and tangent at a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.model import Model
+from abut.model.conditions import weights
+from abut.problem.constraints import Supports
+from abut.problem.contact_pairs import Pair, with_plain_functions
+from abut.problem.free_modes import Regularisation
+from abut.problem.laws import LawRows
+from abut.problem.linearised import Linearised
+from abut.problem.restraint import Restraint
+from abut.problem.terms import Motion, Share, Term
+from abut.solution.state import State, at_rest
+
+TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
+Laws = Callable[[Linearised, State], Sequence[LawRows]]
+
+
+class Problem(Protocol):
+    """What Newton's method solves. constant: stiffness, operator and compliance never change (the same objects come back
+    from every state), so that one set-up of a linear solver serves them all."""
+
+    @property
+    def constant(self) -> bool: ...
+
+    def start(self) -> State:
+        """The state before the first load step."""
+        ...
+
+    def linearise(self, before: State, now: State) -> Linearised:
+        """The problem near the trial state ``now``, at its time, which follows the converged ``before``."""
+        ...
+
+    def accepted(self, before: State, now: State) -> State:
+        """The converged state ``now`` with the history that it leaves."""
+        ...
+
+    def expand(self, state: State, laws: Laws) -> State:
+        """A solution in all free displacements; laws: the ones it meets."""
+        ...
+
+    def restrict(self, state: State) -> State:
+        """A state in all free displacements in the unknowns of this problem."""
+        ...
+
+    def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
+        """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
+        they are nowhere. Theory (P9)."""
+        ...
+
+
+@dataclass(frozen=True)
+class ContactProblem:
+    """Bodies, loads and contact on the free displacements.
+
+    terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
+    (n, n_free) all of them stacked; restraint: what holds each body; springs: on motions that nothing resists; stiffness:
+    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid motions that supports leave free;
+    unit: size of the stiffness' entries, where it is constant.
+    """
+
+    model: Model
+    terms: Sequence[Term]
+    held: Supports
+    pairs: Sequence[Pair]
+    operator: Any
+    restraint: Restraint
+    springs: Regularisation
+    stiffness: Any
+    motions: NDArray[np.float64]
+    unit: float = 0.0
+
+    @property
+    def constant(self) -> bool:
+        """As in ``Problem``."""
+        return self.stiffness is not None
+
+    @property
+    def n_free(self) -> int:
+        return int(self.held.free.shape[1])
+
+    def start(self) -> State:
+        """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
+        rest = at_rest(self.n_free, int(self.operator.shape[0]))
+        offset = self._offset(np.zeros(len(self.model.histories)))
+        first, closed = 0, np.zeros(len(offset), dtype=bool)
+        for pair in self.pairs:
+            own = slice(first, first := first + len(pair))
+            closed[own] = pair.tied | (offset[own] <= TOUCHING * pair.size * pair.weight)
+        return rest.with_closed(closed)
+
+    def linearise(self, before: State, now: State) -> Linearised:
+        """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
+        have no rounding."""
+        if self.constant:
+            before, now = (replace(state, unknowns=np.zeros(self.n_free)) for state in (before, now))
+        at, shares = now.unknowns, self._shares(before, now)
+        force = self.held.free.T @ np.asarray(sum(share.force for share in shares))
+        if self.constant:
+            stiffness, load = self.stiffness, -force
+        else:
+            tangents = [share.tangent.reduce(self.held) for share in shares if share.tangent is not None]
+            stiffness = self.springs.added_to(sum(tangents[1:], tangents[0]))
+            load = stiffness @ at - force - self.springs.forces(at)
+        factors = weights(self.model.histories, now.time)
+        return Linearised(
+            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors), self.motions,
+            self.restraint, load, self.unit or unit_of(stiffness),
+        )  # fmt: skip
+
+    def accepted(self, before: State, now: State) -> State:
+        """As in ``Problem``."""
+        if self.constant:
+            return now
+        shares = self._shares(before, now)
+        history = before.history
+        for term, share in zip(self.terms, shares):
+            history = history.with_term(term.name, share.history)
+        return replace(now, history=history)
+
+    def expand(self, state: State, laws: Laws) -> State:
+        """As in ``Problem``: nothing has been condensed."""
+        return state
+
+    def restrict(self, state: State) -> State:
+        """As in ``Problem``."""
+        return state
+
+    def with_ordinary(self, closed: NDArray[np.bool_]) -> ContactProblem:
+        """As in ``Problem``."""
+        own = np.split(closed, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
+        pairs = [with_plain_functions(self.model, pair, self.held, part) for pair, part in zip(self.pairs, own)]
+        if all(new is old for new, old in zip(pairs, self.pairs)):
+            return self
+        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free))
+
+    def displacement(self, state: State) -> NDArray[np.float64]:
+        """Of all points, (dim n_points,)."""
+        prescribed = self.held.prescribed @ weights(self.model.histories, state.time)
+        return np.asarray(self.held.free @ state.unknowns + prescribed)
+
+    def _offset(self, factors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``."""
+        own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
+        return np.concatenate(own) if own else np.zeros(0)
+
+    def _shares(self, before: State, now: State) -> list[Share]:
+        """Of every term."""
+        there, here = self.displacement(before), self.displacement(now)
+        return [
+            term.evaluate(*(Motion(s.time, u, before.history.of(term.name)) for s, u in ((before, there), (now, here))))
+            for term in self.terms
+        ]
+
+
+def stacked(pairs: Sequence[Pair], n_free: int) -> Any:
+    """The operators of all pairs, (n, n_free)."""
+    return sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
+
+
+def unit_of(stiffness: Any) -> float:
+    """Size of a stiffness' entries."""
+    diagonal = stiffness.diagonal()
+    return float(np.median(diagonal)) if len(diagonal) else 1.0
