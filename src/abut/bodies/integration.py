@@ -25,4 +25,4 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
         if kind not in BBAR:
             raise InputError(f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'")
         if plane == "stress":
-            raise InputError(f"{where}: 'b-bar' has nothing to offer in plane stress, which does not lock; use 'full'")
+            raise InputError(f"{where}: 'b-bar' has no benefit in plane stress, which does not lock; use 'full'")

@@ -34,7 +34,7 @@ STATUS = """exit status:
   4    the model has no unique solution
   130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
        --restart goes on from there
-  1    a bug in abut
+  1    internal error: a bug in abut
 
 several processes (docs/mpi.md): mpiexec -n N abut run JOB [OPTION OF PETSC ...]
   needs petsc4py and mpi4py; process 0 speaks, and its exit status counts. Options that abut does not know and PETSc
@@ -58,7 +58,7 @@ def add_run(commands: Any) -> None:
     run.add_argument("--restart", action="store_true", help="go on after the last step that an earlier run has written")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
-    run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    run.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     run.set_defaults(command=_start, together=True)
 
 

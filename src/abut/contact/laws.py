@@ -1,7 +1,7 @@
 """Contact laws: residual and derivatives from jump and traction at points; Newton does the rest.
 
-Each law states its residual r(jump, traction) = 0 for n points and c components; the solver finds K u - B^T p = f, theory
-(F6), together with r = 0. Normal component: gap >= 0 open, pressure >= 0 compressive, theory (F2).
+Each law states its residual r(jump, traction) = 0 for n points and c components; the solver finds K u - B^T p = f,
+theory (F6), together with r = 0. Normal component: gap >= 0 open, pressure >= 0 compressive, theory (F2).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut import checks
-from abut.detection.facing import Facing, Outside, facing, outside, seen_by
+from abut.detection.opposing_facets import Facing, Outside, facing, outside, seen_by
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Solid
@@ -163,7 +163,7 @@ def _choose(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int
     sizes = [float(np.median(every.size[facets])) for facets in patch.facets]
     finer = int(sizes[1] < sizes[0] * (1.0 - 1e-9))
     if max(sizes) > MUCH_FINER * min(sizes) and not _flat(every, patch.facets[1 - finer]):
-        return 1 - finer, "the other side is much finer and would show the kinks of this one"
+        return 1 - finer, "the other side is much finer and would show the faceting of this one"
     return finer, "finer" if abs(sizes[0] - sizes[1]) > 1e-9 * max(sizes) else "first of two alike"
 
 

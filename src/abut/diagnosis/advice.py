@@ -45,7 +45,10 @@ class Place:
         facets = ", ".join(map(str, self.facets[:8].tolist())) + (", ..." if len(self.facets) > 8 else "")
         low, high = self.coordinates.min(axis=0), self.coordinates.max(axis=0)
         box = " to ".join("(" + ", ".join(f"{v:.4g}" for v in corner) + ")" for corner in (low, high))
-        return f"contact '{self.contact}': facets [{facets}] do not settle, {len(self.facets)} in all, within {box}"
+        return (
+            f"contact '{self.contact}': the contact status of {len(self.facets)} facets keeps changing: [{facets}], "
+            f"within {box}"
+        )
 
 
 def unsettled(step: Step) -> list[Place]:
@@ -90,7 +93,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         if contact.pressure == "P1" and surface_degree(result.contactor) == 2:
             yield Remedy(
                 f'{where}pressure = "auto"',
-                "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
+                "the functions of P2 span fewer facets, so that contact on a single row of facets is seen",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
         if coarse > 1.0 / FINER and (sides := swap(solution, contact)):
@@ -106,7 +109,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         if contact.law == LAWS[0] and contact.method == METHODS[0]:
             yield Remedy(
                 f'{where}law = "constraint-function"',
-                "it looks at points and errs the other way (too stiff): the truth lies between",
+                "it enforces contact at points and errs on the other side (too stiff): the exact result lies in between",
             )
 
 
@@ -127,5 +130,5 @@ def _by_limit(solution: Solution) -> Iterator[Remedy]:
     if taken >= limit:
         yield Remedy(
             f"solve.max_iterations = {max(MORE * limit, SolveOptions().max_iterations)}",
-            f"the contact was still settling after the {limit} iterations that are allowed",
+            f"the contact status was still changing after the {limit} iterations that are allowed",
         )

@@ -37,7 +37,7 @@ def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
         Finding(
             "error" if pair.tied and part > ALL else "warning",
             where,
-            f"over-constrained: {names} and {does} hold the same nodes, {int(taken.sum())} of {len(nodes)} of contactor "
+            f"over-constrained: {names} and {does} constrain the same nodes, {int(taken.sum())} of {len(nodes)} of contactor "
             f"{words(pair.contact.contactor)}, so that {does} acts on the target alone",
             cure,
             status=SingularModelError.exit_status,

@@ -43,7 +43,7 @@ def sides(model: Model, pair: Pair) -> list[Finding]:
                 "advice",
                 where,
                 f"contactor {words(pair.contact.contactor)} is {size[1] / size[0]:.2g} times finer than its "
-                f"curved target, whose kinks its pressure will show ({summary})",
+                f"curved target, whose faceting its pressure will show ({summary})",
                 "refine the target, or swap the sides",
             )
         ]

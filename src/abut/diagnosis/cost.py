@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 
 from abut.cells import CELLS
-from abut.diagnosis.effort import effort, seconds
+from abut.diagnosis.time_estimate import effort, seconds
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import LARGE, chosen
 from abut.linear.direct import available_memory

@@ -36,7 +36,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
             Finding(
                 "info",
                 "bodies",
-                f"{len(shown)} rigid motions are held by contact alone, which can only push",
+                f"{len(shown)} rigid-body modes are constrained by contact alone, which carries no tension",
                 details=tuple(motion.text for motion in shown),
             )
         )
@@ -59,8 +59,8 @@ def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
         Finding(
             "advice",
             "bodies",
-            text.replace(" (regularisation)", ""),
-            "if it is to stand elsewhere, add a support or a symmetry plane",
+            text,
+            "if its position matters, add a support or a symmetry plane",
         )
         for text in loose.notes
     ]

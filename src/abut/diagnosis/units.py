@@ -81,7 +81,7 @@ def _loads(model: Model) -> list[Finding]:
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
-        says = "more than small strains allow" if large else "which is hardly anything"
+        says = "more than small strains allow" if large else "which is close to zero"
         findings.append(
             Finding(
                 "warning" if large else "advice",

@@ -32,7 +32,7 @@ FREE = 1e-10  # gap by a unit motion below which rows do not resist it
 UNBALANCED = 1e-6  # work of the forces on a motion that nothing resists, over their sum, from which on they move it
 PASSES, EVEN = 20, 0.1  # of equilibration, until the logarithm of the largest entries is below the second
 NOT_UNIQUE = "the equations have no unique solution; check supports, contacts and units"
-UNBALANCED_LOADS = "the loads move a body that nothing holds; check supports, contacts and units"
+UNBALANCED_LOADS = "the loads act on an unconstrained rigid-body mode; check supports, contacts and units"
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ def turn_bodies(mesh: Mesh) -> Mesh:
         nodes[own] = nodes[own][:, order(block.kind)]
         blocks.append(CellBlock(block.kind, nodes))
     surfaces = {name: _mapped(rows, turned, corners) for name, rows in mesh.surfaces.items()}
-    notes = [f"body '{name}': its cells ran clockwise and were turned round" for name in bodies]
+    notes = [f"body '{name}': its cells were numbered clockwise; their numbering was reversed" for name in bodies]
     return replace(mesh, blocks=tuple(blocks), surfaces=surfaces, notes=(*mesh.notes, *notes))
 
 

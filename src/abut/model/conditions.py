@@ -91,7 +91,7 @@ class Support:
             if name == "normal" or not callable(value):
                 checks.finite(value, f"support on '{self.on}': {name}")
         if not given:
-            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
+            raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
             raise InputError(f"support on '{self.on}': give either normal or components, not both")
         _amplitude(self.amplitude, f"support on '{self.on}'")

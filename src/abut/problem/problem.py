@@ -54,7 +54,7 @@ class Problem(Protocol):
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
         """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
-        they are nowhere. Theory (P9)."""
+        they are nowhere; theory (P9)."""
         ...
 
 
