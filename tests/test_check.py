@@ -28,7 +28,11 @@ SOFT = abut.LinearElastic(young=70e3, poisson=0.3)
 # fmt: off
 FAULTY = {  # what the one line must say, and its cure; the exit status
     "sliding": ("body 'upper' is free to translate along x", "add a support, or a symmetry plane", 4),
-    "tie-and-support": ("support on 'upper.bottom' and the tie constrain the same nodes", "remove support on 'upper.bottom'", 4),
+    "tie-and-support": (
+        "support on 'upper.bottom' and the tie constrain the same nodes",
+        "remove support on 'upper.bottom'",
+        4,
+    ),
     "small-target": ("target 'lower.top' is too small", "add these facets to 'lower.top'", 0),
     "inside-out": ("4 quad4 cells of 'upper' are inverted", "their nodes run clockwise, those of other cells do not", 2),
     "metres-and-millimetres": ("one seems to be meshed in metres", "scale the coordinates of 'upper' by 1000", 2),
@@ -200,7 +204,9 @@ def test_loads_that_contact_cannot_balance(on: str, force: float, stands: bool) 
     assert report.status == 4
     how = {"foot": "translate along z", "arm": "rotate about y"}[on]
     assert f"body 'upper' is free to {how}: the loads pull it off its contact" in said(report, "error")
-    with pytest.raises(abut.SingularModelError, match=f"body 'upper' is free to {how}: the loads pull it off its contact"):
+    with pytest.raises(
+        abut.SingularModelError, match=f"body 'upper' is free to {how}: the loads pull it off its contact"
+    ):
         abut.solve(model)
 
 

@@ -113,7 +113,9 @@ def test_what_loads_pull_off_is_named(lift: abut.Force, motion: str, linear: str
     """By statics: a hundredth more than it takes to lift or to turn over is an error that says what goes where, a
     hundredth less converges."""
     model = replace(block(DOWN, lift), solve=abut.SolveOptions(linear=linear))
-    with pytest.raises(abut.SingularModelError, match=rf"body 'box' is free to {motion}.*: the loads pull it off its contact"):
+    with pytest.raises(
+        abut.SingularModelError, match=rf"body 'box' is free to {motion}.*: the loads pull it off its contact"
+    ):
         abut.solve(model)
     less = abut.Force(lift.on, tuple(v * 0.99 / 1.01 for v in lift.value))
     solution = abut.solve(replace(model, loads=[DOWN, less]))

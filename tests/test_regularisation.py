@@ -146,7 +146,8 @@ def test_a_body_that_nothing_touches_or_loads_is_refused() -> None:
         loads=[abut.Pressure("held.top", 1.0)],
     )
     with pytest.raises(
-        abut.SingularModelError, match=r"body 'lost' is free to translate along x .*5 more rigid-body modes.*no load acts on it"
+        abut.SingularModelError,
+        match=r"body 'lost' is free to translate along x .*5 more rigid-body modes.*no load acts on it",
     ):
         abut.solve(model)
 

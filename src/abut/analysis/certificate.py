@@ -78,8 +78,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         add("oscillation", alternating, OSCILLATION,
             "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
         facets = resolution(pair, pressure, support, largest) if largest > LESSER * beside else 0.0
-        add("resolution", facets, RESOLUTION, "one over the number of facets from the edge of contact to its middle, at the end",
-            last=True)  # fmt: skip
+        add("resolution", facets, RESOLUTION,
+            "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
     if pair.contact.method == "segment-to-segment":
         add("facet moments", _moment_error(pair, areas, cover, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip

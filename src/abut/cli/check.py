@@ -1,4 +1,4 @@
-"""abut check: what is wrong with a job, and the cure, before it is solved."""
+"""abut check: errors of a job and how to correct them, before it is solved."""
 
 from __future__ import annotations
 

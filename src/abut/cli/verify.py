@@ -1,4 +1,4 @@
-"""abut verify and abut infsup: the method's claims, checked on problems with known answers and on a user's own model."""
+"""abut verify and abut infsup: the method on problems with known answers, and on a user's own model."""
 
 from __future__ import annotations
 

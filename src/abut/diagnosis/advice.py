@@ -1,4 +1,4 @@
-"""What is most likely to help where a step did not converge, or where surfaces overlap."""
+"""Advice where a step did not converge, or where surfaces overlap."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Remedy:
 
 @dataclass(frozen=True)
 class Place:
-    """Facets of a contactor whose contact does not settle: facets (n,) their numbers within the surface; nodes (m,) point
-    numbers of the mesh; coordinates (m, dim)."""
+    """Facets of a contactor whose contact status keeps changing: facets (n,) their numbers within the surface; nodes (m,)
+    point numbers of the mesh; coordinates (m, dim)."""
 
     contact: str
     facets: NDArray[np.int64]
@@ -52,7 +52,7 @@ class Place:
 
 
 def unsettled(step: Step) -> list[Place]:
-    """Where the contact of a step does not settle, contact by contact."""
+    """Where the contact status of a step keeps changing, contact by contact."""
     surfaces = {c.name: c.contactor for c in step.contacts}
     places = []
     for name, facets in step.cycling.items():
@@ -63,9 +63,9 @@ def unsettled(step: Step) -> list[Place]:
 
 
 def remedies(solution: Solution) -> tuple[Remedy, ...]:
-    """At most three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces
-    that overlap; else none. There are no others than those that have been seen to help: the search for the contact ends
-    whatever the mesh, the load steps and the choice of the sides are."""
+    """At most three pieces of advice, the most likely first, for a run that did not converge, or whose certificate finds
+    surfaces that overlap; else none. Only such as have been seen to help: the search for the contact status converges
+    independently of the mesh, the load steps and the choice of the contactor."""
     found = _by_overlap(solution) if solution.converged else (*_by_law(solution), *_by_limit(solution))
     return tuple(found)[:COUNT]
 

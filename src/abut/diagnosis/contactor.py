@@ -1,4 +1,4 @@
-"""Which side of a contact should be the contactor: stiffness and mesh size."""
+"""Choice of the contactor of a contact: stiffness and mesh size of its sides."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run will take: solver, memory and time, before it is solved."""
+"""Cost of a run, estimated before it is solved: solver, memory and time."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 
 from abut.cells import CELLS
-from abut.diagnosis.time_estimate import effort, seconds
 from abut.diagnosis.finding import Finding
+from abut.diagnosis.time_estimate import effort, seconds
 from abut.linear.choice import LARGE, chosen
 from abut.linear.direct import available_memory
 from abut.model import Model

@@ -1,4 +1,4 @@
-"""What to do about each line of the certificate that fails: one sentence each."""
+"""How to correct what makes a line of the certificate fail: one sentence each."""
 
 from __future__ import annotations
 

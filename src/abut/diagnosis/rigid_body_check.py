@@ -1,4 +1,4 @@
-"""Rigid motions of the bodies: which ones contact alone resists, and which nothing does."""
+"""Rigid-body check: the modes that contact alone constrains, and those that nothing constrains."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
 
 
 def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
-    """An error for a motion that nothing holds; else those on which no load does any work, which need no holding."""
+    """An error for an unconstrained mode on which loads do work; else advice for each free mode."""
     ends, held = loads(model).at_ends(model), held_by.held
     try:
         unit = sp.identity(held.free.shape[1], format="csr")

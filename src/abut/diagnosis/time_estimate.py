@@ -1,4 +1,4 @@
-"""How long a run takes, stage by stage: counts of what has to be done, times what one of it took, measured.
+"""Estimated time of a run, stage by stage: counts of operations times the measured cost of each.
 
 All constants are seconds on one core of a server of 2023 (some 5 Gflop/s in a sparse factorisation). Counts are known from
 the mesh and the pairs, but for those of linear solutions and Krylov iterations: these are typical ones.

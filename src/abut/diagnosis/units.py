@@ -1,4 +1,4 @@
-"""Do sizes, materials and loads go together? What does not is mostly a matter of units."""
+"""Checks of units: whether sizes, materials and loads are consistent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every key of a job file means, for the JSON Schema (editors show it) and the reference page.
+"""Descriptions of the keys of a job file, for the JSON Schema (editors show it) and the reference page.
 
 A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
 """
@@ -59,7 +59,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
     "ForceTable": {
         "kind": "total force, spread evenly over a surface",
-        "value": "vector; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+        "value": "vector; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
     },
     "GravityTable": {
         "kind": "acceleration that acts on the density",
@@ -69,7 +69,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "NodalForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
-        "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+        "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
     },
     "TemperatureTable": {
         "kind": "change of temperature, which strains bodies by their expansion",

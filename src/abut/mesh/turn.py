@@ -1,4 +1,4 @@
-"""Cells of plane meshes whose nodes run clockwise, turned round: whoever draws a section does not look at that."""
+"""Cells of plane meshes with clockwise node numbering, reversed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is prescribed: supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
+"""Supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def drives(condition: Any) -> bool:
 @dataclass(frozen=True)
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); what is left out stays free. Values in the mesh's length unit, times ``amplitude``; x, y and z
+    outward normal); components left out are free. Values in the mesh's length unit, times ``amplitude``; x, y and z
     may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
 
     on: str
@@ -136,10 +136,10 @@ class Equation:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and turns
-    rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``; components
-    left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and in contact
-    it is the target."""
+    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and
+    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``;
+    components left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and
+    in contact it is the target."""
 
     body: str
     reference: tuple[float, ...] | None = None
@@ -213,7 +213,7 @@ class Force:
 
 @dataclass(frozen=True)
 class NodalForce:
-    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the whole turn)."""
+    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the full circumference)."""
 
     on: str
     value: tuple[float, ...]

@@ -101,12 +101,12 @@ class Integration:
 class Contact:
     """A contact pair. The contactor carries the pressure. ``contactor`` and ``target`` are names of surfaces or bodies, or
     lists of them, which have one pressure: every point of the contactor faces the nearest target along its normal; of a
-    body that part of its outside counts which can meet the other side.
+    body, the part of its boundary that can meet the other side.
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
-    ``method``: the node-to-segment ones are there for comparison only. ``law``: "complementarity", "constraint-function" or
+    ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
     a law of your own (``abut.contact.laws.Law``)."""
 
     contactor: Names
@@ -192,11 +192,11 @@ class SolveOptions:
 
 @dataclass(frozen=True)
 class Model:
-    """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
+    """The complete description of a problem, checked as a whole: names against the mesh, dimensions, materials.
 
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the whole turn; points on the axis stay on it without a support of their own. Every body is one of
-    ``solids`` or ``rigid``.
+    forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
+    one of ``solids`` or ``rigid``.
     """
 
     mesh: Mesh

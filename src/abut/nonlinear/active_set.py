@@ -1,4 +1,4 @@
-"""Semi-smooth Newton for one load step: the active set is an output of the law, changed until it stands still."""
+"""Semi-smooth Newton method (primal-dual active set strategy) for one load step."""
 
 from __future__ import annotations
 

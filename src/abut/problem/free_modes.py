@@ -1,4 +1,4 @@
-"""Rigid motions that nothing resists: held without a force where loads do no work on them, theory (V14)."""
+"""Free rigid-body modes: set to zero in the mean where loads do no work on them, theory (V14)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What holds each body: supports, ties, contact; and what to do where an active set lets one go."""
+"""Rigid-body restraint by supports, ties and contact; and the repair of an active set that leaves a body unsupported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rigid-body motions: which of them nothing resists."""
+"""Rigid-body modes, and those that no constraint resists."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What solving yields: iterations, steps and the solution, as frozen records."""
+"""Results: iterations, steps and the solution, as frozen records."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ class Step:
     displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
-    reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
-    supported surface or node set without the share of equations (points that lie on several count for each of them, those
-    of a rigid body for the whole body); load: (dim,) resultant of all
+    reaction: (dim,) resultant of all supports, equations and prescribed motions of rigid bodies; reactions: the same for
+    each supported surface or node set without the share of equations (points that lie on several count for each of them,
+    those of a rigid body for the whole body); load: (dim,) resultant of all
     loads; rigid: by the name of the body.
     """
 
@@ -122,7 +122,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Saved:
-    """What it takes to go on after a converged step, and to have its results again.
+    """Record of a converged step for a restart.
 
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
     iterations: for the log.
