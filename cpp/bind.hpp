@@ -70,8 +70,8 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(Buffer<T> &&buffer) {
 
 void bind_cells(nb::module_ &m);
 void bind_facets(nb::module_ &m);
-void bind_solids(nb::module_ &m);
-void bind_stress(nb::module_ &m);
+void bind_pattern(nb::module_ &m);
+void bind_integrate(nb::module_ &m);
 void bind_interface(nb::module_ &m);
 void bind_sparse(nb::module_ &m);
 void bind_strength(nb::module_ &m);

@@ -49,7 +49,7 @@ def agrees_with_quadprog(model: abut.Model, saved: Saved) -> None:
     """The pressures of the last step against a method that shares nothing with ours but the matrices."""
     own = assembled(model)
     expected = exact(programme(at_the_end(own, saved.inside)))
-    assert np.abs(saved.pressure - expected).max() <= SAME * np.abs(expected).max() + nothing(model)
+    assert np.abs(saved.state.multipliers - expected).max() <= SAME * np.abs(expected).max() + nothing(model)
 
 
 def nothing(model: abut.Model) -> float:
@@ -68,7 +68,7 @@ def check(build: Callable[[np.random.Generator], abut.Model], seed: int, units: 
         assert not any(others.values())
         return
     solution, saved = here
-    if len(saved.pressure) <= SMALL[0] and solution.dofs <= SMALL[1]:
+    if len(saved.state.multipliers) <= SMALL[0] and solution.dofs <= SMALL[1]:
         agrees_with_quadprog(model, saved)
     expected = pressures(solution)
     for name, other in others.items():

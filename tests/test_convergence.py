@@ -13,8 +13,8 @@ import abut
 from abut.benchmarks import BENCHMARKS, run
 from abut.benchmarks.convergence import PLANE, SOLID, edge_fields, smooth_fields
 from abut.benchmarks.errors import displacement_l2, energy_norm, pressure_l2
-from abut.bodies.elements import lame
 from abut.cells import CELLS
+from abut.materials.elastic import lame
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import field_rule

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import abut
-from abut.bodies.elements import nodal_stress, stiffness, thermal_load
+from abut.bodies.assemble import stiffness, thermal_load
+from abut.bodies.solids import Solids, TemperatureChange
+from abut.bodies.stress import nodal_stress
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.materials.elastic import LinearElastic
@@ -33,8 +35,12 @@ def plane(mesh: Mesh) -> str | None:
     return "strain" if mesh.dim == 2 else None
 
 
-def system(mesh: Mesh, how: str, of: str | None = "strain") -> np.ndarray:
-    return stiffness(mesh, dict.fromkeys(mesh.bodies, MATERIAL), of, dict.fromkeys(mesh.bodies, how)).toarray()
+def solids(mesh: Mesh, how: str) -> Solids:
+    return Solids(mesh, dict.fromkeys(mesh.bodies, MATERIAL), plane(mesh), dict.fromkeys(mesh.bodies, how))
+
+
+def system(mesh: Mesh, how: str) -> np.ndarray:
+    return stiffness(solids(mesh, how)).toarray()
 
 
 @pytest.mark.parametrize(("kind", "how"), EVERY)
@@ -42,7 +48,7 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
     mesh = distorted(kind)
     slope = np.random.default_rng(1).uniform(-1, 1, (mesh.dim, mesh.dim))
     u = mesh.points @ slope.T
-    force = (system(mesh, how, plane(mesh)) @ u.ravel()).reshape(u.shape)
+    force = (system(mesh, how) @ u.ravel()).reshape(u.shape)
     inside = np.ones(len(u), dtype=bool)
     for name in mesh.surfaces:
         inside[mesh.nodes_of(name)] = False
@@ -51,8 +57,7 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
     strain[: mesh.dim, : mesh.dim] = 0.5 * (slope + slope.T)
     lam, mu = 2.0 * 0.3 / (1.3 * 0.4), 2.0 / 2.6
     stress = lam * np.trace(strain) * np.eye(3) + 2 * mu * strain
-    solids, rule = dict.fromkeys(mesh.bodies, MATERIAL), dict.fromkeys(mesh.bodies, how)
-    got = nodal_stress(mesh, solids, {}, u, plane(mesh), integration=rule)
+    got = nodal_stress(solids(mesh, how), u)
     assert np.abs(got - stress[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]).max() < 1e-12
 
 
@@ -60,11 +65,10 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
 def test_free_expansion_has_no_stress(kind: str, how: str) -> None:
     mesh = distorted(kind)
     u = 5.0 * 1e-3 * (1.3 if mesh.dim == 2 else 1.0) * mesh.points
-    solids, rule = dict.fromkeys(mesh.bodies, MATERIAL), dict.fromkeys(mesh.bodies, how)
-    change = dict.fromkeys(mesh.bodies, 5.0)
-    load = thermal_load(mesh, solids, change, plane(mesh), integration=rule)
-    assert np.abs(system(mesh, how, plane(mesh)) @ u.ravel() - load).max() < 1e-15
-    stress = nodal_stress(mesh, solids, change, u, plane(mesh), integration=rule)
+    own, change = solids(mesh, how), TemperatureChange(dict.fromkeys(mesh.bodies, 5.0))
+    load = thermal_load(own, change)
+    assert np.abs(system(mesh, how) @ u.ravel() - load).max() < 1e-15
+    stress = nodal_stress(own, u, change)
     assert np.abs(stress[:, [0, 1, 3, 4, 5]]).max() < 1e-13
 
 
@@ -72,7 +76,7 @@ def test_free_expansion_has_no_stress(kind: str, how: str) -> None:
 def test_only_rigid_motions_cost_nothing(kind: str, how: str) -> None:
     """Motions that the smaller rule does not see cannot spread over a mesh of several cells."""
     mesh = regular(kind)
-    values = np.linalg.eigvalsh(system(mesh, how, plane(mesh)))
+    values = np.linalg.eigvalsh(system(mesh, how))
     rigid = 3 if mesh.dim == 2 else 6
     assert np.abs(values[:rigid]).max() < 1e-13
     assert values[rigid] > 1e-4
@@ -86,7 +90,7 @@ def test_reduced_is_exact_for_quadratic_displacements_of_regular_cells(kind: str
     x = mesh.points
     rng = np.random.default_rng(2)
     u = np.einsum("ajk,nj,nk->na", rng.uniform(-1, 1, (mesh.dim,) * 3), x, x).ravel()
-    full, reduced = (system(mesh, how, plane(mesh)) @ u for how in ("full", "reduced"))
+    full, reduced = (system(mesh, how) @ u for how in ("full", "reduced"))
     assert u @ reduced == pytest.approx(u @ full, rel=1e-13)
     if kind != "wedge15":
         assert np.abs(full - reduced).max() < 1e-13
@@ -96,7 +100,7 @@ def test_reduced_is_exact_for_quadratic_displacements_of_regular_cells(kind: str
 def test_reduced_is_softer(kind: str) -> None:
     """It drops energy that is never negative: no eigenvalue grows, some fall."""
     mesh = distorted(kind)
-    full, reduced = (np.linalg.eigvalsh(system(mesh, how, plane(mesh))) for how in ("full", "reduced"))
+    full, reduced = (np.linalg.eigvalsh(system(mesh, how)) for how in ("full", "reduced"))
     assert (reduced <= full + 1e-12).all()
     assert (reduced[20:] < full[20:] * (1 - 1e-3)).any()
 
@@ -142,8 +146,8 @@ def test_contact_patch_test(kind: str, how: str) -> None:
     cells = ((5, 3), (7, 3)) if CELLS[kind].dim == 2 else ((2, 3, 2), (3, 2, 2))
     built = model(two_blocks(kind, kind, cells))
     for rules in ((how, how), (how, "full")):
-        solids = [replace(solid, integration=rule) for solid, rule in zip(built.solids, rules)]
-        assert max(errors(replace(built, solids=solids))) < 1e-10
+        bodies = [replace(solid, integration=rule) for solid, rule in zip(built.solids, rules)]
+        assert max(errors(replace(built, solids=bodies))) < 1e-10
 
 
 @pytest.mark.parametrize(
@@ -177,7 +181,7 @@ def test_mean_dilatation_gives_each_cell_one_pressure(kind: str) -> None:
     dilatation = sum(
         u[mesh.points[:, a] == 1.0, a].mean() - u[mesh.points[:, a] == 0.0, a].mean() for a in range(mesh.dim)
     )
-    stress = nodal_stress(mesh, {"body": MATERIAL}, {}, u, plane(mesh), integration={"body": "b-bar"})
+    stress = nodal_stress(solids(mesh, "b-bar"), u)
     mean = stress[:, :3].sum(axis=1) / 3.0
     assert mean == pytest.approx(2.0 / (3 * (1 - 2 * 0.3)) * dilatation, abs=1e-13)
 
@@ -191,5 +195,5 @@ def test_mean_dilatation_sees_the_mean_temperature(kind: str) -> None:
     dilatation = sum(
         u[mesh.points[:, a] == 1.0, a].mean() - u[mesh.points[:, a] == 0.0, a].mean() for a in range(mesh.dim)
     )
-    load = thermal_load(mesh, {"body": MATERIAL}, {}, plane(mesh), temperature, {"body": "b-bar"})
+    load = thermal_load(solids(mesh, "b-bar"), TemperatureChange(nodes=temperature))
     assert load @ u.ravel() == pytest.approx(2.0 * 1e-3 / 0.4 * temperature.mean() * dilatation, abs=1e-15)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from abut._core import single_rows
-from abut.bodies.elements import body_load
+from abut.bodies.loads import body_load
 from abut.errors import InputError
 from abut.io.vtu import write_vtu
 from abut.mesh.check import check_mesh

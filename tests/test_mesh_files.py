@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from abut.bodies.elements import body_load
+from abut.bodies.loads import body_load
 from abut.errors import InputError
 from abut.io.raw import RawMesh
 from abut.io.vtu import write_vtu

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from abut.bodies.elements import body_load
+from abut.bodies.loads import body_load
 from abut.errors import InputError
 from abut.mesh.check import check_mesh
 from abut.mesh.make import box, cylinder, disc, half_disc, quarter_disc, rectangle, ring, sphere_octant

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
+from abut.bodies.solids import Solids
 from abut.contact.coupling import couple
 from abut.contact.merging import added
 from abut.materials.elastic import LinearElastic
@@ -74,10 +75,10 @@ def test_pieces_make_the_whole(size: int) -> None:
         spread = sp.csr_matrix(
             (np.ones(len(columns)), (columns, np.arange(len(columns)))), (mesh.points.size, len(columns))
         )
-        total = total + spread @ stiffness(piece.mesh, material) @ spread.T
+        total = total + spread @ stiffness(Solids(piece.mesh, material)) @ spread.T
         assert sorted(piece.mesh.bodies) == ["a", "b"]
     assert (seen == 1).all()
-    whole = stiffness(mesh, material)
+    whole = stiffness(Solids(mesh, material))
     assert abs(total - whole).max() < 1e-14 * abs(whole).max()
 
 

@@ -9,13 +9,13 @@ import pytest
 
 import abut
 import patch
-from abut.bodies.elements import reference_nodes
 from abut.cells import CELLS
 from abut.job import load_job
 from abut.mesh import make
 from abut.mesh.exterior import outside_of_body
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import gauss_rule
+from abut.mesh.reference import reference_nodes
 from abut.probing import boxes, find_place, read
 from abut.probing.cells import locate
 from abut.probing.closest_points import feet

@@ -325,7 +325,7 @@ def test_run_writes_the_report(tmp_path: Path) -> None:
 
 
 TOUCH_EVERYTHING = """<script>(() => {
-  document.documentElement.dataset.before = abut.output.pyvista_export.count().pixels;
+  document.documentElement.dataset.before = abut.view.count().pixels;
   const change = (e, value) => { e.value = value; for (const k of ["input", "change"]) e.dispatchEvent(new Event(k)); };
   for (const e of document.querySelectorAll("#panel select")) for (const o of [...e.options].reverse()) change(e, o.value);
   for (const e of document.querySelectorAll("#panel input[type=range]")) for (const v of [e.min, e.max]) change(e, v);
@@ -335,7 +335,7 @@ TOUCH_EVERYTHING = """<script>(() => {
   document.querySelector("#theme").click();
   const found = new Set();
   for (let i = 1; i < 20; i++) for (let j = 1; j < 20; j++) {
-    const hit = abut.output.pyvista_export.pick(i / 20, j / 20);
+    const hit = abut.view.pick(i / 20, j / 20);
     if (hit) { found.add(hit.name); if (!("displacement" in hit.values)) throw Error("nothing known at " + hit.name); }
   }
   document.documentElement.dataset.found = found.size;

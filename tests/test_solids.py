@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from abut.bodies.elements import body_load, nodal_stress, stiffness, thermal_load
-from abut.bodies.loads import force_load, pressure_load, surface_area
+from abut.bodies.assemble import stiffness, thermal_load
+from abut.bodies.loads import body_load, force_load, pressure_load, surface_area
+from abut.bodies.solids import Solids, TemperatureChange
+from abut.bodies.stress import nodal_stress
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
@@ -22,8 +24,8 @@ def distorted(kind: str) -> Mesh:
     return two_blocks(kind, kind, cells)
 
 
-def materials(mesh: Mesh) -> dict[str, LinearElastic]:
-    return dict.fromkeys(mesh.bodies, STEEL)
+def solids(mesh: Mesh, plane: str | None) -> Solids:
+    return Solids(mesh, dict.fromkeys(mesh.bodies, STEEL), plane)
 
 
 @pytest.mark.parametrize("kind", PLANE + SOLID)
@@ -33,7 +35,7 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
     plane = "strain" if mesh.dim == 2 else None
     slope = np.random.default_rng(1).uniform(-1, 1, (mesh.dim, mesh.dim))
     u = mesh.points @ slope.T
-    force = (stiffness(mesh, materials(mesh), plane) @ u.ravel()).reshape(u.shape)
+    force = (stiffness(solids(mesh, plane)) @ u.ravel()).reshape(u.shape)
     inside = np.ones(len(u), dtype=bool)
     for name in mesh.surfaces:
         inside[mesh.nodes_of(name)] = False
@@ -44,14 +46,14 @@ def test_linear_displacement_gives_constant_stress_and_balanced_forces(kind: str
     lam, mu = 2.0 * 0.3 / (1.3 * 0.4), 2.0 / 2.6
     stress = lam * np.trace(strain) * np.eye(3) + 2 * mu * strain
     expected = stress[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
-    got = nodal_stress(mesh, materials(mesh), {}, u, plane)
+    got = nodal_stress(solids(mesh, plane), u)
     assert np.abs(got - expected).max() < 1e-12
 
 
 @pytest.mark.parametrize("kind", PLANE + SOLID)
 def test_rigid_motions_cost_nothing(kind: str) -> None:
     mesh = distorted(kind)
-    matrix = stiffness(mesh, materials(mesh), "strain" if mesh.dim == 2 else None)
+    matrix = stiffness(solids(mesh, "strain" if mesh.dim == 2 else None))
     turn = np.zeros((mesh.dim, mesh.dim))
     turn[0, 1], turn[1, 0] = 1.0, -1.0
     for u in (np.ones_like(mesh.points), mesh.points @ turn):
@@ -78,10 +80,10 @@ def test_free_thermal_expansion_in_the_plane(plane: str) -> None:
     mesh = rectangle(cells=(3, 2))
     alpha = 1e-3 * (1.3 if plane == "strain" else 1.0)
     u = 5.0 * alpha * mesh.points
-    material, change = {"body": STEEL}, {"body": 5.0}
-    miss = stiffness(mesh, material, plane) @ u.ravel() - thermal_load(mesh, material, change, plane)
+    own, change = solids(mesh, plane), TemperatureChange({"body": 5.0})
+    miss = stiffness(own) @ u.ravel() - thermal_load(own, change)
     assert np.abs(miss).max() < 1e-15
-    stress = nodal_stress(mesh, material, change, u, plane)
+    stress = nodal_stress(own, u, change)
     assert np.abs(stress[:, [0, 1, 3, 4, 5]]).max() < 1e-14
     blocked = -2.0 * 5.0 * 1e-3 if plane == "strain" else 0.0  # -E alpha dT
     assert stress[:, 2] == pytest.approx(blocked, abs=1e-14)
@@ -90,6 +92,6 @@ def test_free_thermal_expansion_in_the_plane(plane: str) -> None:
 def test_free_thermal_expansion_in_space() -> None:
     mesh = box(cells=(2, 2, 2), cell="hex20")
     u = 5.0 * 1e-3 * mesh.points
-    material, change = {"body": STEEL}, {"body": 5.0}
-    assert np.abs(stiffness(mesh, material) @ u.ravel() - thermal_load(mesh, material, change)).max() < 1e-15
-    assert np.abs(nodal_stress(mesh, material, change, u)).max() < 1e-14
+    own, change = solids(mesh, None), TemperatureChange({"body": 5.0})
+    assert np.abs(stiffness(own) @ u.ravel() - thermal_load(own, change)).max() < 1e-15
+    assert np.abs(nodal_stress(own, u, change)).max() < 1e-14

@@ -11,7 +11,8 @@ from pyamg.aggregation import standard_aggregation
 
 import abut
 from abut._core import strong_part
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
+from abut.bodies.solids import Solids
 from abut.linear import strength
 from abut.linear.multigrid import hierarchy
 from abut.linear.strength import means, near
@@ -23,7 +24,7 @@ STEEL = abut.LinearElastic(210e3, 0.3)
 
 
 def blocks_of(mesh: Mesh) -> sp.bsr_matrix:
-    return stiffness(mesh, {"body": STEEL}).tobsr((3, 3))
+    return stiffness(Solids(mesh, {"body": STEEL})).tobsr((3, 3))
 
 
 def slab(flat: float, cell: str = "hex8") -> Mesh:
@@ -82,7 +83,7 @@ def iterations(mesh: Mesh) -> int:
     n = mesh.points.size
     held = (3 * mesh.nodes_of("bottom")[:, None] + np.arange(3)).ravel()
     free = sp.identity(n, format="csc")[:, np.setdiff1d(np.arange(n), held)]
-    matrix = (free.T @ stiffness(mesh, {"body": STEEL}) @ free).tocsr()
+    matrix = (free.T @ stiffness(Solids(mesh, {"body": STEEL})) @ free).tocsr()
     levels = hierarchy(matrix, free, rigid_modes(mesh).together, mesh.points)
     count: list[NDArray[np.float64]] = []
     cycle = spla.LinearOperator(matrix.shape, matvec=levels.cycle, dtype=float)

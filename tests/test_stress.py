@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from abut._core import shape_functions, smallest_determinants
-from abut.bodies.elements import lame, nodal_stress, reference_nodes, stress_sums
+from abut.bodies.solids import Solids, TemperatureChange
+from abut.bodies.stress import nodal_stress, stress_sums
 from abut.cells import CELLS
-from abut.materials.elastic import LinearElastic
-from abut.mesh.integrals import gradients, groups
+from abut.materials.elastic import LinearElastic, lame
+from abut.mesh.integrals import gradients
 from abut.mesh.make import box
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import BBAR, stiffness_rule, stress_rule
+from abut.mesh.reference import reference_nodes
 from patch import two_blocks
 
 MATERIALS = {
@@ -36,20 +38,16 @@ CASES = [
 
 
 def stress_by_numpy(
-    mesh: Mesh,
-    temperatures: Mapping[str, float],
-    displacement: np.ndarray,
-    plane: str | None,
-    nodal: np.ndarray,
-    integration: Mapping[str, str],
+    solids: Solids, temperatures: Mapping[str, float], displacement: np.ndarray, nodal: np.ndarray
 ) -> np.ndarray:
     """Average over the cells of a point of D (B u - thermal strain) at the stress points, carried to the nodes linearly."""
-    dim = mesh.dim
+    mesh, plane, dim = solids.mesh, solids.plane, solids.mesh.dim
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     body = np.empty(mesh.n_cells, dtype=object)
     for name, own in mesh.bodies.items():
         body[own] = name
-    for kind, nodes, cells, rule in groups(mesh, integration):
+    for group in solids.groups():
+        kind, nodes, cells, rule = group.kind, group.nodes, group.cells, group.integration
         xi, weights = stress_rule(kind)
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         slopes, det = gradients(mesh.points, nodes, derivatives)
@@ -102,17 +100,17 @@ def test_stresses_are_those_of_the_plain_code(kind: str, plane: str | None, rule
     random = np.random.default_rng(3)
     u, nodal = random.uniform(-1, 1, mesh.points.shape), random.uniform(-1, 1, len(mesh.points))
     temperatures = {"lower": 2.0, "upper": -1.0}
-    integration = {"lower": rule, "upper": "full"}
-    got = nodal_stress(mesh, MATERIALS, temperatures, u, plane, nodal, integration)
-    want = stress_by_numpy(mesh, temperatures, u, plane, nodal, integration)
+    solids = Solids(mesh, MATERIALS, plane, {"lower": rule, "upper": "full"})
+    got = nodal_stress(solids, u, TemperatureChange(temperatures, nodal))
+    want = stress_by_numpy(solids, temperatures, u, nodal)
     assert np.abs(got - want).max() < 1e-13 * np.abs(want).max()
 
 
 def test_sums_of_parts_add_up_and_a_body_without_material_counts_nothing() -> None:
     mesh = blocks("hex8", None)
     u = np.random.default_rng(4).uniform(-1, 1, mesh.points.shape)
-    whole, count = stress_sums(mesh, MATERIALS, {}, u)
-    parts = [stress_sums(mesh, {name: material}, {}, u) for name, material in MATERIALS.items()]
+    whole, count = stress_sums(Solids(mesh, MATERIALS), u)
+    parts = [stress_sums(Solids(mesh, {name: material}), u) for name, material in MATERIALS.items()]
     assert np.array_equal(sum(total for total, _ in parts), whole)
     assert np.array_equal(sum(own for _, own in parts), count)
     cells = sum(np.bincount(block.nodes.ravel(), minlength=len(count)) for block in mesh.blocks)
@@ -138,5 +136,5 @@ def test_threads_do_not_change_the_stresses(monkeypatch: pytest.MonkeyPatch) -> 
     results = []
     for threads in ("1", "2", "5"):
         monkeypatch.setenv("OMP_NUM_THREADS", threads)
-        results.append(nodal_stress(mesh, {"body": MATERIALS["lower"]}, {}, u))
+        results.append(nodal_stress(Solids(mesh, {"body": MATERIALS["lower"]}), u))
     assert all(np.array_equal(results[0], other) for other in results[1:])

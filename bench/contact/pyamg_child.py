@@ -15,7 +15,7 @@ import numpy as np
 import pyamg
 import scipy.sparse as sp
 
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
 from abut.problem.constraints import supports
 from abut.problem.rigid_modes import rigid_modes
 
@@ -29,7 +29,7 @@ def main() -> None:
     arguments = parser.parse_args()
     model = cases.model(arguments.case, arguments.dofs)
     held = supports(model)
-    full = stiffness(model.mesh, {solid.body: solid.material for solid in model.solids})
+    full = stiffness(model.deformable)
     matrix = held.reduce(full)
     near_null = held.free.T @ rigid_modes(model.mesh).together
     load = np.random.default_rng(0).standard_normal(matrix.shape[0])

@@ -12,7 +12,7 @@ import abut
 import inf_sup
 from abut.benchmarks.measures import displacement_error, pressure_error
 from abut.benchmarks.patch import shaken
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
 from abut.job import load_job
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.surface import Surface
@@ -58,7 +58,7 @@ def patch_errors(cell: str, method: str) -> tuple[float, float, float]:
     def exact(x: NDArray[np.float64]) -> NDArray[np.float64]:
         return x * np.array([side] * (dim - 1) + [-along]) * LOAD / YOUNG
 
-    full = stiffness(mesh, {s.body: s.material for s in solution.model.solids}, solution.model.plane)
+    full = stiffness(solution.model.deformable)
     nodes = mesh.nodes_of("lower.top")
     own, wanted = ((full @ u.ravel()).reshape(-1, dim)[nodes, -1] for u in (solution.displacement, exact(mesh.points)))
     return (

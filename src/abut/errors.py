@@ -13,7 +13,13 @@ class AbutError(Exception):
 
 
 class InputError(AbutError, ValueError):
-    """A job, mesh or argument that cannot be used as given."""
+    """A job, mesh or argument that cannot be used as given.
+
+    >>> import abut
+    >>> abut.LinearElastic(young=-1.0, poisson=0.3)
+    Traceback (most recent call last):
+    abut.errors.InputError: young: expected a number > 0, got -1.0
+    """
 
     exit_status = 2
 

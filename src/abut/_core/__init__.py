@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abut._core._core import (
-    add_stresses,
-    assemble_stiffness,
+    Cells,
     block_pattern,
     block_product,
     couple_surfaces,
+    integrate_given,
+    integrate_isotropic,
     node_pattern,
     padded_blocks,
     plan_facets,
@@ -15,15 +16,17 @@ from abut._core._core import (
     shape_functions,
     single_rows,
     smallest_determinants,
+    strains,
     strong_part,
 )
 
 __all__ = [
-    "add_stresses",
-    "assemble_stiffness",
+    "Cells",
     "block_pattern",
     "block_product",
     "couple_surfaces",
+    "integrate_given",
+    "integrate_isotropic",
     "node_pattern",
     "padded_blocks",
     "plan_facets",
@@ -31,5 +34,6 @@ __all__ = [
     "shape_functions",
     "single_rows",
     "smallest_determinants",
+    "strains",
     "strong_part",
 ]

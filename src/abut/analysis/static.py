@@ -50,6 +50,28 @@ def solve(
     work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
     Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
+
+    Two stacked blocks with meshes that do not match, pressed together:
+
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> lower = make.rectangle([0, 2], [0, 1], cells=[4, 2])
+    >>> upper = make.rectangle([0, 2], [1, 2], cells=[3, 2])
+    >>> steel = abut.LinearElastic(young=210e3, poisson=0.3)
+    >>> model = abut.Model(
+    ...     make.join({"lower": lower, "upper": upper}),
+    ...     plane="strain",
+    ...     solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
+    ...     supports=[abut.Support("lower.bottom", y=0), abut.Support("lower.left", x=0), abut.Support("upper.left", x=0)],
+    ...     loads=[abut.Pressure("upper.top", 3.0)],
+    ...     contacts=[abut.Contact("upper.bottom", "lower.top")],
+    ... )
+    >>> solution = abut.solve(model)
+    >>> contact = solution.contacts[0]
+    >>> print(f"pressure {contact.max_pressure:.6f} over a width of {contact.area:.6f}, force {contact.force[1]:.6f}")
+    pressure 3.000000 over a width of 2.000000, force 6.000000
+    >>> all(check.passed for check in solution.certificate)
+    True
     """
     observe: Observer = observer or _silent
     keep: OnStep = on_step or _silent

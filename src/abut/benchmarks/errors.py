@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.bodies.elements import lame
 from abut.cells import BY_CODE, CELLS
 from abut.contact.geometry import facet_measure
 from abut.errors import InputError
 from abut.fields import Field, evaluate
+from abut.materials.material import Material
+from abut.materials.plane_stress import law
 from abut.mesh.integrals import body_chunks, gradients
 from abut.mesh.quadrature import field_rule
 from abut.mesh.surface import around
@@ -46,12 +47,12 @@ def energy_norm(solution: Solution, exact: Mapping[str, Field]) -> float:
     if model.plane == "axisymmetric":
         raise InputError("energy norm: axisymmetric models are not supported")
     dim = model.dim
-    constants = {solid.body: lame(solid.material, model.plane) for solid in model.solids}
     error = size = 0.0
     for body, x, weight, _, slope in _pieces(solution, exact):
         wanted = evaluate(exact[body], x, f"exact gradient of '{body}'", (dim, dim))
-        error += float(weight @ _energy(slope - wanted, *constants[body]))
-        size += float(weight @ _energy(wanted, *constants[body]))
+        material = model.deformable.materials[body]
+        error += float(weight @ _energy(slope - wanted, material, model.plane))
+        size += float(weight @ _energy(wanted, material, model.plane))
     return _ratio(error, size)
 
 
@@ -92,11 +93,16 @@ def _pieces(solution: Solution, bodies: Mapping[str, Field]) -> Pieces:
             yield body, x.reshape(-1, dim), weight.ravel(), u.reshape(-1, dim), slope.reshape(-1, dim, dim)
 
 
-def _energy(slope: Array, lambda_: float, mu: float) -> Array:
-    """lambda (tr eps)^2 + 2 mu eps : eps of gradients (n, dim, dim); strains out of the plane are in lambda."""
-    strain = 0.5 * (slope + np.swapaxes(slope, 1, 2))
-    trace = np.trace(strain, axis1=1, axis2=2)
-    return np.asarray(lambda_ * trace**2 + 2.0 * mu * (strain**2).sum(axis=(1, 2)))
+def _energy(slope: Array, material: Material, plane: str | None) -> Array:
+    """Stress times strain of gradients (n, dim, dim), (n,); strains out of the plane have no part in it."""
+    n, dim = slope.shape[:2]
+    full = np.zeros((n, 3, 3))
+    full[:, :dim, :dim] = slope
+    once, again = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
+    strain = full[:, once, again]
+    strain[:, 3:] += full[:, again, once][:, 3:]
+    stress, _, _ = law(material, plane)(strain, material.initial(n))
+    return np.asarray((stress * strain).sum(axis=1))
 
 
 def _ratio(error: float, size: float) -> float:

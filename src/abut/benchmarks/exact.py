@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.elements import lame
-from abut.materials.elastic import LinearElastic
+from abut.materials.elastic import LinearElastic, lame
 
 Array = NDArray[np.float64]
 

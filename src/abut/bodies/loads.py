@@ -1,8 +1,8 @@
-"""Consistent nodal forces of loads on surfaces, all facet types."""
+"""Consistent nodal forces of loads on surfaces, all facet types, and in bodies, all cell types."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
 from abut.fields import Field, evaluate
-from abut.mesh.quadrature import facet_rule
-from abut.mesh.surface import Surface
+from abut.mesh.integrals import body_chunks, gradients
+from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import facet_rule, field_rule, stiffness_rule
+from abut.mesh.surface import Surface, around
 
 
 def _spread(
@@ -71,3 +73,23 @@ def surface_area(surface: Surface) -> float:
 def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
     """Total force, spread evenly over the surface, (dim n_points,)."""
     return traction_load(surface, np.asarray(vector, dtype=float) / surface_area(surface))
+
+
+def body_load(
+    mesh: Mesh, forces: Mapping[str, Sequence[float] | NDArray[np.float64] | Field], name: str = "body force: value"
+) -> NDArray[np.float64]:
+    """int f N of a force per volume in each of the bodies named, a vector or a function of position, points (n, dim) ->
+    (n, dim); (dim n_points,).
+
+    Raises InputError, beginning with ``name``, for a function that does not return a finite vector for each point."""
+    load = np.zeros(mesh.points.shape)
+    dim = mesh.dim
+    for body, value in forces.items():
+        for kind, nodes in body_chunks(mesh, body):
+            xi, weights = field_rule(kind) if callable(value) else stiffness_rule(kind)
+            shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+            at = np.einsum("qn,cnd->cqd", shapes, mesh.points[nodes])
+            _, det = gradients(mesh.points, nodes, derivatives)
+            density = evaluate(value, at, name, (dim,)) * (weights * det * around(at, mesh.axisymmetric))[..., None]
+            np.add.at(load, nodes, np.einsum("qn,cqa->cna", shapes, density))
+    return load.ravel()

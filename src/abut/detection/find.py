@@ -77,6 +77,16 @@ def find_contacts(
     Each patch is widened by the facets around it, so that contact may move, and the target by what the contactor sees. A
     facet may belong to several pairs.
     Raises InputError for a reach that is not positive and for unknown bodies.
+
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> blocks = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[4, 2])}
+    >>> mesh = make.join(blocks)
+    >>> (found,) = abut.find_contacts(mesh)
+    >>> found.contactor, found.target, found.reason
+    ('auto:b-a', 'auto:a-b', 'finer')
+    >>> mesh = abut.add_surfaces(mesh, [found])
+    >>> contacts = [found.contact()]  # of a Model of this mesh
     """
     if reach is not None:
         checks.positive(reach, "reach")

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from abut import checks
 from abut.errors import InputError
+from abut.materials.material import Array, Evaluated
 
 
 @dataclass(frozen=True)
@@ -16,6 +19,11 @@ class LinearElastic:
     poisson:   Poisson's ratio, -1 < nu < 0.5.
     density:   mass per volume, used by gravity.
     expansion: thermal expansion per degree, used by temperature changes.
+
+    >>> import abut
+    >>> steel = abut.LinearElastic(young=210e3, poisson=0.3)  # N, mm
+    >>> steel.expansion
+    0.0
     """
 
     young: float
@@ -30,3 +38,33 @@ class LinearElastic:
         if checks.finite(self.density, "density") < 0.0:
             raise InputError(f"density: expected a number >= 0, got {self.density!r}")
         checks.finite(self.expansion, "expansion")
+
+    @property
+    def constant(self) -> bool:
+        """True, as in ``Material``."""
+        return True
+
+    @property
+    def modulus(self) -> float:
+        """Young's modulus."""
+        return self.young
+
+    def initial(self, n: int) -> Array:
+        """It has no history: (n, 0)."""
+        return np.zeros((n, 0))
+
+    def evaluate(self, strain: Array, history: Array) -> Evaluated:
+        """As in ``Material``."""
+        lambda_, mu = lame(self, None)
+        tangent = np.diag([2.0 * mu] * 3 + [mu] * 3)
+        tangent[:3, :3] += lambda_
+        return strain @ tangent, np.broadcast_to(tangent, (len(strain), 6, 6)), history
+
+
+def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:
+    """Lame's constants; in plane stress lambda is the reduced one."""
+    young, poisson = material.young, material.poisson
+    mu = young / (2.0 * (1.0 + poisson))
+    if plane == "stress":
+        return young * poisson / (1.0 - poisson**2), mu
+    return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), mu

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,31 +18,6 @@ def chunks(mesh: Mesh) -> Iterator[tuple[str, NDArray[np.int32], slice]]:
         for i in range(0, len(block.nodes), CHUNK):
             part = block.nodes[i : i + CHUNK]
             yield block.kind, part, slice(first + i, first + i + len(part))
-
-
-def groups(
-    mesh: Mesh, integration: Mapping[str, str]
-) -> Iterator[tuple[str, NDArray[np.int32], NDArray[np.int64], str]]:
-    """All cells by type and by the integration of their body (``Solid.integration``; "full" for bodies not named): type,
-    connectivity (n, n_nodes), cell numbers (n,), integration."""
-    names = sorted({"full", *integration.values()})
-    of_cell = np.full(mesh.n_cells, names.index("full"))
-    for body, name in integration.items():
-        of_cell[mesh.bodies[body]] = names.index(name)
-    for block, first in zip(mesh.blocks, mesh.starts.tolist()):
-        own = of_cell[first : first + len(block.nodes)]
-        for i in np.unique(own).tolist():
-            rows = np.flatnonzero(own == i)
-            yield block.kind, block.nodes[rows], first + rows, names[i]
-
-
-def group_chunks(
-    mesh: Mesh, integration: Mapping[str, str]
-) -> Iterator[tuple[str, NDArray[np.int32], NDArray[np.int64], str]]:
-    """The same in manageable pieces."""
-    for kind, nodes, cells, name in groups(mesh, integration):
-        for i in range(0, len(cells), CHUNK):
-            yield kind, nodes[i : i + CHUNK], cells[i : i + CHUNK], name
 
 
 def body_chunks(mesh: Mesh, body: str) -> Iterator[tuple[str, NDArray[np.int32]]]:

@@ -33,6 +33,18 @@ class Mesh:
     node_sets: name -> (n,) int64 point numbers, sorted.
     axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
     notes:     what was changed when the mesh was read, in words.
+
+    >>> import numpy as np
+    >>> import abut
+    >>> from abut.mesh.mesh import CellBlock
+    >>> mesh = abut.Mesh(
+    ...     points=np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]),
+    ...     blocks=(CellBlock("quad4", np.array([[0, 1, 2, 3]], dtype=np.int32)),),
+    ...     bodies={"plate": np.array([0])},
+    ...     surfaces={"right": np.array([[0, 1]])},  # its second edge
+    ... )
+    >>> mesh.nodes_of("right").tolist()
+    [1, 2]
     """
 
     points: NDArray[np.float64]

@@ -22,7 +22,13 @@ TURNS = ("rx", "ry", "rz")
 class Amplitude:
     """A history: factor over time as ``points`` (time, factor), times increasing; linear between, constant outside.
 
-    Time runs from 0 to 1 over the load steps. Raises InputError for points that are no such list."""
+    Time runs from 0 to 1 over the load steps. Raises InputError for points that are no such list.
+
+    >>> import abut
+    >>> pulse = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.0)))
+    >>> pulse(0.25)
+    0.5
+    """
 
     points: tuple[tuple[float, float], ...]
 
@@ -76,7 +82,12 @@ def drives(condition: Any) -> bool:
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
     outward normal); components left out are free. Values in the mesh's length unit, times ``amplitude``; x, y and z
-    may be functions of position, points (n, dim) -> (n,), taken at the nodes."""
+    may be functions of position, points (n, dim) -> (n,), taken at the nodes.
+
+    >>> import abut
+    >>> clamp = abut.Support("block.bottom", x=0, y=0)
+    >>> bend = abut.Support("block.top", y=lambda points: -0.01 * points[:, 0] ** 2)  # x stays free
+    """
 
     on: str
     x: float | Field | None = None
@@ -120,7 +131,12 @@ class Term:
 
 @dataclass(frozen=True)
 class Equation:
-    """A linear constraint: the sum of all terms is ``value`` (length, if coefficients are numbers), times ``amplitude``."""
+    """A linear constraint: the sum of all terms is ``value`` (length, if coefficients are numbers), times ``amplitude``.
+
+    >>> import abut
+    >>> tips = abut.Term("left tip", "y", 1.0), abut.Term("right tip", "y", -1.0)
+    >>> alike = abut.Equation(tips)  # both tips sink by the same amount
+    """
 
     terms: tuple[Term, ...]
     value: float = 0.0
@@ -136,10 +152,14 @@ class Equation:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and
-    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``;
-    components left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and
-    in contact it is the target."""
+    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and rotations
+    rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``; components
+    left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and in contact
+    it is the target.
+
+    >>> import abut
+    >>> punch = abut.Rigid("punch", y=-0.01, rz=0.0)  # pressed down, kept upright, free to move sideways
+    """
 
     body: str
     reference: tuple[float, ...] | None = None
@@ -163,7 +183,11 @@ class Rigid:
 
 @dataclass(frozen=True)
 class Pressure:
-    """Pressure on a surface, force per area, positive into the body."""
+    """Pressure on a surface, force per area, positive into the body.
+
+    >>> import abut
+    >>> oil = abut.Pressure("bore", 12.0, abut.Amplitude(((0.0, 1.0), (1.0, 1.0))))  # in full from the start
+    """
 
     on: str
     value: float
@@ -200,7 +224,12 @@ class Traction:
 
 @dataclass(frozen=True)
 class Force:
-    """Total force (2D: per unit thickness), spread evenly over a surface."""
+    """Total force (2D: per unit thickness), spread evenly over a surface.
+
+    >>> import abut
+    >>> abut.Force("lug.end", [1000, 0, 0]).value
+    (1000.0, 0.0, 0.0)
+    """
 
     on: str
     value: tuple[float, ...]

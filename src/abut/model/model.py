@@ -11,6 +11,7 @@ import numpy as np
 
 from abut import checks
 from abut.bodies.integration import INTEGRATIONS, check_integration
+from abut.bodies.solids import Solids
 from abut.contact.laws import Law
 from abut.contact.sides import (
     Names,
@@ -107,7 +108,13 @@ class Contact:
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``)."""
+    a law of your own (``abut.contact.laws.Law``).
+
+    >>> import abut
+    >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
+    >>> press_fit.name
+    'shaft.side-hub.bore'
+    """
 
     contactor: Names
     target: Names
@@ -157,7 +164,12 @@ class Contact:
 @dataclass(frozen=True)
 class SolveOptions:
     """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
-    time), linear solver, iterations allowed in a step."""
+    time), linear solver, iterations allowed in a step.
+
+    >>> import abut
+    >>> abut.SolveOptions(steps=4).ends
+    (0.25, 0.5, 0.75, 1.0)
+    """
 
     steps: int = 1
     linear: str = "auto"
@@ -197,6 +209,22 @@ class Model:
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
     forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
     one of ``solids`` or ``rigid``.
+
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> mesh = make.join({"block": make.box([0, 1], [0, 1], [0, 1], cells=[2, 2, 2])})
+    >>> steel = abut.LinearElastic(210e3, 0.3)
+    >>> model = abut.Model(
+    ...     mesh,
+    ...     solids=[abut.Solid("block", steel)],
+    ...     supports=[abut.Support("block.bottom", x=0, y=0, z=0)],
+    ...     loads=[abut.Pressure("block.top", 10.0)],
+    ... )
+    >>> model.dim
+    3
+    >>> abut.Model(mesh, solids=[abut.Solid("blok", steel)])
+    Traceback (most recent call last):
+    abut.errors.InputError: solids[0].body: no body named 'blok' in the mesh; did you mean 'block'?
     """
 
     mesh: Mesh
@@ -222,15 +250,11 @@ class Model:
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
-    @property
-    def materials(self) -> dict[str, LinearElastic]:
-        """Material of each solid body."""
-        return {solid.body: solid.material for solid in self.solids}
-
-    @property
-    def integration(self) -> dict[str, str]:
-        """Integration of each body."""
-        return {solid.body: solid.integration for solid in self.solids}
+    @cached_property
+    def deformable(self) -> Solids:
+        """The solids as their kernels see them."""
+        materials = {solid.body: solid.material for solid in self.solids}
+        return Solids(self.mesh, materials, self.plane, {solid.body: solid.integration for solid in self.solids})
 
     @property
     def dim(self) -> int:

@@ -30,6 +30,11 @@ class Probe:
     where the place lies on a surface of a contact. ``contact``: whose pressure and gap, where more than one is there.
     ``body``: whose displacement, stress and side of a contact, where points lie on several; left out: the first in the
     order of the mesh.
+
+    >>> import abut
+    >>> tip = abut.Probe("tip", at=(10.0, 0.0), of=("displacement",))
+    >>> abut.Probe("through the wall", line=((1.0, 0.0), (2.0, 0.0)), points=11, of=("stress", "von-mises")).place
+    '11 points from (1, 0) to (2, 0)'
     """
 
     name: str

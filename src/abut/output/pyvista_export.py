@@ -27,6 +27,19 @@ def to_pyvista(solution: Solution, step: int = -1) -> Any:
     von_mises; points of contacts pressure, multiplier and gap (NaN where there is none), displacement, contact_force (of the
     mesh's point ``node``: points of that number repeat it), cells status and side (as in ``contact_*.vtu``). Raises
     InputError without PyVista, or where there is no such step.
+
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> bar = abut.Model(
+    ...     make.join({"bar": make.rectangle([0, 2], [0, 1], cells=[2, 1])}),
+    ...     plane="stress",
+    ...     solids=[abut.Solid("bar", abut.LinearElastic(100.0, 0.3))],
+    ...     supports=[abut.Support("bar.left", x=0), abut.Support("bar.bottom", y=0)],
+    ...     loads=[abut.Traction("bar.right", (1.0, 0.0))],
+    ... )
+    >>> data = abut.to_pyvista(abut.solve(bar))
+    >>> float(data["bodies"]["bar"]["displacement"][:, 0].max().round(6))  # stress over stiffness, times the length
+    0.02
     """
     pyvista = _pyvista()
     state = _step(solution, step)

@@ -38,6 +38,20 @@ def write(
     each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the report; steps:
     those whose VTU files are still to be written, all of them by default; fields: what writes the fields of a step.
     Raises InputError where the directory cannot be written.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> bar = abut.Model(
+    ...     make.join({"bar": make.rectangle([0, 2], [0, 1], cells=[2, 1])}),
+    ...     plane="stress",
+    ...     solids=[abut.Solid("bar", abut.LinearElastic(100.0, 0.3))],
+    ...     supports=[abut.Support("bar.left", x=0), abut.Support("bar.bottom", y=0)],
+    ...     loads=[abut.Traction("bar.right", (1.0, 0.0))],
+    ... )
+    >>> with TemporaryDirectory() as folder:
+    ...     sorted(path.name for path in abut.write(abut.solve(bar), folder).iterdir())
+    ['fields.pvd', 'fields_0001.vtu', 'history.csv', 'report.html', 'run.jsonl', 'summary.json']
     """
     folder = Path(directory)
     make_directory(folder)

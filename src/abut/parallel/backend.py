@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.elements import averaged
+from abut.bodies.stress import averaged
 from abut.contact.coupling import Coupling
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -40,8 +40,7 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        m = self.model
-        own = [(part.Part(piece.mesh, m.materials, m.plane, m.integration),) for piece in self.pieces]
+        own = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
         self.team.each(part.assemble, own=own)
         return self
 

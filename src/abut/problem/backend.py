@@ -9,7 +9,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.elements import nodal_stress, stiffness
+from abut.bodies.assemble import stiffness
+from abut.bodies.solids import TemperatureChange
+from abut.bodies.stress import nodal_stress
 from abut.contact.coupling import Coupling, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -62,12 +64,10 @@ class Serial:
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """As in ``Backend``."""
-        m = self.model
-        return nodal_stress(
-            m.mesh, m.materials, m.temperatures(time), displacement, m.plane, temperature, m.integration
-        )
+        change = TemperatureChange(self.model.temperatures(time), temperature)
+        return nodal_stress(self.model.deformable, displacement, change)
 
 
 def serial(model: Model) -> Serial:
     """Assemble a model in this process."""
-    return Serial(model, stiffness(model.mesh, model.materials, model.plane, model.integration))
+    return Serial(model, stiffness(model.deformable))

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.elements import body_load, thermal_load
-from abut.bodies.loads import force_load, pressure_load, traction_load
+from abut.bodies.assemble import thermal_load
+from abut.bodies.loads import body_load, force_load, pressure_load, traction_load
+from abut.bodies.solids import TemperatureChange
 from abut.fields import evaluate
 from abut.model import BodyForce, Force, Gravity, Model, NodalForce, Pressure, Temperature, Traction
 from abut.model.conditions import weights
@@ -63,7 +64,7 @@ def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.fl
     uniform = [model.temperatures(1.0), *({} for _ in model.histories[1:])]
     return np.column_stack(
         [
-            thermal_load(model.mesh, model.materials, bodies, model.plane, nodal, model.integration)
+            thermal_load(model.deformable, TemperatureChange(bodies, nodal))
             for bodies, nodal in zip(uniform, temperature.T)
         ]
     )

@@ -15,7 +15,23 @@ __all__ = ["Origin", "read_origin", "write_report"]
 def write_report(solution: Solution, path: str | Path, origin: Origin | None = None) -> Path:
     """Write the report of a solution to the HTML file ``path`` and return it.
 
-    origin: the name and text of the job, and reference values. Raises InputError where the file cannot be written."""
+    origin: the name and text of the job, and reference values. Raises InputError where the file cannot be written, and
+    AbutError in a source tree whose libraries of the report are not built (``make build``).
+
+    >>> from tempfile import TemporaryDirectory
+    >>> import abut
+    >>> from abut.mesh import make
+    >>> bar = abut.Model(
+    ...     make.join({"bar": make.rectangle([0, 2], [0, 1], cells=[2, 1])}),
+    ...     plane="stress",
+    ...     solids=[abut.Solid("bar", abut.LinearElastic(100.0, 0.3))],
+    ...     supports=[abut.Support("bar.left", x=0), abut.Support("bar.bottom", y=0)],
+    ...     loads=[abut.Traction("bar.right", (1.0, 0.0))],
+    ... )
+    >>> with TemporaryDirectory() as folder:
+    ...     abut.write_report(abut.solve(bar), f"{folder}/bar.html").name
+    'bar.html'
+    """
     path = Path(path)
     data = page(solution, origin or Origin(path.stem)).encode("utf-8")
 

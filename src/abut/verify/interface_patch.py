@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import BALANCE, balance
-from abut.bodies.elements import stiffness
+from abut.bodies.assemble import stiffness
 from abut.bodies.loads import stress_load
 from abut.contact.coupling import couple, surface_degree
 from abut.contact.geometry import nodal_normals
@@ -91,7 +91,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     held = supports(pinned)
     own = pair(pinned, contact, held, sides=sides)
     load = _load(model.mesh, own.contactor, own.target, stress)
-    full = stiffness(pinned.mesh, {s.body: s.material for s in pinned.solids}, model.plane, model.integration)
+    full = stiffness(pinned.deformable)
     displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
     values = own.space.transfer @ pressure
     nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]

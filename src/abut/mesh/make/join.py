@@ -14,6 +14,11 @@ def join(meshes: Mapping[str, Mesh]) -> Mesh:
     """One mesh of all: each becomes the body ``name`` with surfaces and node sets ``name.surface``; no nodes are merged.
 
     The bodies of a mesh with several become ``name.body``. Raises InputError for no mesh, or plane ones with solid ones.
+
+    >>> from abut.mesh import make
+    >>> mesh = make.join({"shaft": make.disc(1.0, cells=2), "block": make.rectangle([-2, 2], [-2, -1], cells=[4, 1])})
+    >>> sorted(mesh.surfaces)
+    ['block.bottom', 'block.left', 'block.right', 'block.top', 'shaft.round']
     """
     dims = {name: mesh.dim for name, mesh in meshes.items()}
     if len(set(dims.values())) != 1:

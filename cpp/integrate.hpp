@@ -1,0 +1,175 @@
+// The one loop over cells and integration points: strain by the kinematics, stress and tangent by the material, and
+// what they add up to.
+#pragma once
+#include "kinematics.hpp"
+#include "materials.hpp"
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace abut {
+
+// displacement (points, dim); thermal: null, or the thermal strain of each cell at its nodes (cells, n), alike in all
+// directions, which the shape functions interpolate.
+struct State {
+  const double *displacement = nullptr, *thermal = nullptr;
+};
+
+// What is asked for; null pointers are left out. All are added to.
+struct Results {
+  double *force = nullptr;               // (points, dim)
+  const std::int64_t *indptr = nullptr;  // node pattern of the stiffness
+  const std::int32_t *indices = nullptr; // sorted in each row
+  double *stiffness = nullptr;           // values of the pattern with dim x dim blocks
+  const double *extrapolation = nullptr; // (n, rule) from the integration points of a cell to its nodes
+  double *total = nullptr;               // (points, 6) stresses of the cells at their nodes
+  double *count = nullptr;               // (points,) how many cells these are of
+};
+
+// Points first .. last - 1, whose results a thread owns: it computes all cells that reach into them, so that each is
+// added up in the order of the cells, whatever the number of threads.
+struct Rows {
+  std::int32_t first, last;
+  bool has(std::int32_t i) const { return i >= first && i < last; }
+};
+
+// Strain at point q that stresses: less what the temperature makes. thermal (n,) of the cell, or null.
+template <class Kinematics>
+void mechanical_strain(const Kinematics &kinematics, const Cells &cells, std::size_t q, const double *u,
+                       const double *thermal, double *strain) {
+  kinematics.strain(q, u, strain);
+  if (!thermal)
+    return;
+  double free = 0;
+  for (std::size_t i = 0; i < cells.n; ++i)
+    free += cells.shapes[q * cells.n + i] * thermal[i];
+  for (int a = 0; a < 3; ++a)
+    strain[a] -= free;
+}
+
+// Strains (cells, rule, 6) of the cells first .. last - 1.
+template <class Kinematics>
+void point_strains(const Cells &cells, const State &state, double *strain, std::size_t first, std::size_t last) {
+  constexpr int dim = Kinematics::DIM;
+  Kinematics kinematics(cells);
+  std::vector<double> x(cells.n * dim), u(cells.n * dim);
+  for (std::size_t c = first; c < last; ++c) {
+    gather(cells.points, cells.nodes + c * cells.n, cells.n, dim, x.data());
+    gather(state.displacement, cells.nodes + c * cells.n, cells.n, dim, u.data());
+    kinematics.place(x.data());
+    const double *thermal = state.thermal ? state.thermal + c * cells.n : nullptr;
+    for (std::size_t q = 0; q < cells.rule; ++q)
+      mechanical_strain(kinematics, cells, q, u.data(), thermal, strain + (c * cells.rule + q) * STRAINS);
+  }
+}
+
+template <class Kinematics, class Material> class Integration {
+public:
+  Integration(const Cells &cells, const State &state, const Material &material, const Results &results, Rows rows)
+      : cells(cells), state(state), material(material), results(results), rows(rows), kinematics(cells), n(cells.n),
+        x(n * dim), u(n * dim), stress(cells.rule * STRAINS), tangent(cells.rule), force(n * dim),
+        block(results.stiffness ? n * n * dim * dim : 0) {}
+
+  void run() {
+    for (std::size_t c = 0; c < cells.count; ++c) {
+      own = cells.nodes + c * n;
+      if (std::none_of(own, own + n, [&](std::int32_t i) { return rows.has(i); }))
+        continue;
+      gather(cells.points, own, n, dim, x.data());
+      kinematics.place(x.data());
+      evaluate(c);
+      if (results.force)
+        add_force();
+      if (results.total)
+        add_nodal_stress();
+      if (results.stiffness)
+        add_stiffness();
+    }
+  }
+
+private:
+  static constexpr int dim = Kinematics::DIM;
+  using Tangent = typename Material::Tangent;
+
+  void evaluate(std::size_t c) {
+    const bool stressed = results.force || results.total;
+    const bool strained = (Material::stress_by_strain && stressed) || Material::tangent_by_strain;
+    const double *thermal = state.thermal ? state.thermal + c * n : nullptr;
+    double strain[STRAINS];
+    if (strained)
+      gather(state.displacement, own, n, dim, u.data());
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      if (strained)
+        mechanical_strain(kinematics, cells, q, u.data(), thermal, strain);
+      const Point point{c, c * cells.rule + q, rows.has(own[0])};
+      tangent[q] = material.evaluate(point, strain, stressed ? &stress[q * STRAINS] : nullptr);
+    }
+  }
+
+  void add_force() {
+    std::fill(force.begin(), force.end(), 0.0);
+    for (std::size_t q = 0; q < cells.rule; ++q)
+      kinematics.add_force(q, &stress[q * STRAINS], force.data());
+    for (std::size_t i = 0; i < n; ++i)
+      for (int a = 0; rows.has(own[i]) && a < dim; ++a)
+        results.force[std::size_t(own[i]) * dim + a] += force[i * dim + a];
+  }
+
+  void add_nodal_stress() {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!rows.has(own[i]))
+        continue;
+      double sum[STRAINS] = {0};
+      for (std::size_t q = 0; q < cells.rule; ++q)
+        for (int s = 0; s < STRAINS; ++s)
+          sum[s] += results.extrapolation[i * cells.rule + q] * stress[q * STRAINS + s];
+      for (int s = 0; s < STRAINS; ++s)
+        results.total[std::size_t(own[i]) * STRAINS + s] += sum[s];
+      results.count[own[i]] += 1;
+    }
+  }
+
+  void add_stiffness() {
+    std::fill(block.begin(), block.end(), 0.0);
+    for (std::size_t q = 0; q < cells.rule; ++q)
+      kinematics.add_stiffness(q, tangent[q], block.data());
+    kinematics.finish(tangent[0], block.data());
+    for (std::size_t i = 0; i < n; ++i)
+      if (rows.has(own[i]))
+        scatter(i);
+  }
+
+  // The rows of node i. A symmetric block holds nodes i <= k only.
+  void scatter(std::size_t i) {
+    const std::int64_t row = results.indptr[own[i]], length = results.indptr[own[i] + 1] - row;
+    const std::int32_t *begin = results.indices + row, *end = begin + length;
+    double *out = results.stiffness + row * dim * dim;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int64_t position = std::lower_bound(begin, end, own[k]) - begin;
+      const bool stored = !Tangent::symmetric || i <= k;
+      const double *in = &block[(stored ? i * n + k : k * n + i) * dim * dim];
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          out[a * dim * length + position * dim + b] += stored ? in[a * dim + b] : in[b * dim + a];
+    }
+  }
+
+  const Cells &cells;
+  const State &state;
+  const Material &material;
+  const Results &results;
+  Rows rows;
+  Kinematics kinematics;
+  std::size_t n;
+  std::vector<double> x, u, stress;
+  std::vector<Tangent> tangent;
+  std::vector<double> force, block;
+  const std::int32_t *own = nullptr; // nodes of the cell
+};
+
+template <class Kinematics, class Material>
+void integrate(const Cells &cells, const State &state, const Material &material, const Results &results, Rows rows) {
+  Integration<Kinematics, Material>(cells, state, material, results, rows).run();
+}
+
+} // namespace abut

@@ -1,0 +1,188 @@
+// Kinematics: how the displacements of a cell's nodes strain it, and the nodal forces and stiffness that stresses and
+// tangents at its integration points then mean.
+#pragma once
+#include "jacobian.hpp"
+#include "materials.hpp"
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace abut {
+
+// Cells of one type and an integration rule on the reference cell: points (any, dim), nodes (count, n); shapes (rule,
+// n), derivatives (rule, n, dim), weights (rule). mean_dilatation: the dilatation is its mean over the cell, theory
+// (E3).
+struct Cells {
+  const double *points;
+  const std::int32_t *nodes;
+  std::size_t count, n;
+  const double *shapes, *derivatives, *weights;
+  std::size_t rule;
+  bool mean_dilatation;
+};
+
+// Small strains in space or in the plane, where the strains out of the plane are zero (what a material makes of that in
+// plane stress is its matter). Axisymmetric: coordinates are (r, z), the hoop strain zz is u_r / r and integrals run
+// round the axis.
+template <int dim, bool axisymmetric> class SmallStrain {
+public:
+  static constexpr int DIM = dim;
+
+  explicit SmallStrain(const Cells &cells)
+      : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),
+        volume(cells.rule), mean(n * dim), response(n * STRAINS * dim) {}
+
+  // Moves to the cell with nodes at x (n, dim).
+  void place(const double *x) {
+    bulk = 0;
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      const double *shape = cells.shapes + q * n;
+      volume[q] = gradients<dim>(x, n, cells.derivatives + q * n * dim, &gradient[q * n * dim]) * cells.weights[q];
+      if constexpr (axisymmetric) {
+        double r = 0;
+        for (std::size_t i = 0; i < n; ++i)
+          r += shape[i] * x[i * dim];
+        for (std::size_t i = 0; i < n; ++i)
+          hoop[q * n + i] = shape[i] / r;
+        volume[q] *= 2 * std::numbers::pi * r;
+      }
+    }
+    if (cells.mean_dilatation)
+      average();
+  }
+
+  // Strain at point q under displacements u (n, dim) of the nodes.
+  void strain(std::size_t q, const double *u, double *strain) const {
+    std::fill_n(strain, STRAINS, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      double b[STRAINS][dim];
+      derivative(q, i, b);
+      for (int s = 0; s < STRAINS; ++s)
+        for (int a = 0; a < dim; ++a)
+          strain[s] += b[s][a] * u[i * dim + a];
+    }
+  }
+
+  // Adds the forces (n, dim) of a stress at point q.
+  void add_force(std::size_t q, const double *stress, double *force) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      double b[STRAINS][dim];
+      derivative(q, i, b);
+      for (int a = 0; a < dim; ++a) {
+        double sum = 0;
+        for (int s = 0; s < STRAINS; ++s)
+          sum += b[s][a] * stress[s];
+        force[i * dim + a] += volume[q] * sum;
+      }
+    }
+  }
+
+  // Adds the stiffness (n, n, dim, dim) of any tangent at point q.
+  void add_stiffness(std::size_t q, const Full &tangent, double *block) {
+    double b[STRAINS][dim];
+    for (std::size_t k = 0; k < n; ++k) {
+      derivative(q, k, b);
+      double *out = &response[k * STRAINS * dim];
+      for (int s = 0; s < STRAINS; ++s)
+        for (int a = 0; a < dim; ++a) {
+          double sum = 0;
+          for (int t = 0; t < STRAINS; ++t)
+            sum += tangent.c[s * STRAINS + t] * b[t][a];
+          out[s * dim + a] = volume[q] * sum;
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      derivative(q, i, b);
+      for (std::size_t k = 0; k < n; ++k)
+        for (int s = 0; s < STRAINS; ++s)
+          for (int a = 0; a < dim; ++a)
+            for (int c = 0; c < dim; ++c)
+              block[((i * n + k) * dim + a) * dim + c] += b[s][a] * response[(k * STRAINS + s) * dim + c];
+    }
+  }
+
+  // The same of two constants, for nodes i <= k, without the mean dilatation: lambda div v div u + 2 mu eps(v) :
+  // eps(u).
+  void add_stiffness(std::size_t q, const Moduli &tangent, double *block) {
+    const double w = volume[q], mu = tangent.mu;
+    const double lambda = cells.mean_dilatation ? -2 * mu / 3 : tangent.lambda; // what is left is deviatoric
+    const double *ring = hoop.data() + (axisymmetric ? q * n : 0);
+    bulk += w * (tangent.lambda + 2 * mu / 3);
+    for (std::size_t i = 0; i < n; ++i) {
+      double g[dim];
+      std::copy_n(&gradient[(q * n + i) * dim], dim, g);
+      for (std::size_t k = i; k < n; ++k) {
+        const double *h = &gradient[(q * n + k) * dim];
+        double *out = &block[(i * n + k) * dim * dim];
+        double scalar = 0;
+        for (int a = 0; a < dim; ++a)
+          scalar += g[a] * h[a];
+        for (int a = 0; a < dim; ++a) {
+          for (int b = 0; b < dim; ++b)
+            out[a * dim + b] += w * (lambda * g[a] * h[b] + mu * g[b] * h[a]);
+          out[a * dim + a] += w * mu * scalar;
+        }
+        if constexpr (axisymmetric) {
+          out[0] += w * (lambda + 2 * mu) * ring[i] * ring[k];
+          for (int a = 0; a < dim; ++a)
+            out[a * dim] += w * lambda * g[a] * ring[k], out[a] += w * lambda * ring[i] * h[a];
+        }
+      }
+    }
+  }
+
+  // Adds what the mean dilatation contributes once all points are in.
+  void finish(const Moduli &, double *block) const {
+    for (std::size_t i = 0; cells.mean_dilatation && i < n; ++i)
+      for (std::size_t k = i; k < n; ++k)
+        for (int a = 0; a < dim; ++a)
+          for (int b = 0; b < dim; ++b)
+            block[((i * n + k) * dim + a) * dim + b] += bulk * mean[i * dim + a] * mean[k * dim + b];
+  }
+  void finish(const Full &, double *) const {} // it is in the derivatives already
+
+private:
+  // b[s][a]: strain s at point q per displacement a of node i.
+  void derivative(std::size_t q, std::size_t i, double (&b)[STRAINS][dim]) const {
+    const double *g = &gradient[(q * n + i) * dim];
+    for (auto &row : b)
+      std::fill_n(row, dim, 0.0);
+    for (int a = 0; a < dim; ++a)
+      b[a][a] = g[a];
+    b[3][0] = g[1], b[3][1] = g[0];
+    if constexpr (dim == 3)
+      b[4][1] = g[2], b[4][2] = g[1], b[5][0] = g[2], b[5][2] = g[0];
+    if constexpr (axisymmetric)
+      b[2][0] = hoop[q * n + i];
+    for (int a = 0; cells.mean_dilatation && a < dim; ++a) {
+      const double more = (mean[i * dim + a] - dilatation(q, i, a)) / 3;
+      for (int s = 0; s < 3; ++s)
+        b[s][a] += more;
+    }
+  }
+
+  double dilatation(std::size_t q, std::size_t i, int a) const {
+    const double g = gradient[(q * n + i) * dim + a];
+    return axisymmetric && a == 0 ? g + hoop[q * n + i] : g;
+  }
+
+  void average() {
+    double whole = 0;
+    std::fill(mean.begin(), mean.end(), 0.0);
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      whole += volume[q];
+      for (std::size_t i = 0; i < n; ++i)
+        for (int a = 0; a < dim; ++a)
+          mean[i * dim + a] += volume[q] * dilatation(q, i, a);
+    }
+    for (double &value : mean)
+      value /= whole;
+  }
+
+  const Cells &cells;
+  std::size_t n;
+  std::vector<double> gradient, hoop, volume, mean, response; // mean: dilatation of the cell per displacement
+  double bulk = 0;                                            // integral of the bulk modulus
+};
+
+} // namespace abut

@@ -1,0 +1,64 @@
+// Materials as the integration sees them: evaluate(point, strain, stress) returns the tangent and writes the stress.
+// Stresses are xx yy zz xy yz zx; strains alike, shear strains doubled, so that their product is work. A material with
+// history holds it by point: what was before it reads, what comes after it writes where point.mine says so.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+
+namespace abut {
+
+constexpr int STRAINS = 6;
+
+// An integration point: of a cell, its number among all points of all cells, and whether this thread is the one to
+// write what belongs to it (cells may be visited by several).
+struct Point {
+  std::size_t cell, number;
+  bool mine;
+};
+
+// Tangents: what the stiffness of a cell is made of. Two constants of an isotropic material, or any (6, 6).
+struct Moduli {
+  static constexpr bool symmetric = true;
+  double lambda, mu;
+};
+struct Full {
+  static constexpr bool symmetric = false;
+  const double *c;
+};
+
+// Isotropic linear elasticity with the constants (cells, 2) of each cell; in plane stress lambda is the reduced one.
+struct Isotropic {
+  using Tangent = Moduli;
+  static constexpr bool stress_by_strain = true, tangent_by_strain = false; // what strains have to be known for
+  const double *constants;
+  bool plane_stress;
+
+  Moduli evaluate(const Point &at, const double *strain, double *stress) const {
+    const double lambda = constants[2 * at.cell], mu = constants[2 * at.cell + 1];
+    if (stress) {
+      const double spherical = lambda * (strain[0] + strain[1] + (plane_stress ? 0 : strain[2]));
+      for (int a = 0; a < 3; ++a) {
+        stress[a] = 2 * mu * strain[a] + spherical;
+        stress[3 + a] = mu * strain[3 + a];
+      }
+      if (plane_stress)
+        stress[2] = 0;
+    }
+    return {lambda, mu};
+  }
+};
+
+// Stresses (points, 6) and tangents (points, 6, 6) that somebody else has evaluated.
+struct Given {
+  using Tangent = Full;
+  static constexpr bool stress_by_strain = false, tangent_by_strain = false;
+  const double *stresses, *tangents;
+
+  Full evaluate(const Point &at, const double *, double *stress) const {
+    if (stress)
+      std::copy_n(stresses + at.number * STRAINS, STRAINS, stress);
+    return {tangents ? tangents + at.number * STRAINS * STRAINS : nullptr};
+  }
+};
+
+} // namespace abut

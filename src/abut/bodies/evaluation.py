@@ -1,0 +1,55 @@
+"""Materials evaluated in Python at the integration points of cells, some cells at a time.
+
+The history of a body has a row for every integration point: its cells by type as in the mesh, those of a type in ascending
+order, the points of a cell as in the rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from abut._core import strains
+from abut.bodies.solids import Array, Group, Solids, TemperatureChange
+from abut.errors import InputError
+from abut.materials.material import Evaluated
+from abut.materials.plane_stress import law
+from abut.mesh.quadrature import Rule
+
+History = Mapping[str, Array]  # by body, of materials that are not linear elastic: (points, h)
+
+
+def evaluate(
+    solids: Solids,
+    group: Group,
+    rule: Rule,
+    displacement: Array | None,
+    temperature: TemperatureChange,
+    history: History | None,
+) -> Iterator[tuple[Any, Evaluated]]:
+    """Cells of a group for the compiled core, some after the other, with stress (points, 6), tangent (points, 6, 6) and new
+    history at their integration points. displacement None: none; history None: the initial one.
+
+    Raises InputError for a material that returns other shapes."""
+    material = solids.materials[group.body]
+    respond = law(material, solids.plane)
+    moved = np.zeros(solids.points.shape) if displacement is None else displacement
+    for part in group.portions(rule):
+        cells = part.arrays(solids, rule)
+        strain = strains(cells, moved, temperature.strain(solids, part))
+        rows = slice(part.first, part.first + len(strain))
+        before = history[group.body][rows] if history else material.initial(len(strain))
+        yield cells, _checked(respond(strain, before), before.shape, f"material of body '{group.body}'")
+
+
+def _checked(result: Evaluated, history: tuple[int, ...], where: str) -> Evaluated:
+    n = history[0]
+    stress, tangent, after = (np.ascontiguousarray(values, dtype=float) for values in result)
+    for name, values, shape in zip(
+        ("stress", "tangent", "history"), (stress, tangent, after), ((n, 6), (n, 6, 6), history)
+    ):
+        if values.shape != shape:
+            raise InputError(f"{where}: evaluate returned a {name} of shape {values.shape}, expected {shape}")
+    return stress, tangent, after

@@ -1,0 +1,134 @@
+"""The deforming bodies of a mesh as their kernels see them: one record, and its cells in groups that are treated alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut._core import Cells, node_pattern, shape_functions
+from abut.cells import CELLS
+from abut.materials.elastic import LinearElastic
+from abut.materials.material import Material
+from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import Rule, cell_rule
+
+Array = NDArray[np.float64]
+PORTION = 2**17  # integration points that a material evaluates at once; their tangents take 300 bytes each
+
+
+@dataclass(frozen=True)
+class Solids:
+    """Bodies of a mesh and what they are made of; bodies without a material have no stiffness.
+
+    plane: "strain", "stress" or "axisymmetric" (as the mesh then is) in 2D; integration: by body, as in ``Solid``,
+    "full" for those not named, theory (E1), (E2), (E3)."""
+
+    mesh: Mesh
+    materials: Mapping[str, Material]
+    plane: str | None = None
+    integration: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def points(self) -> Array:
+        """(n_points, dim), contiguous."""
+        return np.ascontiguousarray(self.mesh.points)
+
+    @cached_property
+    def pattern(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """CSR (indptr, indices) of which nodes share a cell."""
+        blocks = self.mesh.blocks
+        counts = [np.full(len(b.nodes), b.nodes.shape[1]) for b in blocks]
+        start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+        return node_pattern(len(self.points), start, np.concatenate([b.nodes.ravel() for b in blocks]).astype(np.int32))
+
+    @property
+    def constant(self) -> bool:
+        """Whether forces are linear in displacements: ``stiffness`` is then all there is to know."""
+        return all(material.constant for material in self.materials.values())
+
+    @cached_property
+    def body_of(self) -> NDArray[np.int32]:
+        """Number of each cell's body in ``materials``, -1 without; (n_cells,)."""
+        result = np.full(self.mesh.n_cells, -1, dtype=np.int32)
+        for number, body in enumerate(self.materials):
+            result[self.mesh.bodies[body]] = number
+        return result
+
+    def groups(self) -> Iterator[Group]:
+        """All cells that have a material."""
+        keys = {body: ("" if isinstance(m, LinearElastic) else body, self.integration.get(body, "full"))
+                for body, m in self.materials.items()}  # fmt: skip
+        distinct = sorted(set(keys.values()))
+        number = np.array([-1, *(distinct.index(key) for key in keys.values())])
+        used = dict.fromkeys(distinct, 0)
+        for block, first in zip(self.mesh.blocks, self.mesh.starts.tolist()):
+            own = number[1 + self.body_of[first : first + len(block.nodes)]]
+            for i in np.unique(own[own >= 0]).tolist():
+                rows = np.flatnonzero(own == i)
+                nodes = np.ascontiguousarray(block.nodes[rows], dtype=np.int32)
+                body, integration = distinct[i]
+                yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]])
+                used[distinct[i]] += len(rows) * len(cell_rule(block.kind, integration)[1])
+
+    def by_cell(self, group: Group, values: Mapping[str, Any]) -> Array:
+        """A row for every cell of a group, from those of all bodies."""
+        return np.array([values[body] for body in self.materials], dtype=float)[self.body_of[group.cells]]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Cells of one type that are integrated alike: nodes (n, n_nodes), cells (n,) their numbers. body: whose material is
+    evaluated in Python; empty for linear elastic bodies, which go together. first: row of its first point in the history of
+    its body."""
+
+    kind: str
+    nodes: NDArray[np.int32]
+    cells: NDArray[np.int64]
+    body: str
+    integration: str
+    first: int
+
+    def arrays(self, solids: Solids, rule: Rule) -> Any:
+        """These cells with an integration rule, for the compiled core."""
+        xi, weights = rule
+        shapes, derivatives = shape_functions(CELLS[self.kind].code, np.ascontiguousarray(xi))
+        axisymmetric, mean = solids.mesh.axisymmetric, self.integration == "b-bar"
+        return Cells(solids.points, self.nodes, shapes, derivatives, weights, axisymmetric, mean)
+
+    def portions(self, rule: Rule) -> Iterator[Group]:
+        """Some cells after the other."""
+        size = max(PORTION // len(rule[1]), 1)
+        for i in range(0, len(self.cells), size):
+            nodes, cells = self.nodes[i : i + size], self.cells[i : i + size]
+            yield replace(self, nodes=nodes, cells=cells, first=self.first + i * len(rule[1]))
+
+
+@dataclass(frozen=True)
+class TemperatureChange:
+    """Degrees: uniform by body (0 for those not named), and at the nodes (n_points,), which the shape functions interpolate;
+    both add up."""
+
+    bodies: Mapping[str, float] = field(default_factory=dict)
+    nodes: Array | None = None
+
+    def strain(self, solids: Solids, group: Group) -> Array | None:
+        """Thermal strain of a group's cells at their nodes, (cells, n_nodes), alike in all directions; None where there is
+        none."""
+        bodies = [body for body, material in solids.materials.items() if material.expansion]
+        heated = self.nodes is not None and self.nodes.any()
+        if not bodies or not (heated or any(self.bodies.get(body) for body in bodies)):
+            return None
+        table = {body: (m.expansion, self.bodies.get(body, 0.0)) for body, m in solids.materials.items()}
+        expansion, uniform = solids.by_cell(group, table).T[..., None]
+        change = (
+            np.broadcast_to(uniform, group.nodes.shape) if self.nodes is None else uniform + self.nodes[group.nodes]
+        )
+        return np.ascontiguousarray(expansion * change)
+
+
+UNHEATED = TemperatureChange()

@@ -1,0 +1,48 @@
+"""Plane stress of any material: the strains out of the plane are those that leave no stress there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from abut.errors import ConvergenceError
+from abut.materials.material import Array, Evaluated, Material
+
+OUT = np.array([2, 4, 5])  # zz yz zx
+LIMIT = 25  # iterations; Newton's method needs one for a linear material and about five for others
+ROUNDING = 1e-13  # stress left out of the plane, relative to tangent times strain
+
+
+def law(material: Material, plane: str | None) -> Callable[[Array, Array], Evaluated]:
+    """``material.evaluate``, in plane stress with the strains out of the plane found (those given are the first guess)."""
+    return partial(in_plane_stress, material) if plane == "stress" else material.evaluate
+
+
+def in_plane_stress(material: Material, strain: Array, history: Array) -> Evaluated:
+    """As ``Material.evaluate``, but strains zz yz zx (n, 3 of 6) are found from zero stresses by Newton's method; the tangent
+    is that of the components in the plane, with zeros elsewhere.
+
+    Raises ConvergenceError where they are not found."""
+    strain = strain.copy()
+    for _ in range(LIMIT):
+        stress, tangent, after = material.evaluate(strain, history)
+        block = tangent[:, OUT[:, None], OUT]
+        scale = np.abs(tangent).max(axis=(1, 2), initial=0.0) * np.abs(strain).max(axis=1, initial=0.0)
+        if (np.abs(stress[:, OUT]) <= ROUNDING * scale[:, None]).all():
+            return _condensed(stress, tangent, block, after)
+        strain[:, OUT] -= np.linalg.solve(block, stress[:, OUT, None])[..., 0]
+    raise ConvergenceError(
+        f"plane stress: no strain out of the plane without stress there was found in {LIMIT} iterations; smaller load "
+        "steps, or a check of the material's tangent, may help"
+    )
+
+
+def _condensed(stress: Array, tangent: Array, block: Array, history: Array) -> Evaluated:
+    stress, coupling = stress.copy(), tangent[:, :, OUT]
+    stress[:, OUT] = 0.0
+    reduced = tangent - coupling @ np.linalg.solve(block, tangent[:, OUT, :])
+    reduced[:, OUT, :] = 0.0
+    reduced[:, :, OUT] = 0.0
+    return stress, reduced, history
