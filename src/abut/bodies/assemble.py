@@ -1,5 +1,5 @@
-"""Forces and stiffness of solids at a displacement; dof of component a at point i: dim i + a. Force per unit thickness in 2D,
-all round if axisymmetric."""
+"""Forces and stiffness of solids at a displacement; dof of component a at point i: dim i + a. Force per unit thickness in
+2D, all round if axisymmetric."""
 
 from __future__ import annotations
 

@@ -21,8 +21,8 @@ def law(material: Material, plane: str | None) -> Callable[[Array, Array], Evalu
 
 
 def in_plane_stress(material: Material, strain: Array, history: Array) -> Evaluated:
-    """As ``Material.evaluate``, but strains zz yz zx (n, 3 of 6) are found from zero stresses by Newton's method; the tangent
-    is that of the components in the plane, with zeros elsewhere.
+    """As ``Material.evaluate``, but strains zz yz zx (n, 3 of 6) are found from zero stresses by Newton's method; the
+    tangent is that of the components in the plane, with zeros elsewhere.
 
     Raises ConvergenceError where they are not found."""
     strain = strain.copy()
