@@ -18,7 +18,7 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
             raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
         if kind not in REDUCED:
             raise InputError(
-                f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread through the "
+                f"{where}: 'reduced' leaves {kind} cells zero-energy modes (hourglass modes) that spread through the "
                 f"mesh; use {'full or b-bar' if kind in BBAR else 'full'}, or {', '.join(REDUCED)} cells"
             )
     for kind in kinds if how == "b-bar" else ():

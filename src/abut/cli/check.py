@@ -19,8 +19,8 @@ def add_check(commands: Any) -> None:
     """Add the command to the parser's ``commands``."""
     check = commands.add_parser(
         "check",
-        help="examine a job without solving it",
-        description="Free motions, over-constraint, gaps, normals, mesh and units of a job: each finding with its cure.",
+        help="check a job without solving it",
+        description="Rigid-body modes, over-constraint, gaps, normals, mesh, units of a job: each finding with its remedy.",
         epilog="exit status: 0 no errors; 2 bad input; 4 no unique solution",
     )
     check.add_argument("job", type=Path, help="the job file or deck")

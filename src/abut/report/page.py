@@ -210,7 +210,7 @@ def _trouble(solution: Solution) -> str:
     if not solution.converged:
         last = solution.steps[-1].iterations[-1]
         places = [f"{place}; nodes {_some(place.nodes)}" for place in unsettled(solution.steps[-1])]
-        where = places or [f"nowhere in particular: equilibrium is missed by {last.residual:.1e} of the forces"]
+        where = places or [f"no single facets: the residual of equilibrium is {last.residual:.1e} of the forces"]
         text += (
             f"<section><h2>Not converged</h2><p>Where:</p>{_list(where)}<p>What to try, the most likely first:</p>"
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
