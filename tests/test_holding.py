@@ -1,4 +1,4 @@
-"""Bodies that nothing holds are named, before anything is solved: contact carries no tension."""
+"""Bodies with free rigid-body modes are named, before anything is solved: contact carries no tension."""
 
 from __future__ import annotations
 

@@ -306,10 +306,10 @@ def test_theory_beside_the_job(tmp_path: Path) -> None:
     (row,) = comparison(solution, origin.expected)
     assert row["passed"]
     assert row["deviation"] == pytest.approx(0.0, abs=1e-9)
-    assert "Beside theory" in Page(write_report(solution, tmp_path / "a.html", origin)).text
+    assert "Compared with theory" in Page(write_report(solution, tmp_path / "a.html", origin)).text
     wrong = {"contact.area": {"value": 2.0, "tolerance": 0.1, "source": "geometry"}}
     page = Page(write_report(solution, tmp_path / "a.html", Origin("x", "", wrong)))
-    assert "not what theory says: area" in page.text
+    assert "different from theory: area" in page.text
     for text in ("[1, 2]", "{", '{"punch": 3}', '{"punch": {"contact.area": "x", "contact.profile": {"peak": []}}}'):
         (tmp_path / "expected.json").write_text(text)
         assert comparison(solution, read_origin(job, "").expected) == []
