@@ -1,4 +1,4 @@
-"""Contact pairs found by what faces what: which facets, which side is the contactor, the same run when written out."""
+"""Contact detection: bodies whose facets face each other."""
 
 from __future__ import annotations
 
