@@ -27,7 +27,7 @@ public:
   Accumulator(Coupling &out, Lists &own, const Options &options, int dim)
       : out_(out), lists_(own), options_(options), dim_(dim) {}
 
-  void begin(std::size_t f, const Facet<double> &c) {
+  void begin(std::size_t f, const Facet &c) {
     f_ = f, functions_ = pressure_functions(c.kind, options_.degree), nodes_ = c.nodes;
     clear(&own_[0][0][0]);
   }

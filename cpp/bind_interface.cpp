@@ -20,13 +20,16 @@ static RuleTable table(Tensor3<double> rules) {
 }
 
 static nb::tuple plan_facets(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes,
-                             Tensor3<double> rules, Tensor3<double> exact, double tolerance, bool axisymmetric) {
+                             Tensor3<double> rules, Tensor3<double> exact, Vector<double> tolerance,
+                             bool axisymmetric) {
   const SurfaceView surface = view(points, kinds, nodes);
   const RuleTable rule_table = table(rules), exact_table = table(exact);
+  if (tolerance.shape(0) != surface.facets)
+    throw nb::value_error("tolerance must be (facets,)");
   std::vector<std::int32_t> count, subdivisions;
   {
     nb::gil_scoped_release release;
-    plan(surface, rule_table, exact_table, tolerance, axisymmetric, count, subdivisions);
+    plan(surface, rule_table, exact_table, tolerance.data(), axisymmetric, count, subdivisions);
   }
   return nb::make_tuple(to_numpy(std::move(count)), to_numpy(std::move(subdivisions)));
 }
@@ -87,8 +90,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
 
 void bind_interface(nb::module_ &m) {
   m.def("plan_facets", &plan_facets, nb::arg("points").noconvert(), nb::arg("kinds").noconvert(),
-        nb::arg("nodes").noconvert(), nb::arg("rules").noconvert(), nb::arg("exact").noconvert(), nb::arg("tolerance"),
-        nb::arg("axisymmetric"),
+        nb::arg("nodes").noconvert(), nb::arg("rules").noconvert(), nb::arg("exact").noconvert(),
+        nb::arg("tolerance").noconvert(), nb::arg("axisymmetric"),
         "Integration points per direction and subdivisions of every facet, so that it meets its own moments.");
   m.def("couple_surfaces", &couple_surfaces, nb::arg("points_c").noconvert(), nb::arg("kinds_c").noconvert(),
         nb::arg("nodes_c").noconvert(), nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(),

@@ -232,4 +232,34 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
   }
 }
 
+// Values of all shape functions of a facet type, without their derivatives.
+inline void facet_values(int kind, const double *xi, double *n) {
+  const double x = xi[0], y = xi[1];
+  switch (kind) {
+  case TRI3:
+    n[0] = 1 - x - y, n[1] = x, n[2] = y;
+    break;
+  case TRI6: {
+    const double l = 1 - x - y;
+    n[0] = l * (2 * l - 1), n[1] = x * (2 * x - 1), n[2] = y * (2 * y - 1);
+    n[3] = 4 * l * x, n[4] = 4 * x * y, n[5] = 4 * y * l;
+    break;
+  }
+  case QUAD8: {
+    const double a = 1 - x, b = 1 + x, c = 1 - y, d = 1 + y;
+    n[0] = 0.25 * a * c * (-x - y - 1), n[1] = 0.25 * b * c * (x - y - 1);
+    n[2] = 0.25 * b * d * (x + y - 1), n[3] = 0.25 * a * d * (y - x - 1);
+    n[4] = 0.5 * a * b * c, n[5] = 0.5 * b * c * d, n[6] = 0.5 * a * b * d, n[7] = 0.5 * a * c * d;
+    break;
+  }
+  default: { // products of one-dimensional functions
+    const bool linear = kind == LINE2 || kind == QUAD4;
+    const auto p = linear ? detail::line_linear(x) : detail::line_quadratic(x);
+    const auto q = linear ? detail::line_linear(y) : detail::line_quadratic(y);
+    for (int i = 0; i < NODES[kind]; ++i)
+      n[i] = DIM[kind] == 1 ? p.v[i] : p.v[detail::QUAD9_INDEX[i][0]] * q.v[detail::QUAD9_INDEX[i][1]];
+  }
+  }
+}
+
 } // namespace abut

@@ -121,49 +121,70 @@ struct Rule {
   const double *t, *wt, *r, *wr;
 };
 
-// Calls visit(point, weight) for a rule on every cone from an apex to an edge; `curve_of` gives the curve of the edge
-// that leaves a vertex, none for a straight cut. Straight polygons are fanned from their first vertex, curved ones from
-// the mean of the vertices. The cones are theory (S9), the rule theory (Q1). A vertex that is not on its curve (see
-// `polish`) is linked to it by a straight edge: only a closed boundary has an area that does not depend on the apex,
-// and neighbours share links.
-template <class CurveOf, class Visit>
-void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rule, Visit visit) {
+// An edge of a polygon: p + t (q - p) + t (1 - t) bulge.
+struct Edge {
+  Point2 p, q, bulge;
+  Point2 at(double t) const { return p + t * (q - p) + (t * (1 - t)) * bulge; }
+  Point2 slope(double t) const { return (q - p) + (1 - 2 * t) * bulge; }
+};
+
+// The edges of a polygon: theory (S9). A vertex that is not on its curve (see `polish`) is linked to it by a straight
+// edge: only a closed boundary has an area that does not depend on the apex, and neighbours share links.
+struct Outline {
+  int size = 0;
   bool straight = true;
-  Point2 mean{0, 0};
-  for (int i = 0; i < polygon.size; ++i) {
-    const Curve *curve = curve_of(polygon.v[i]);
-    straight = straight && (!curve || curve->straight);
-    mean = mean + (1.0 / polygon.size) * polygon.v[i].p;
+  std::array<Edge, 3 * MAX_CLIP> edge;
+
+  template <class CurveOf> Outline(const Polygon &polygon, CurveOf curve_of) {
+    for (int i = 0; i < polygon.size; ++i) {
+      const Point2 p = polygon.v[i].p, q = polygon.v[i + 1 < polygon.size ? i + 1 : 0].p;
+      const Curve *curve = curve_of(polygon.v[i]);
+      if (!curve || curve->straight) {
+        edge[size++] = {p, q, {0, 0}};
+        continue;
+      }
+      straight = false;
+      const double t0 = curve->parameter(p), t1 = curve->parameter(q);
+      const Point2 first = curve->at(t0), last = curve->at(t1);
+      const double off = 1e-24 * dot2(curve->b - curve->a, curve->b - curve->a);
+      const bool before = dot2(first - p, first - p) > off, after = dot2(q - last, q - last) > off;
+      if (before)
+        edge[size++] = {p, first, {0, 0}};
+      edge[size++] = {before ? first : p, after ? last : q, ((t1 - t0) * (t1 - t0)) * curve->bulge};
+      if (after)
+        edge[size++] = {last, q, {0, 0}};
+    }
   }
-  const Point2 apex = straight ? polygon.v[0].p : mean;
-  auto cone = [&](auto at, auto slope) {
+};
+
+// Calls visit(point, weight) for a rule on every triangle between an apex and an edge: theory (S9), (Q1). Polygons with
+// curved edges take the mean of their vertices, or, with `fan`, as straight ones their first vertex: half as many
+// triangles, but maps of higher degree, as the bulges of both edges there are blended into the first triangle and the
+// last.
+template <class CurveOf, class Visit>
+void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rule, bool fan, Visit visit) {
+  const Outline outline(polygon, curve_of);
+  Point2 apex = polygon.v[0].p;
+  const Point2 none{0, 0};
+  const bool around = !fan && !outline.straight;
+  if (around) {
+    apex = none;
+    for (int i = 0; i < polygon.size; ++i)
+      apex = apex + (1.0 / polygon.size) * polygon.v[i].p;
+  }
+  for (int i = around ? 0 : 1; i + (around ? 0 : 1) < outline.size; ++i) {
+    const Edge &edge = outline.edge[i];
+    const Point2 first = !around && i == 1 ? outline.edge[0].bulge : none;
+    const Point2 last = !around && i + 2 == outline.size ? outline.edge[i + 1].bulge : none;
     for (int k = 0; k < rule.n; ++k) {
-      const Point2 on = at(rule.t[k]), along = slope(rule.t[k]);
-      const double jacobian = cross2(on - apex, along) * rule.wt[k];
-      for (int m = 0; m < rule.n; ++m)
-        visit(apex + rule.r[m] * (on - apex), jacobian * rule.wr[m]);
+      const double t = rule.t[k];
+      const Point2 on = edge.at(t) - apex, along = edge.slope(t), bulge = (1 - t) * first + t * last;
+      for (int m = 0; m < rule.n; ++m) {
+        const double r = rule.r[m];
+        const double jacobian = cross2(on + (1 - 2 * r) * bulge, along + (1 - r) * (last - first));
+        visit(apex + r * (on + (1 - r) * bulge), jacobian * rule.wt[k] * rule.wr[m]);
+      }
     }
-  };
-  auto line = [&](Point2 p, Point2 q) {
-    cone([&](double t) { return p + t * (q - p); }, [&](double) { return q - p; });
-  };
-  for (int i = straight ? 1 : 0; i < polygon.size - (straight ? 1 : 0); ++i) {
-    const Point2 p = polygon.v[i].p, q = polygon.v[(i + 1) % polygon.size].p;
-    const Curve *own = curve_of(polygon.v[i]);
-    if (!own || own->straight) {
-      line(p, q);
-      continue;
-    }
-    const Curve &curve = *own;
-    const double t0 = curve.parameter(p), t1 = curve.parameter(q);
-    const Point2 first = curve.at(t0), last = curve.at(t1);
-    const double off = 1e-24 * dot2(curve.b - curve.a, curve.b - curve.a);
-    if (dot2(first - p, first - p) > off)
-      line(p, first);
-    cone([&](double t) { return curve.at(t0 + t * (t1 - t0)); },
-         [&](double t) { return (t1 - t0) * curve.slope(t0 + t * (t1 - t0)); });
-    if (dot2(q - last, q - last) > off)
-      line(last, q);
   }
 }
 

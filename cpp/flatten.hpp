@@ -21,7 +21,7 @@ struct Plane {
   }
 };
 
-inline Plane mean_plane(const Facet<double> &f) {
+inline Plane mean_plane(const Facet &f) {
   Plane plane;
   const int corners = f.triangle() ? 3 : 4;
   double area[3] = {0, 0, 0};
@@ -61,10 +61,11 @@ inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
   return curve;
 }
 
-// The pieces of a facet divided m x m, counter-clockwise; `to_plane` maps reference coordinates to the plane and
-// returns false where that fails. `reverse` turns the order (a target seen from the contactor). Back-facing pieces are
+// The pieces of a facet divided m x m, counter-clockwise; to_plane(xi, node) maps reference coordinates to the plane,
+// which are those of a node where m = 1 (-1 for none).
+// `reverse` turns the order (a target seen from the contactor). Back-facing pieces are
 // left out.
-template <class Map> void flatten(const Facet<double> &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
+template <class Map> void flatten(const Facet &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
   const bool triangle = f.triangle(), curved = quadratic(f.kind);
   auto grid = [&](double i, double j, double *xi) {
     xi[0] = triangle ? i / m : -1 + 2 * i / m, xi[1] = triangle ? j / m : -1 + 2 * j / m;
@@ -77,13 +78,11 @@ template <class Map> void flatten(const Facet<double> &f, int m, bool reverse, M
     for (int i = 0; i < size; ++i) {
       const int k = reverse ? size - 1 - i : i, next = reverse ? (k + size - 1) % size : (k + 1) % size;
       grid(corner[k][0], corner[k][1], xi);
-      if (!to_plane(xi, piece.p[i]))
-        return;
+      piece.p[i] = to_plane(xi, m == 1 ? k : -1);
       if (!curved)
         continue;
       grid(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]), xi);
-      if (!to_plane(xi, middle[i]))
-        return;
+      middle[i] = to_plane(xi, m == 1 ? size + (reverse ? next : k) : -1);
     }
     if (signed_area(piece.p, size) <= 0)
       return;

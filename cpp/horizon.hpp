@@ -21,7 +21,7 @@ struct Extent {
 // facet itself, and how far its normals lean is its own matter too: what is far away on the surface costs nothing.
 class Horizon {
 public:
-  Horizon(const Facet<double> &c, double reach) : dim_(c.dim), reach_(reach) {
+  Horizon(const Facet &c, double reach) : dim_(c.dim), reach_(reach) {
     set_frame(c);
     for (int i = 0; i < c.nodes; ++i)
       add(own_, c.x[i]);
@@ -41,7 +41,7 @@ public:
       slope = (quadratic(c.kind) ? 1.0 + 2 * CURVED : 1.0) * slope + ROUNDING;
   }
 
-  bool may_see(const Facet<double> &t) const {
+  bool may_see(const Facet &t) const {
     Extent its;
     for (int i = 0; i < t.nodes; ++i)
       add(its, t.x[i]);
@@ -72,7 +72,7 @@ private:
   static constexpr double ROUNDING = 1e-9; // likewise
   static constexpr double LEANING = 0.2;   // cosine between normals from which down no bound is given
 
-  void set_frame(const Facet<double> &c) {
+  void set_frame(const Facet &c) {
     if (dim_ == 3) {
       const Plane plane = mean_plane(c);
       std::copy(plane.origin, plane.origin + 3, origin_), std::copy(plane.n, plane.n + 3, normal_);

@@ -9,10 +9,11 @@ namespace abut {
 
 // Where the contactor sees the point v along its continuous normal, clamped to the facet: the root of
 // (v - x(xi)) x n(xi), which neighbouring facets share at their common node; theory (S3).
-inline double sees(const Facet<double> &c, const double *v) {
+inline double sees(const Facet &c, const double *v) {
   auto ahead = [&](double xi) { // > 0 where v lies ahead of xi
-    double x[3], tangent[2][3], n[3];
-    c.at(&xi, x, tangent, n);
+    const double place[2] = {xi, 0};
+    double x[3], n[3];
+    c.position.at(place, x), c.normal(place, n);
     return -((v[0] - x[0]) * n[1] - (v[1] - x[1]) * n[0]);
   };
   double low = -1, high = 1, at_low = ahead(low), at_high = ahead(high);
@@ -41,25 +42,29 @@ inline double sees(const Facet<double> &c, const double *v) {
 
 // What a contactor line sees of a target facet from one of its points.
 struct Sight2 {
-  const Facet<double> &c;
-  double eta[2] = {0, 0}, x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], gap = 0;
-  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES], d[MAX_FACET_NODES][3];
+  const Facet &c;
+  Spot<3> other;
+  double x[3], tangent[2][3], n[3], gap = 0;
+  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
 
-  explicit Sight2(const Facet<double> &own) : c(own) {}
-  bool look(const Facet<double> &t, double xi) { // the point seen from x: theory (S2)
-    c.at(&xi, x, tangent, n);
+  explicit Sight2(const Facet &own, double eta = 0) : c(own) { begin(eta); }
+  void begin(double eta) {
+    const double at[2] = {eta, 0};
+    other.begin(at);
+  }
+  bool look(const Facet &t, double xi) { // the point seen from x: theory (S2)
+    const double place[2] = {xi, 0};
+    c.position.at(place, x, tangent), c.normal(place, n);
     const double along[2] = {-n[1], n[0]};
-    if (!project(t, x, along, along, eta))
+    if (!project_line(t, x, along, other))
       return false;
-    t.at(eta, y, target_tangent);
-    gap = (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1];
-    c.values(&xi, nc, d), t.values(eta, nt, d);
+    gap = (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1];
+    c.values(place, nc), t.values(other.xi, nt);
     return true;
   }
 };
 
-inline void cut_line(const Facet<double> &c, const Facet<double> &t, int number, double reach,
-                     std::vector<Segment> &out) {
+inline void cut_line(const Facet &c, const Facet &t, int number, double reach, std::vector<Segment> &out) {
   Segment own;
   own.target = number;
   own.begin = sees(c, t.x[1]), own.end = sees(c, t.x[0]); // the target runs the other way
@@ -69,14 +74,16 @@ inline void cut_line(const Facet<double> &c, const Facet<double> &t, int number,
   Sight2 at(c);
   if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach)
     return;
-  const double *along = at.target_tangent[0], size = std::sqrt(dot(along, along, 2));
+  double y[3], slope[2][3];
+  t.position.at(at.other.xi, y, slope);
+  const double *along = slope[0], size = std::sqrt(dot(along, along, 2));
   if (along[1] * at.n[0] - along[0] * at.n[1] >= -EDGE_ON * size)
     return;
-  own.eta[0] = at.eta[0];
+  own.eta[0] = at.other.xi[0];
   out.push_back(own);
 }
 
-inline void find_hidden(const Facet<double> &c, const std::vector<Facet<double>> &targets, const std::int32_t *nodes,
+inline void find_hidden(const Facet &c, const std::vector<Facet> &targets, const std::int32_t *nodes,
                         std::vector<Segment> &segments) {
   find_hidden<double>(
       segments, nodes,
@@ -86,24 +93,22 @@ inline void find_hidden(const Facet<double> &c, const std::vector<Facet<double>>
         return end - begin > TOUCHING;
       },
       [&](const Segment &own, double middle) {
-        Sight2 at(c);
-        at.eta[0] = own.eta[0];
+        Sight2 at(c, own.eta[0]);
         return at.look(targets[own.target], middle) ? std::abs(at.gap) : HUGE_VAL;
       });
 }
 
-inline void integrate_line(const Facet<double> &c, const Facet<double> &t, double begin, double end, double start,
-                           const Rule &rule, bool axisymmetric, Accumulator &sums) {
+inline void integrate_line(const Facet &c, const Facet &t, double begin, double end, double start, const Rule &rule,
+                           bool axisymmetric, Accumulator &sums) {
   bool counted = false;
-  Sight2 at(c);
-  at.eta[0] = start;
+  Sight2 at(c, start);
   if (sums.wants_sights()) {
     for (const double xi : {0.5 * (begin + end), begin, end})
       if (at.look(t, xi)) {
         const double normal[2] = {-at.n[0], -at.n[1]};
         sums.see(at.nc, at.nt, at.gap, normal);
       }
-    at.eta[0] = start; // the integration begins at the same place with sights and without
+    at.begin(start); // the integration begins at the same place with sights and without
   }
   for (int q = 0; q < rule.n; ++q) {
     const double xi = begin + rule.t[q] * (end - begin);
@@ -119,9 +124,8 @@ inline void integrate_line(const Facet<double> &c, const Facet<double> &t, doubl
   }
 }
 
-inline void integrate_line(const Facet<double> &c, const Facet<double> &t, const Segment &own,
-                           const std::vector<Segment> &segments, const Rule &rule, bool axisymmetric,
-                           Accumulator &sums) {
+inline void integrate_line(const Facet &c, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
+                           const Rule &rule, bool axisymmetric, Accumulator &sums) {
   std::vector<std::array<double, 2>> others;
   for (int nearer : own.behind)
     others.push_back({segments[nearer].begin, segments[nearer].end});

@@ -1,6 +1,6 @@
 // One facet in space and its projections: position and tangents, inverse map along a direction.
 #pragma once
-#include "cells.hpp"
+#include "polynomial.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -31,100 +31,123 @@ template <class T> void frame(const T *n, T *t1, T *t2) {
   cross(n, t1, t2);
 }
 
-// Coordinates of one facet; `normals` (contactor only) are unit nodal normals, outward.
-template <class T> struct Facet {
+// Coordinates of one facet; `normals` (contactor only) are unit nodal normals, outward. In 2D third components are 0.
+struct Facet {
   int kind, dim, nodes;
-  T x[MAX_FACET_NODES][3];
-  T normals[MAX_FACET_NODES][3];
-  bool affine = false; // the map from the reference domain is affine: one Newton step inverts it
+  double x[MAX_FACET_NODES][3], normals[MAX_FACET_NODES][3];
+  Polynomial<3> position, direction; // of x and normals
+  bool affine = false;               // the map from the reference domain is affine: one Newton step inverts it
+  double bend = 0;                   // a Newton step of size s leaves an error below bend s^2: see `bend_of`
 
-  void values(const T *xi, T *n, T (*d)[3]) const { shape(kind, xi, n, d); }
+  void values(const double *xi, double *n) const { facet_values(kind, xi, n); }
 
-  // Position and tangents, the continuous normal of theory (S1), shape functions.
-  void at(const T *xi, T *point, T (*tangent)[3], T *normal = nullptr, T *shapes = nullptr) const {
-    T own[MAX_FACET_NODES], d[MAX_FACET_NODES][3], *n = shapes ? shapes : own;
-    shape(kind, xi, n, d);
-    for (int a = 0; a < dim; ++a) {
-      point[a] = tangent[0][a] = tangent[1][a] = T(0);
-      if (normal)
-        normal[a] = T(0);
-    }
-    for (int i = 0; i < nodes; ++i)
-      for (int a = 0; a < dim; ++a) {
-        point[a] += n[i] * x[i][a];
-        tangent[0][a] += d[i][0] * x[i][a];
-        if (dim == 3)
-          tangent[1][a] += d[i][1] * x[i][a];
-        if (normal)
-          normal[a] += n[i] * normals[i][a];
-      }
-    if (normal)
-      normalize(normal, dim);
+  // The continuous normal of theory (S1).
+  void normal(const double *xi, double *n) const {
+    direction.at(xi, n);
+    normalize(n, dim);
   }
 
   bool triangle() const { return kind == TRI3 || kind == TRI6; }
   // Reference coordinates of the middle.
-  void centre(T *xi) const { xi[0] = xi[1] = triangle() ? T(1) / T(3) : T(0); }
+  void centre(double *xi) const { xi[0] = xi[1] = triangle() ? 1.0 / 3 : 0; }
   // A near point of the reference domain, `slack` wider: componentwise, in triangles' area coordinates, so that the
-  // answer does not depend on which corner comes first.
-  void clamp(T *xi, T slack = T(0)) const {
+  // answer does not depend on which corner comes first. True where the point lay outside.
+  bool clamp(double *xi, double slack = 0) const {
     if (triangle()) {
-      T l[3] = {T(1) - xi[0] - xi[1] + slack, xi[0] + slack, xi[1] + slack};
-      if (l[0] >= T(0) && l[1] >= T(0) && l[2] >= T(0))
-        return;
-      T sum = T(0);
-      for (T &value : l)
-        value = std::max(value, T(0)), sum += value;
+      double l[3] = {1 - xi[0] - xi[1] + slack, xi[0] + slack, xi[1] + slack};
+      if (l[0] >= 0 && l[1] >= 0 && l[2] >= 0)
+        return false;
+      double sum = 0;
+      for (double &value : l)
+        value = std::max(value, 0.0), sum += value;
       for (int a = 0; a < 2; ++a)
-        xi[a] = l[a + 1] * (T(1) + T(3) * slack) / sum - slack;
-    } else {
-      for (int a = 0; a < dim - 1; ++a)
-        xi[a] = std::min(std::max(xi[a], T(-1) - slack), T(1) + slack);
+        xi[a] = l[a + 1] * (1 + 3 * slack) / sum - slack;
+      return true;
     }
+    bool outside = false;
+    for (int a = 0; a < dim - 1; ++a) {
+      const double inside = std::min(std::max(xi[a], -1 - slack), 1 + slack);
+      outside = outside || inside != xi[a];
+      xi[a] = inside;
+    }
+    return outside;
   }
 };
 
-// Finds xi with (x(xi) - from) perpendicular to both t1 and t2 (3D) or to t1 (2D): the point of the facet seen from
-// `from` along the remaining direction. Starts at the given xi; returns false where Newton does not converge.
-template <class T> bool project(const Facet<T> &facet, const T *from, const T *t1, const T *t2, T *xi) {
-  const T slack = T(1);
+// A point of a facet with its place and its slopes, from which the search for the next one starts.
+template <int W> struct Spot {
+  double xi[2], x[W], slope[2][W];
+  bool known = false; // whether x and slope are those at xi
+  void begin(const double *at) { xi[0] = at[0], xi[1] = at[1], known = false; }
+};
+
+constexpr double SAME_PLACE = 1e-12; // of the reference domain: Newton is done
+
+// Newton's method on a facet from `at`; step(x, slope, s) is one step s from a point. Returns false where it does not
+// converge within a domain wider by 1.
+template <int W, class Step> bool newton(const Facet &facet, const Polynomial<W> &map, Spot<W> &at, Step step) {
   for (int iteration = 0; iteration < 25; ++iteration) {
-    T point[3], tangent[2][3];
-    facet.at(xi, point, tangent);
-    for (int a = 0; a < facet.dim; ++a)
-      point[a] -= from[a];
-    T step[2] = {T(0), T(0)};
-    if (facet.dim == 2) {
-      const T slope = dot(tangent[0], t1, 2);
-      if (slope == T(0))
+    const bool old = at.known; // slopes of a point near by
+    at.known = false;
+    if (!old)
+      map.at(at.xi, at.x, at.slope);
+    double s[2];
+    if (!step(at.x, at.slope, s))
+      return false;
+    const double before[2] = {at.xi[0], at.xi[1]};
+    at.xi[0] -= s[0], at.xi[1] -= s[1];
+    if (facet.clamp(at.xi, 1)) {
+      if (facet.affine || std::abs(at.xi[0] - before[0]) + std::abs(at.xi[1] - before[1]) < 1e-9)
         return false;
-      step[0] = dot(point, t1, 2) / slope;
-    } else {
-      const T a = dot(tangent[0], t1, 3), b = dot(tangent[1], t1, 3), c = dot(tangent[0], t2, 3),
-              d = dot(tangent[1], t2, 3), p = dot(point, t1, 3), q = dot(point, t2, 3);
-      const T det = a * d - b * c;
-      if (det == T(0))
-        return false;
-      step[0] = (d * p - b * q) / det, step[1] = (a * q - c * p) / det;
+      continue;
     }
-    const T before[2] = {xi[0], xi[1]};
-    xi[0] -= step[0];
-    if (facet.dim == 3)
-      xi[1] -= step[1];
-    facet.clamp(xi, slack);
-    if (facet.affine)
-      return before[0] - step[0] == xi[0] && (facet.dim == 2 || before[1] - step[1] == xi[1]);
-    const T moved = std::abs(xi[0] - before[0]) + (facet.dim == 3 ? std::abs(xi[1] - before[1]) : T(0));
-    if (moved < T(1e-9)) {
-      // Quadratic convergence: one more step of this size would be at rounding level.
-      return std::abs(step[0]) + std::abs(step[1]) < T(1e-6);
+    const double size = std::abs(s[0]) + std::abs(s[1]);
+    if (facet.affine || size < SAME_PLACE || (!old && facet.bend * size * size < SAME_PLACE)) {
+      map.at(at.xi, at.x);
+      at.known = true;
+      return true;
     }
   }
   return false;
 }
 
+// Finds the point of the facet seen from `from` along n (3D), of any length.
+inline bool project(const Facet &facet, const double *from, const double *n, Spot<3> &at) {
+  return newton(facet, facet.position, at, [&](const double *x, const double (*slope)[3], double *s) {
+    const double d[3] = {x[0] - from[0], x[1] - from[1], x[2] - from[2]};
+    double p[3], q[3];
+    cross(slope[1], n, p), cross(n, slope[0], q);
+    const double det = dot(slope[0], p, 3);
+    s[0] = dot(d, p, 3) / det, s[1] = dot(d, q, 3) / det;
+    return det != 0;
+  });
+}
+
+// Finds the point of the line seen from `from` perpendicular to `along` (2D).
+inline bool project_line(const Facet &facet, const double *from, const double *along, Spot<3> &at) {
+  return newton(facet, facet.position, at, [&](const double *x, const double (*slope)[3], double *s) {
+    const double d[2] = {x[0] - from[0], x[1] - from[1]}, rate = dot(slope[0], along, 2);
+    s[0] = dot(d, along, 2) / rate, s[1] = 0;
+    return rate != 0;
+  });
+}
+
+// Half the largest second derivative over the slopes at the origin, eight times that for directions up to 60 degrees
+// off the normal and slopes that change fourfold over the facet.
+inline double bend_of(const Facet &f) {
+  const auto &c = f.position.c;
+  auto size = [&](int m) { return m < f.position.terms ? std::sqrt(dot(c[m], c[m], 3)) : 0.0; };
+  const double second = std::max({2 * (size(4) + size(6) + size(8)), 2 * (size(5) + size(7) + size(8)),
+                                  size(3) + 2 * size(6) + 2 * size(7) + 4 * size(8)});
+  if (f.dim == 2)
+    return 4 * second / size(1);
+  double area[3];
+  cross(c[1], c[2], area);
+  return 4 * second * (size(1) + size(2)) / std::sqrt(dot(area, area, 3));
+}
+
 // Is the map from the reference domain affine: every node where the first corners put it?
-inline bool is_affine(const Facet<double> &f) {
+inline bool is_affine(const Facet &f) {
   double origin[3], edge[2][3], size = 0; // x = origin + sum of edges times reference coordinates
   const double scale = f.dim == 2 || !f.triangle() ? 0.5 : 1.0;
   for (int a = 0; a < f.dim; ++a) {

@@ -10,16 +10,20 @@
 
 namespace abut {
 
-Facet<double> SurfaceView::facet(std::size_t f) const {
-  Facet<double> out;
+Facet SurfaceView::facet(std::size_t f) const {
+  Facet out;
   out.kind = kinds[f], out.dim = dim, out.nodes = NODES[out.kind];
   for (int i = 0; i < out.nodes; ++i)
-    for (int a = 0; a < dim; ++a) {
-      out.x[i][a] = points[std::size_t(nodes[9 * f + i]) * dim + a];
-      if (normals)
-        out.normals[i][a] = normals[(9 * f + i) * dim + a];
+    for (int a = 0; a < 3; ++a) {
+      out.x[i][a] = a < dim ? points[std::size_t(nodes[9 * f + i]) * dim + a] : 0;
+      out.normals[i][a] = a < dim && normals ? normals[(9 * f + i) * dim + a] : 0;
     }
+  out.position.interpolate(out.kind, out.x);
+  out.direction.interpolate(out.kind, out.normals);
   out.affine = is_affine(out);
+  if (out.affine)
+    out.position.terms = 3;
+  out.bend = bend_of(out);
   return out;
 }
 
@@ -27,7 +31,7 @@ namespace {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
 
-Box box_of(const Facet<double> &f) {
+Box box_of(const Facet &f) {
   Box box;
   for (int i = 0; i < f.nodes; ++i)
     box.add(f.x[i], f.dim);
@@ -51,29 +55,26 @@ struct Over {
 // What it sees of a target facet from a point of the plane.
 struct Sight3 {
   const Contactor3 &c;
-  double xi[2], eta[2], x[3], tangent[2][3], n[3], y[3], target_tangent[2][3], turned[2][3];
-  double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
+  Spot<2> own;
+  Spot<3> other;
+  double x[3], tangent[2][3], n[3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
 
-  explicit Sight3(const Contactor3 &own) : c(own) {}
+  Sight3(const Contactor3 &facet, const double *xi, const double *eta) : c(facet) { begin(xi, eta); }
+  void begin(const double *xi, const double *eta) { own.begin(xi), other.begin(eta); }
   // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
-  double look(const Facet<double> &t, Point2 p) {
-    if (!c.locate(p, xi))
+  double look(const Facet &t, Point2 p) {
+    if (!c.locate(p, own))
       return HUGE_VAL;
-    const double *t1 = c.plane.e1, *t2 = c.plane.e2;
-    if (c.flat) {
-      c.facet.at(xi, x, tangent, nullptr, nc);
+    c.facet.position.at(own.xi, x, tangent);
+    if (c.flat)
       std::copy(c.plane.n, c.plane.n + 3, n);
-    } else {
-      c.facet.at(xi, x, tangent, n, nc);
-      frame(n, turned[0], turned[1]);
-      t1 = turned[0], t2 = turned[1];
-    }
-    if (!project(t, x, t1, t2, eta))
+    else
+      c.facet.normal(own.xi, n);
+    if (!project(t, x, n, other))
       return HUGE_VAL;
-    t.at(eta, y, target_tangent, nullptr, nt);
-    return (y[0] - x[0]) * n[0] + (y[1] - x[1]) * n[1] + (y[2] - x[2]) * n[2];
+    return (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1] + (other.x[2] - x[2]) * n[2];
   }
-  void begin(const double *own, const double *other) { std::copy(own, own + 2, xi), std::copy(other, other + 2, eta); }
+  void find_shapes(const Facet &t) { c.facet.values(own.xi, nc), t.values(other.xi, nt); }
 };
 
 // Moves vertices where two curves cross on to both; false for a polygon without area.
@@ -101,7 +102,7 @@ double scale_of(const Piece &piece) {
   return scale;
 }
 
-void cut_pieces(const Over &over, const Facet<double> &t, Segment own, double reach, std::vector<Segment> &out) {
+void cut_pieces(const Over &over, const Facet &t, Segment own, double reach, std::vector<Segment> &out) {
   const Piece &mine = over.piece(own.mine), &theirs = over.piece(own.theirs);
   Polygon subject;
   for (int i = 0; i < mine.size; ++i)
@@ -111,19 +112,20 @@ void cut_pieces(const Over &over, const Facet<double> &t, Segment own, double re
   Point2 corner[MAX_CLIP], middle;
   if (!finish(over, polygon, scale_of(mine), corner, middle))
     return;
-  Sight3 at(over.c);
-  over.c.facet.centre(at.xi), t.centre(at.eta);
+  over.c.facet.centre(own.xi), t.centre(own.eta);
+  Sight3 at(over.c, own.xi, own.eta);
   if (!(std::abs(at.look(t, middle)) <= reach))
     return;
-  double facing[3];
-  cross(at.target_tangent[0], at.target_tangent[1], facing);
+  double y[3], tangent[2][3], facing[3];
+  t.position.at(at.other.xi, y, tangent);
+  cross(tangent[0], tangent[1], facing);
   if (dot(facing, at.n, 3) >= -EDGE_ON * std::sqrt(dot(facing, facing, 3)))
     return;
-  std::copy(at.xi, at.xi + 2, own.xi), std::copy(at.eta, at.eta + 2, own.eta);
+  std::copy(at.own.xi, at.own.xi + 2, own.xi), std::copy(at.other.xi, at.other.xi + 2, own.eta);
   out.push_back(own);
 }
 
-void find_hidden(const Over &over, const std::vector<Facet<double>> &targets, const std::int32_t *nodes,
+void find_hidden(const Over &over, const std::vector<Facet> &targets, const std::int32_t *nodes,
                  std::vector<Segment> &segments) {
   find_hidden<Point2>(
       segments, nodes,
@@ -146,33 +148,33 @@ void find_hidden(const Over &over, const std::vector<Facet<double>> &targets, co
         return common.size > 2 && signed_area(corner, common.size) > TOUCHING * scale_of(over.piece(a.mine));
       },
       [&](const Segment &own, Point2 middle) {
-        Sight3 at(over.c);
-        at.begin(own.xi, own.eta);
+        Sight3 at(over.c, own.xi, own.eta);
         return std::abs(at.look(targets[own.target], middle));
       });
 }
 
-void integrate_part(const Over &over, const Facet<double> &t, const Segment &own, Polygon polygon, const Rule &rule,
+void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygon polygon, const Rule &rule,
                     Accumulator &sums) {
   Point2 corner[MAX_CLIP], middle;
   if (!finish(over, polygon, scale_of(over.piece(own.mine)), corner, middle))
     return;
   sums.count_segment();
-  Sight3 at(over.c);
+  Sight3 at(over.c, own.xi, own.eta);
   if (sums.wants_sights()) {
     auto see = [&](Point2 p) {
       const double gap = at.look(t, p), normal[3] = {-at.n[0], -at.n[1], -at.n[2]};
-      if (gap != HUGE_VAL)
-        sums.see(at.nc, at.nt, gap, normal);
+      if (gap == HUGE_VAL)
+        return;
+      at.find_shapes(t);
+      sums.see(at.nc, at.nt, gap, normal);
     };
-    at.begin(own.xi, own.eta);
     see(middle);
     for (int i = 0; i < polygon.size; ++i)
       see(corner[i]);
+    at.begin(own.xi, own.eta); // integrals are the same with sights and without
   }
-  at.begin(own.xi, own.eta); // integrals are the same with sights and without
   integrate_polygon(
-      polygon, [&](const Vertex &v) { return over.curve(v); }, rule,
+      polygon, [&](const Vertex &v) { return over.curve(v); }, rule, !over.c.flat,
       [&](Point2 p, double weight) {
         if (weight == 0)
           return;
@@ -183,12 +185,13 @@ void integrate_part(const Over &over, const Facet<double> &t, const Segment &own
         cross(at.tangent[0], at.tangent[1], area);
         const double stretch = std::sqrt(dot(area, area, 3)) / dot(area, over.c.plane.n, 3);
         const double normal[3] = {-at.n[0], -at.n[1], -at.n[2]};
-        sums.add(over.c.facet.kind, at.xi, at.nc, at.nt, weight * stretch, gap, normal);
+        at.find_shapes(t);
+        sums.add(over.c.facet.kind, at.own.xi, at.nc, at.nt, weight * stretch, gap, normal);
       });
 }
 
-void integrate_pieces(const Over &over, const Facet<double> &t, const Segment &own,
-                      const std::vector<Segment> &segments, const Rule &rule, Accumulator &sums) {
+void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
+                      const Rule &rule, Accumulator &sums) {
   if (own.behind.empty()) {
     integrate_part(over, t, own, own.polygon, rule, sums);
     return;
@@ -205,17 +208,27 @@ void integrate_pieces(const Over &over, const Facet<double> &t, const Segment &o
     integrate_part(over, t, own, part, rule, sums);
 }
 
-void cut_facet(const Over &over, const Facet<double> &t, int number, int subdivide, double reach,
+// What is asked of a target facet: its number, its points' numbers, how often it is divided.
+struct Asked {
+  int number;
+  const std::int32_t *points;
+  int subdivide;
+};
+
+void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reach, Carried &carried,
                std::vector<Segment> &out) {
   const Contactor3 &c = over.c;
   const std::size_t before = over.theirs.size();
   flatten(
-      t, subdivide, true,
-      [&](const double *eta, Point2 &p) {
-        double y[3], tangent[2][3];
-        t.at(eta, y, tangent);
-        p = c.carry(y);
-        return true;
+      t, asked.subdivide, true,
+      [&](const double *eta, int node) {
+        if (node >= 0 && c.flat)
+          return c.plane.flat(t.x[node]);
+        if (node >= 0)
+          return carried.find(asked.points[node], [&] { return c.carry(t.x[node]); });
+        double y[3];
+        t.position.at(eta, y);
+        return c.carry(y);
       },
       over.theirs);
   const int own = int(c.pieces.size());
@@ -229,7 +242,7 @@ void cut_facet(const Over &over, const Facet<double> &t, int number, int subdivi
       if (!a.meets(b, 2))
         continue;
       Segment segment;
-      segment.target = number, segment.mine = mine, segment.theirs = own + int(theirs);
+      segment.target = asked.number, segment.mine = mine, segment.theirs = own + int(theirs);
       cut_pieces(over, t, segment, reach, out);
     }
 }
@@ -245,7 +258,7 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
   out.mass.assign(81 * contactor.facets, 0), out.covered.assign(contactor.facets, 0);
   out.segments.assign(contactor.facets, 0);
 
-  std::vector<Facet<double>> targets(target.facets);
+  std::vector<Facet> targets(target.facets);
   std::vector<Box> boxes(target.facets);
   for (std::size_t t = 0; t < target.facets; ++t)
     targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
@@ -258,8 +271,9 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     std::vector<int> found;
     std::vector<Piece> pieces;
     std::vector<Segment> segments;
+    Carried carried;
     for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
-      const Facet<double> c = contactor.facet(f);
+      const Facet c = contactor.facet(f);
       Box swept = box_of(c);
       for (int i = 0; i < c.nodes; ++i) {
         double far[3];
@@ -293,17 +307,18 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
           cut_line(c, targets[t], t, options.reach, segments);
         if (!options.hidden)
           find_hidden(c, targets, target.nodes, segments);
-        each([&](const Facet<double> &t, const Segment &own, const Rule &rule) {
+        each([&](const Facet &t, const Segment &own, const Rule &rule) {
           integrate_line(c, t, own, segments, rule, options.axisymmetric, sums);
         });
       } else {
         const Contactor3 own(c, subdivide_c[f]);
         const Over over{own, pieces};
+        carried.begin();
         for (int t : found)
-          cut_facet(over, targets[t], t, subdivide_t[t], options.reach, segments);
+          cut_facet(over, targets[t], {t, target.nodes + 9 * t, subdivide_t[t]}, options.reach, carried, segments);
         if (!options.hidden)
           find_hidden(over, targets, target.nodes, segments);
-        each([&](const Facet<double> &t, const Segment &own, const Rule &rule) {
+        each([&](const Facet &t, const Segment &own, const Rule &rule) {
           integrate_pieces(over, t, own, segments, rule, sums);
         });
       }

@@ -13,7 +13,7 @@ struct SurfaceView {
   const std::uint8_t *kinds;
   const std::int32_t *nodes;       // facets x 9
   const double *normals = nullptr; // facets x 9 x dim, contactor only
-  Facet<double> facet(std::size_t f) const;
+  Facet facet(std::size_t f) const;
 };
 
 // Rules with 1..n points: row n-1 of each table holds the rule with n points.
@@ -75,9 +75,9 @@ struct Coupling {
 };
 
 // `exact_rules` give the moments that are to be met. Points per direction so that int N_i N_j over every facet alone is
-// met to `tolerance`, from `least` up; and the number of subdivisions per direction that the curvature of the facet's
+// met to the facet's `tolerance`; and the number of subdivisions per direction that the curvature of the facet's
 // edges asks for.
-void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
+void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, const double *tolerance,
           bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions);
 
 Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,

@@ -12,13 +12,16 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import abut
+from abut.cells import CELLS
 from abut.cli import main
 from abut.diagnosis import Finding, Report, check
-from abut.diagnosis.quality import CORNERS, quality
+from abut.diagnosis.quality import quality
 from abut.errors import InputError
 from abut.job import load_job
+from abut.linear.cost_model import LARGE, MEMORY, Effort, of_stiffness, seconds
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.shapes import CORNERS
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 TEXT = (EXAMPLES / "two-blocks" / "job.toml").read_text()
@@ -100,6 +103,15 @@ def test_bodies_far_apart_and_gaps_that_nothing_closes() -> None:
     near = check(blocks(box(x=(2, 8), y=(2, 8), z=(10.5, 15), cells=(5, 5, 3))))
     assert "nothing closes the gap of 0.5" in said(near, "warning")
     assert near.status == 0
+
+
+@pytest.mark.parametrize(("offset", "factor", "closes"), [(-0.6, 1.0, True), (0.6, -1.0, True), (-0.6, 0.5, False)])
+def test_offsets_that_come_with_time_close_gaps(offset: float, factor: float, closes: bool) -> None:
+    """Offset times the amplitude's factor counts where it closes the gap of 0.5 most; the supports move by 0.02."""
+    course = abut.Amplitude(((0.0, 0.0), (0.5, factor), (1.0, 0.0)))
+    contact = abut.Contact("upper.bottom", "lower.top", offset=offset, amplitude=course)
+    report = check(blocks(box(x=(2, 8), y=(2, 8), z=(10.5, 15), cells=(5, 5, 3)), contacts=[contact]))
+    assert closes != any("nothing closes the gap" in finding.what for finding in report.findings)
 
 
 def test_deep_overlap() -> None:
@@ -281,8 +293,6 @@ def test_findings_check_themselves() -> None:
 def test_estimate_of_memory() -> None:
     """Within the factor of three that the page promises of what docs/performance.md measured (tilted, then the ball, then
     hex20 and tet10; one core)."""
-    from abut.diagnosis.cost import LAWS
-
     for solver, degree, n, megabytes in (
         ("direct", 1, 9591, 172),
         ("amg", 1, 154686, 769),
@@ -291,15 +301,13 @@ def test_estimate_of_memory() -> None:
         ("amg", 2, 154011, 1370),
         ("amg", 2, 154686, 865),
     ):
-        law = LAWS[3, solver, degree]
-        assert 1 / 3 < (law.base + law.memory * n**law.power) / megabytes < 3
+        assert 1 / 3 < MEMORY[3, solver, degree].megabytes(n) / megabytes < 3
 
 
 @pytest.mark.parametrize(("dim", "power"), [(2, 1.5), (3, 2.0)])
 def test_estimate_of_time_grows_as_nested_dissection(dim: int, power: float) -> None:
     """Operations of a factorisation: n^(3/2) of a square, n^2 of a cube; of a bar ten times as long, ten times those of its
     tenth part."""
-    from abut.diagnosis.time_estimate import effort
 
     def fronts(n: int, length: int = 1) -> float:
         mesh = (
@@ -307,14 +315,26 @@ def test_estimate_of_time_grows_as_nested_dissection(dim: int, power: float) -> 
             if dim == 2
             else box(x=(0, length), cells=(n * length, n, n), cell="hex8")
         )
-        plane = {"plane": "strain"} if dim == 2 else {}
-        model = abut.Model(mesh, [abut.Solid(body, STEEL) for body in mesh.bodies], **plane)
-        return effort(model, mesh.points.size, []).fronts
+        return of_stiffness(mesh, mesh.points.size).fronts
 
     coarse, fine = (8, 16) if dim == 3 else (20, 40)
     unknowns = [dim * (n + 1) ** dim for n in (coarse, fine)]
     assert np.log(fronts(fine) / fronts(coarse)) / np.log(unknowns[1] / unknowns[0]) == pytest.approx(power, rel=1e-9)
     assert fronts(fine, 10) == pytest.approx(10 * fronts(fine), rel=0.15)  # nodes at the ends count once
+
+
+@pytest.mark.parametrize("cell", ["hex8", "hex20"])
+def test_expected_times_agree_with_the_choice_of_the_solver(cell: str) -> None:
+    """Both are of one model: where multigrid is chosen by far, it is the faster one by its estimate, and conversely. Of a
+    cube with a contact on one side, by eight times more and less displacements than where the choice turns."""
+    degree = CELLS[cell].degree
+    for times, faster in ((1 / 8, "direct"), (8, "amg")):
+        n = round((times * LARGE[degree] / 3) ** (1 / 3) / degree)
+        mesh = box(cells=(n, n, n), cell=cell)
+        stiffness = of_stiffness(mesh, mesh.points.size)
+        own = Effort(stiffness, {cell: n**3}, multipliers=n**2, pairs=1, bodies=1, cutting=0.0, steps=1, stretched=1.0)
+        expected = {solver: seconds(own, solver)["solve"] for solver in ("direct", "amg")}
+        assert min(expected, key=lambda solver: expected[solver]) == faster
 
 
 LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not line.startswith("#")]

@@ -136,7 +136,7 @@ def test_beam_pulled_off_at_its_tip(unit: str) -> None:
     with pytest.raises(abut.SingularModelError, match=r"body 'beam' is free to .*: the loads pull it off its contact"):
         abut.solve(model, seen.append)
     assert not [row for row in seen if isinstance(row, Iteration)]
-    fails_with(model, "body 'beam' is free to rotate about z")
+    fails_with(model, "body 'beam' is free to")
     assert check(scaled(9.99)).status == 0
     assert abut.solve(scaled(9.99)).converged
 

@@ -158,7 +158,7 @@ def test_a_cell_in_two_bodies_is_refused() -> None:
 def test_cells_outside_every_group_are_left_out_with_a_note(tmp_path: Path) -> None:
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     raw = RawMesh(points, {"body": {"tri3": np.array([[0, 1, 2]])}, "": {"tri3": np.array([[1, 3, 2]])}})
-    mesh = build(raw, "part.msh")
+    mesh = build(Mesh, raw, "part.msh")
     assert mesh.notes == ("part.msh: 1 cells outside every group of cells were left out",)
     assert len(mesh.points) == 3
 

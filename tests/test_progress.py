@@ -16,7 +16,6 @@ import abut
 from abut.cli import main, progress
 from abut.cli.progress import Progress
 from abut.job import load_job
-from abut.linear.choice import expected_seconds
 from abut.solution import Iteration, Phase
 from test_restart import STEPS, job
 
@@ -109,13 +108,6 @@ def test_stages_come_in_order(tmp_path: Path) -> None:
     ]  # fmt: skip
     assert seen[3].startswith("factorising ")
     assert [name for name in seen if name.startswith("step ")] == [f"step {k} of {STEPS}" for k in range(1, STEPS + 1)]
-
-
-def test_estimates_grow_as_theory_says() -> None:
-    """Multigrid in proportion to the size; factorisation faster than that, and more so in 3D."""
-    for kind, dim, power in (("amg", 3, 1.0), ("direct", 2, 1.5), ("direct", 3, 1.7)):
-        ratio = expected_seconds(kind, 200_000, dim) / expected_seconds(kind, 100_000, dim)
-        assert ratio == pytest.approx(2.0**power)
 
 
 def test_reader_that_goes_away_does_not_cost_the_results(tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.contact.coupling import couple, surface_degree
-from abut.contact.geometry import by_kind, full_moments, nodal_normals
+from abut.contact.geometry import by_kind, full_moments, nodal_normals, turning_within
+from abut.contact.quadrature import moment_tolerance
 from abut.mesh.surface import Surface
 from surfaces import FACETS_2D, FACETS_3D, FLAT, PAIRS, SHAPES, grid, line, moved, opposed, planar, side
 
@@ -66,10 +67,13 @@ def by_point(matrix: object, n: int, dim: int) -> Array:
 def test_covered_facets_keep_their_area(kc: str, kt: str, seed: int, shape: str) -> None:
     """Fully opposite a larger target every contactor facet is tiled without gap or overlap: its segments add up to its
     own area. Flat: to rounding, also where edges are curved in the plane. Arched: the area element has a square root,
-    which the rule meets as it meets the facet's moments, to 1e-12 of the area; tri3 is flat."""
+    which the rule meets as it meets the facet's moments, theory (Q6); tri3 is flat."""
     contactor, target = opposed(kc, kt, seed, shape, size=2.2, shift=0.1)
     covered = couple(contactor, target, surface_degree(contactor)).covered
-    assert covered / areas(contactor) == pytest.approx(1.0, abs=ROUNDING if shape in FLAT else 1e-11)
+    tolerance = np.full(len(contactor), ROUNDING)
+    if shape not in FLAT:
+        tolerance = 10 * moment_tolerance(contactor.dim, turning_within(contactor, nodal_normals(contactor)))
+    assert np.all(np.abs(covered / areas(contactor) - 1.0) <= tolerance)
 
 
 @every_pair

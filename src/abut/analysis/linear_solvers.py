@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from abut.linear.choice import Direct, choose, expected_seconds
+from abut.linear.choice import Direct, choose
+from abut.linear.cost_model import of_stiffness, preparing
 from abut.linear.iterative import Multigrid
 from abut.linear.solver import Count, LinearSolver
 from abut.model import Model
@@ -62,4 +63,4 @@ def setting_up(solver: LinearSolver, problem: ContactProblem) -> tuple[str, floa
     kind = "direct" if solver.count is None else "amg"
     what = "factorising" if kind == "direct" else "setting up multigrid for"
     size = f"{problem.n_free:,}".replace(",", " ")
-    return f"{what} {size} displacements", expected_seconds(kind, problem.n_free, problem.model.dim)
+    return f"{what} {size} displacements", preparing(of_stiffness(problem.model.mesh, problem.n_free), kind)

@@ -30,11 +30,13 @@ from abut.contact.nodal_recovery import (
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.model import METHODS
+from abut.model.offset import offsets
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
-from abut.problem.contact_pairs import Pair, offsets
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.terms import Motion
 from abut.solution import ContactResult, RigidResult, Step
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
@@ -44,7 +46,7 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
     """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others.
 
     Raises SingularModelError for displacements that no units explain."""
-    backend, loaded, state = assembled.backend, assembled.loaded, attempt.state
+    bodies, loaded, state = assembled.bodies, assembled.loaded, attempt.state
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
     model, held, springs = problem.model, problem.held, problem.springs
     displacement = springs.without_motions(problem.displacement(state))
@@ -54,7 +56,8 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    internal = backend.internal(displacement)
+    motion = Motion(time, displacement, state.history.of(bodies.name))
+    internal = bodies.evaluate(motion, motion).force
     reaction = internal - loaded.forces @ factors - contact_force
     nodal = displacement.reshape(-1, dim)
     carried = reaction if held.links is None else reaction - held.links.forces(reaction)
@@ -102,7 +105,7 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
         converged=attempt.converged,
         iterations=attempt.iterations,
         displacement=nodal,
-        stress=backend.stress(nodal, time, loaded.temperature @ factors),
+        stress=bodies.stress(motion),
         reaction=reaction.reshape(-1, dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from abut._core import couple_surfaces, plan_facets
 from abut.cells import CELLS
-from abut.contact.geometry import by_kind, facet_sizes, nodal_normals
-from abut.contact.quadrature import MOMENT_TOLERANCE, rule_tables
+from abut.contact.geometry import by_kind, facet_sizes, is_plane, nodal_normals, turning_within
+from abut.contact.quadrature import moment_tolerance, rule_tables
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 
-CURVED_POINTS = 6  # per direction, where the contactor's normal turns within a facet
+CURVED_POINTS = {2: 6, 3: 3}  # by dimension, per direction, where the contactor's normal turns within a facet
 SAME_NORMAL = 1e-9
 ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
 
@@ -148,10 +148,11 @@ def couple(
     normals = nodal_normals(contactor)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
     part = contactor if only is None else contactor.part(facets)
-    order_c, split_c = _plan(part, tables, points)
-    order_t, split_t = _plan(target, tables, points)
+    turning = turning_within(part, normals[facets])
+    order_c, split_c = _plan(part, tables, points, turning)
+    order_t, split_t = _plan(target, tables, points, _turning_of_target(target))
     if points == "auto":
-        order_c = np.where(_varying(part, normals[facets]), np.maximum(order_c, CURVED_POINTS), order_c)
+        order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
     raw = couple_surfaces(
         part.points, part.kinds, part.nodes, np.ascontiguousarray(normals[facets]),
         target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
@@ -198,7 +199,7 @@ def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[s
 
 
 def _plan(
-    surface: Surface, tables: NDArray[np.float64], points: int | str
+    surface: Surface, tables: NDArray[np.float64], points: int | str, turning: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     order, split = plan_facets(
         surface.points,
@@ -206,7 +207,7 @@ def _plan(
         surface.nodes,
         tables,
         rule_tables("gauss"),
-        MOMENT_TOLERANCE,
+        moment_tolerance(surface.dim, turning),
         surface.axisymmetric,
     )
     if points != "auto":
@@ -214,11 +215,14 @@ def _plan(
     return order, split
 
 
-def _varying(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Facets over which the continuous normal turns: the place looked at on the target is no polynomial there."""
-    used = (surface.nodes >= 0)[..., None]
-    spread = np.where(used, normals, -np.inf).max(axis=1) - np.where(used, normals, np.inf).min(axis=1)
-    return np.asarray(spread.max(axis=1) > SAME_NORMAL)
+def _turning_of_target(target: Surface) -> NDArray[np.float64]:
+    """How far the normals of each facet turn, (n_facets,); zero where it doesn't matter, or where they cannot be found."""
+    if target.dim == 2 or is_plane(target):
+        return np.zeros(len(target))
+    try:
+        return turning_within(target, nodal_normals(target))
+    except InputError:  # a facet without a normal at a node: the contactor may still see the others
+        return np.zeros(len(target))
 
 
 def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:

@@ -19,6 +19,7 @@ from abut.mesh.surface import Surface
 
 CREASE = np.cos(np.deg2rad(40.0))  # facets that meet at a larger angle keep their own normals at the common edge
 FLAT = 1e-9  # area element at a facet's node over the largest at its nodes, from which down the normal is lost
+PLANE = 1e-12  # of the largest coordinate: heights below are rounding
 
 _CORNER_XI = {
     1: np.array([[-1.0], [1.0]]),
@@ -116,6 +117,31 @@ def nodal_normals(surface: Surface) -> NDArray[np.float64]:
     result = np.zeros_like(own)
     result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
     return result
+
+
+def mean_normals(surface: Surface) -> NDArray[np.float64]:
+    """One unit normal a facet, the mean of those at its nodes, (n_facets, dim)."""
+    normal = nodal_normals(surface).sum(axis=1)
+    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
+
+
+def turning_within(surface: Surface, normals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """About the angle by which each facet's normals (n_facets, 9, dim) turn, (n_facets,): twice the largest distance of
+    those at its nodes from their mean. Padded normals are zero."""
+    used = surface.nodes >= 0
+    mean = normals.sum(axis=1) / used.sum(axis=1, keepdims=True)
+    away = normals - mean[:, None]
+    return 2.0 * np.sqrt(np.where(used, np.einsum("fna,fna->fn", away, away), 0.0).max(axis=1))
+
+
+def is_plane(surface: Surface) -> bool:
+    """Whether all nodes of a surface in 3D lie in one plane, to rounding."""
+    first = surface.points[surface.nodes[0, :3]]
+    normal = np.cross(first[1] - first[0], first[2] - first[0])
+    used = surface.nodes >= 0
+    height = (surface.points @ normal)[surface.nodes[used]]
+    size = np.abs(surface.points).max() * np.linalg.norm(normal)
+    return bool(np.ptp(height) <= PLANE * size)
 
 
 def beside_others(surface: Surface) -> NDArray[np.bool_]:

@@ -1,7 +1,7 @@
 """Rules on segments: Gauss-Legendre and closed Newton-Cotes, as tables for the compiled core.
 
 A segment is a set of cones from an apex to its edges. Along an edge the rule lives on [0, 1]; from the apex outward it
-carries the weight r of the cone, theory (Q1), so that n x n points are exact for polynomials of degree 2 n - 2 (Gauss);
+carries the weight r of the cone, theory (Q1), so that n x n points are exact for polynomials of degree 2 n - 1 (Gauss);
 theory (Q3).
 """
 
@@ -12,15 +12,26 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import roots_jacobi
 
 MAX_POINTS = 16
-MOMENT_TOLERANCE = 1e-12  # of a facet's own int N_i N_j, relative to its area: theory (Q4)
+MOMENT_TOLERANCE = 1e-12  # of a plane facet's own int N_i N_j, relative to its area: theory (Q4)
+CURVED_TOLERANCE = 0.1  # of a curved one's, times the fourth power of the angle by which its normals turn, and at most
+MOST_TOLERANCE = 1e-5
+
+
+def moment_tolerance(dim: int, turning: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How exactly each facet has to meet its own int N_i N_j, relative to its area, (n_facets,): theory (Q6).
+
+    turning: (n_facets,) angle by which its normals turn."""
+    curved = CURVED_TOLERANCE * turning**4 if dim == 3 else np.zeros(len(turning))
+    return np.clip(curved, MOMENT_TOLERANCE, MOST_TOLERANCE)
 
 
 def _gauss(n: int) -> tuple[NDArray[Any], ...]:
     x, w = np.polynomial.legendre.leggauss(n)
-    t, wt = 0.5 * (x + 1.0), 0.5 * w
-    return t, wt, t, wt * t
+    y, v = roots_jacobi(n, 0.0, 1.0)  # weight 1 + y
+    return 0.5 * (x + 1.0), 0.5 * w, 0.5 * (y + 1.0), 0.25 * v
 
 
 def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:

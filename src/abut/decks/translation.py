@@ -100,24 +100,11 @@ def translate(deck: Deck) -> Translation:
     with reasons.gathered():
         rigid = rigid_bodies(deck, moving, plane)
     notes += _idle(deck, groups)
-    thickness = 1.0
-    with reasons.gathered():
-        thickness = _thickness(deck, plane, notes)
-    supports: list[Support] = []
-    equations: list[Equation] = []
-    loads: list[Load] = []
-    with reasons.gathered():
-        bound = bonds(deck, groups, plane)
-        supports = _supports(bound, groups)
-        equations = _equations(bound, groups)
-        loads += _forces(bound, groups, plane, thickness)
-    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
-        with reasons.gathered():
-            loads += others
+    prescribed = _prescribed(deck, groups, parts, plane, notes, reasons)
     reasons.tell()
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
-    mesh = build(groups.raw(), deck.path)
+    mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
@@ -130,15 +117,43 @@ def translate(deck: Deck) -> Translation:
     model = Model(
         mesh,
         solids=solids,
-        supports=supports,
-        loads=loads,
+        supports=prescribed.supports,
+        loads=prescribed.loads,
         contacts=contacts,
-        equations=equations,
+        equations=prescribed.equations,
         rigid=rigid,
         plane=plane,
         solve=_options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored)
+
+
+@dataclass(frozen=True)
+class _Prescribed:
+    """What acts on the bodies of a deck."""
+
+    supports: list[Support]
+    equations: list[Equation]
+    loads: list[Load]
+
+
+def _prescribed(
+    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, notes: list[str], reasons: Reasons
+) -> _Prescribed:
+    """Supports, equations and loads; ``notes`` and ``reasons`` get what there is to say."""
+    thickness = 1.0
+    with reasons.gathered():
+        thickness = _thickness(deck, plane, notes)
+    result = _Prescribed([], [], [])
+    with reasons.gathered():
+        bound = bonds(deck, groups, plane)
+        result.supports.extend(_supports(bound, groups))
+        result.equations.extend(_equations(bound, groups))
+        result.loads.extend(_forces(bound, groups, plane, thickness))
+    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
+        with reasons.gathered():
+            result.loads.extend(others)
+    return result
 
 
 def _idle(deck: Deck, groups: Groups) -> list[str]:

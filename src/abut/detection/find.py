@@ -12,17 +12,15 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut import checks
+from abut.contact.contactor_choice import Choice, choose, side
 from abut.detection.opposing_facets import Facing, Outside, facing, outside, seen_by
 from abut.errors import InputError, nearest
+from abut.materials.material import Material
+from abut.materials.softest import contact_modulus
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Solid
 
 AUTO = "auto:"  # what the names of found surfaces begin with
-ALIKE = 1.1  # ratio of Young's moduli up to which neither body is the softer one
-MUCH_FINER = 3.0  # ratio of facet sizes from which on a finer contactor would show the target's kinks
-FLAT = np.cos(np.deg2rad(1.0))  # facets all within that of one plane have no kinks to show
-BARE = 0.55  # share of the contactor's facets that lies opposite: with less a pressure stands on facets that are mostly bare
-BARER = 0.1  # difference of such shares that is worth a choice
 BEND = np.cos(np.deg2rad(45.0))  # facets beyond a sharper edge are not added around those that face something
 
 
@@ -71,9 +69,9 @@ def find_contacts(
 ) -> tuple[FoundContact, ...]:
     """Surfaces on the outside of different bodies that face each other: one pair for two bodies and each connected patch.
 
-    solids: the softer body becomes the contactor, and one without a material counts as rigid; among equals, or where there
-    are no solids, the finer mesh does, unless it is more than three times finer than a curved target. reach: the largest
-    gap, length (default: half the sum of two facets' sizes; overlaps count up to half of that). bodies: look at these only.
+    The contactor is chosen as in ``abut.contact.contactor_choice``. solids: the bodies' materials; a body without one counts
+    as rigid, and where there are no solids all count as alike. reach: the largest gap, length (default: half the sum of
+    two facets' sizes; overlaps count up to half of that). bodies: look at these only.
     Each patch is widened by the facets around it, so that contact may move, and the target by what the contactor sees. A
     facet may belong to several pairs.
     Raises InputError for a reach that is not positive and for unknown bodies.
@@ -96,22 +94,23 @@ def find_contacts(
     names = [name for name in mesh.bodies if bodies is None or name in bodies]
     every = outside(mesh, names)
     patches = _patches(every, facing(every, reach))
-    young = {name: np.inf for name in names if solids} | {solid.body: solid.material.young for solid in solids}
-    sides = [_choose(every, patch, young) for patch in patches]
+    materials = {solid.body: solid.material for solid in solids} or None
     count: dict[tuple[int, int], int] = {}
     result = []
-    for patch, (side, reason) in zip(patches, sides):
+    for patch in patches:
+        chosen = _choose(every, patch, materials)
+        first = chosen.contactor
         count[patch.bodies] = count.get(patch.bodies, 0) + 1
         number = f":{count[patch.bodies]}" if count[patch.bodies] > 1 else ""
         a, b = (every.names[i] for i in patch.bodies)
         surface = f"{AUTO}{a}-{b}{number}", f"{AUTO}{b}-{a}{number}"
         grown = [_widened(every, own) for own in patch.facets]
-        grown[1 - side] = np.union1d(grown[1 - side], seen_by(every, grown[side], grown[1 - side]))
+        grown[1 - first] = np.union1d(grown[1 - first], seen_by(every, grown[first], grown[1 - first]))
         result.append(
             FoundContact(
-                contactor=surface[side], target=surface[1 - side], bodies=(a, b) if side == 0 else (b, a),
-                contactor_facets=every.rows[grown[side]], target_facets=every.rows[grown[1 - side]],
-                gap=(float(patch.faces.gap.min()), float(patch.faces.gap.max())), reason=reason,
+                contactor=surface[first], target=surface[1 - first], bodies=(a, b) if first == 0 else (b, a),
+                contactor_facets=every.rows[grown[first]], target_facets=every.rows[grown[1 - first]],
+                gap=(float(patch.faces.gap.min()), float(patch.faces.gap.max())), reason=chosen.reason,
             )
         )  # fmt: skip
     return tuple(result)
@@ -158,28 +157,17 @@ def _patches(every: Outside, found: Facing) -> list[_Patch]:
     return result
 
 
-def _choose(every: Outside, patch: _Patch, young: dict[str, float]) -> tuple[int, str]:
-    """Which side is the contactor, and why: the softer one, or the one that lies opposite with most of its facets, or the
-    finer one."""
-    a, b = (every.names[i] for i in patch.bodies)
-    share = [min(patch.faces.area.sum() / every.area[facets].sum(), 1.0) for facets in patch.facets]
-    soft = int(young[b] < young[a]) if a in young and b in young else 0
-    unlike = a in young and b in young and max(young[a], young[b]) > ALIKE * min(young[a], young[b])
-    if unlike and (share[soft] > BARE or young[(a, b)[1 - soft]] == np.inf):
-        return soft, "softer"
-    fuller = int(share[1] > share[0])
-    if share[fuller] > share[1 - fuller] + BARER and share[1 - fuller] < BARE:
-        return fuller, "the facets of the other side reach far beyond this one"
-    sizes = [float(np.median(every.size[facets])) for facets in patch.facets]
-    finer = int(sizes[1] < sizes[0] * (1.0 - 1e-9))
-    if max(sizes) > MUCH_FINER * min(sizes) and not _flat(every, patch.facets[1 - finer]):
-        return 1 - finer, "the other side is much finer and would show the faceting of this one"
-    return finer, "finer" if abs(sizes[0] - sizes[1]) > 1e-9 * max(sizes) else "first of two alike"
-
-
-def _flat(every: Outside, facets: NDArray[np.int64]) -> bool:
-    normals = every.normal[facets]
-    return bool((normals @ normals[0]).min() > FLAT)
+def _choose(every: Outside, patch: _Patch, materials: dict[str, Material] | None) -> Choice:
+    """Which side is the contactor; materials: by body, one without counts as rigid; None: there are none at all."""
+    opposite = float(patch.faces.area.sum())
+    sides = [
+        side(
+            every.size[facets], every.area[facets], every.normal[facets], opposite,
+            1.0 if materials is None else contact_modulus(materials.get(every.names[body])),
+        )
+        for body, facets in zip(patch.bodies, patch.facets)
+    ]  # fmt: skip
+    return choose(*sides)
 
 
 def _widened(every: Outside, core: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.contact.coupling import couple, default_reach
-from abut.contact.geometry import facet_sizes, full_moments, nodal_normals, straight
+from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -61,8 +61,7 @@ def outside(mesh: Mesh, names: Sequence[str]) -> Outside:
     rows = exterior(mesh)
     rows = rows[number[rows[:, 0]] >= 0]
     surface = straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
-    normal = nodal_normals(surface).sum(axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    normal = mean_normals(surface)
     area = full_moments(surface, 0)[:, 0]
     member = np.zeros((len(names), len(mesh.points)), dtype=np.int32)
     for i, name in enumerate(names):

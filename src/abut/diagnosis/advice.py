@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.contactor_choice import FINER
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import facet_sizes
-from abut.contact.sides import code
-from abut.errors import InputError
-from abut.model import LAWS, METHODS, Contact, SolveOptions
+from abut.diagnosis.contactor import swap
+from abut.model import LAWS, METHODS, SolveOptions
 from abut.solution import Solution, Step
 
 COUNT = 3
-FINER = 0.8  # facet size of one side over the other's that tells them apart
 MORE = 4  # times the iterations, and as many as are allowed without asking at least
 
 
@@ -70,17 +69,6 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
     return tuple(found)[:COUNT]
 
 
-def swap(solution: Solution, contact: Contact) -> str:
-    """To swap the sides of a contact, in words; empty where the model would be refused, as with a rigid contactor."""
-    model = solution.model
-    other = replace(contact, contactor=contact.target, target=contact.contactor)
-    try:
-        replace(model, contacts=[other if own is contact else own for own in model.contacts])
-    except InputError:
-        return ""
-    return f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})"
-
-
 def _by_overlap(solution: Solution) -> Iterator[Remedy]:
     """Contact narrower than the pressure functions it is averaged over: theory (L10)."""
     failed = {check.contact for check in solution.certificate if check.name == "overlap" and not check.passed}
@@ -96,7 +84,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
                 "the functions of P2 span fewer facets, so that contact on a single row of facets is seen",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-        if coarse > 1.0 / FINER and (sides := swap(solution, contact)):
+        if coarse > FINER and (sides := swap(solution.model, contact)):
             yield Remedy(
                 f"{where}{sides}",
                 f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",

@@ -1,81 +1,89 @@
-"""Choice of the contactor of a contact: stiffness and mesh size of its sides."""
+"""Check of the choice of contactor, by the rule of ``abut.contact.contactor_choice``, as for ``auto = true``."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from numpy.typing import NDArray
 
-from abut.contact.geometry import facet_sizes, nodal_normals
-from abut.contact.sides import words
+from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
+from abut.contact.coupling import couple, default_reach
+from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
+from abut.contact.sides import code, words
+from abut.detection.opposing_facets import NEAR
 from abut.diagnosis.finding import Finding
-from abut.mesh.facets import bodies_at
-from abut.mesh.surface import Surface
-from abut.model import Model
-from abut.problem.contact_pairs import Pair
+from abut.errors import InputError
+from abut.materials.softest import contact_modulus, softest
+from abut.model import Contact, Model
 
-ALIKE = 1.1  # ratio of Young's moduli up to which neither side is the softer one
-FINER = 2.0  # ratio of facet sizes that is worth a word
-PLANE = np.cos(np.deg2rad(1.0))
+CURES = {
+    "softer": "swap contactor and target: the softer side should carry the pressure",
+    "covered": "swap contactor and target, or end the facets of the contactor where the target ends",
+    "kinks": "refine the target, or swap the sides",
+    "finer": "swap the sides for a finer pressure, or refine the contactor",
+}
 
 
-def sides(model: Model, pair: Pair) -> list[Finding]:
+def sides(model: Model, contact: Contact) -> list[Finding]:
     """Advice to swap the sides, or to refine one of them, where the pressure would gain by it."""
-    where = f"contact '{pair.contact.name}'"
-    facing = pair.coupling.segments > 0
-    young = [_young(model, surface) for surface in (pair.contactor, pair.target)]
-    size = [
-        float(np.median(facet_sizes(pair.contactor)[facing])),
-        float(np.median(facet_sizes(pair.target)[_seen(pair)])),
-    ]
-    summary = f"Young's moduli {young[0]:.3g} (contactor) and {young[1]:.3g}, facets {size[0]:.3g} and {size[1]:.3g}"
-    if young[0] > ALIKE * young[1]:
-        return [
-            Finding(
-                "advice",
-                where,
-                f"contactor {words(pair.contact.contactor)} is the stiffer side ({summary})",
-                "swap contactor and target: the softer side should carry the pressure",
-            )
-        ]
-    if FINER * size[0] < size[1] and not _is_plane(pair.target):
-        return [
-            Finding(
-                "advice",
-                where,
-                f"contactor {words(pair.contact.contactor)} is {size[1] / size[0]:.2g} times finer than its "
-                f"curved target, whose faceting its pressure will show ({summary})",
-                "refine the target, or swap the sides",
-            )
-        ]
-    if size[0] > FINER * size[1] and not ALIKE * young[0] < young[1]:
-        return [
-            Finding(
-                "advice",
-                where,
-                f"contactor {words(pair.contact.contactor)} is {size[0] / size[1]:.2g} times coarser than "
-                f"its target ({summary})",
-                "swap the sides for a finer pressure, or refine the contactor",
-            )
-        ]
+    where = f"contact '{contact.name}'"
+    own, other = measured(model, contact)
+    summary = (
+        f"E/(1-nu^2) {own.modulus:.3g} (contactor) and {other.modulus:.3g}, facets {own.size:.3g} and {other.size:.3g}"
+    )
+    choice = choose(own, other)
+    if choice.clear and choice.contactor == 1 and swap(model, contact, choice):
+        what = f"contactor {words(contact.contactor)} {_against(choice, own, other)} ({summary})"
+        return [Finding("advice", where, what, CURES[choice.rule])]
+    if much_finer(own, other):
+        what = f"contactor {words(contact.contactor)} {_against(replace(choice, rule='kinks'), own, other)} ({summary})"
+        return [Finding("advice", where, what, "refine the target")]
     return [Finding("info", where, summary)]
 
 
-def _young(model: Model, surface: Surface) -> float:
-    """The softest body of a side; a body without a material is rigid."""
-    young = {solid.body: solid.material.young for solid in model.solids}
-    return min(young.get(body, np.inf) for body in bodies_at(model.mesh, surface.cells))
+def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
+    """Contactor and target as the choice sees them: facets within reach of each other, or, where none are so near, of the
+    contact's own reach."""
+    both = model.sides(contact)
+    moduli = [contact_modulus(softest(model.mesh, model.materials, own.cells)) for own in both]
+    flat = [straight(replace(own, axisymmetric=False)) for own in both]
+    contactor, target = flat
+    sizes = [facet_sizes(own) for own in flat]
+    at = couple(contactor, target, 0, points=1, reach=default_reach(contactor, target), keep_points=True).points
+    if at is None or not len(at.gap):
+        facing, opposite = [np.arange(len(own)) for own in flat], np.inf
+    else:
+        near = np.abs(at.gap) <= NEAR * (sizes[0][at.facet] + sizes[1][at.target_facet])
+        near |= not near.any()
+        facing = [np.unique(at.facet[near]), np.unique(at.target_facet[near])]
+        opposite = float(at.weight[near].sum())
+    one, other = (
+        side(size[f], full_moments(own, 0)[f, 0], mean_normals(own)[f], opposite, modulus)
+        for own, size, f, modulus in zip(flat, sizes, facing, moduli)
+    )
+    return one, other
 
 
-def _seen(pair: Pair) -> NDArray[np.bool_]:
-    """Facets of the target all nodes of which the contactor has found."""
-    found = np.zeros(len(pair.target.points), dtype=bool)
-    columns = np.unique(pair.coupling.target_part.tocoo().col)
-    found[columns if pair.tied else columns // pair.target.dim] = True
-    nodes = pair.target.nodes
-    seen = np.asarray((found[nodes] | (nodes < 0)).all(axis=1), dtype=bool)
-    return seen if seen.any() else np.ones(len(seen), dtype=bool)
+def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:
+    """To swap the sides of a contact, in words; empty where the present contactor is clearly the right one, and where the
+    model would be refused."""
+    choice = choice or choose(*measured(model, contact))
+    if choice.clear and choice.contactor == 0:
+        return ""
+    other = replace(contact, contactor=contact.target, target=contact.contactor)
+    try:
+        replace(model, contacts=[other if own is contact else own for own in model.contacts])
+    except InputError:
+        return ""
+    return f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})"
 
 
-def _is_plane(surface: Surface) -> bool:
-    normals = nodal_normals(surface)[surface.nodes >= 0]
-    return bool((normals @ normals[0]).min() > PLANE)
+def _against(choice: Choice, own: Side, other: Side) -> str:
+    """What speaks against the contactor, after its name."""
+    return {
+        "softer": "is the stiffer side",
+        "covered": f"has only {own.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
+        "other way round",
+        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose faceting its pressure will show",
+        "finer": f"is {own.size / other.size:.2g} times coarser than its target",
+    }[choice.rule]

@@ -8,32 +8,12 @@ from importlib.util import find_spec
 
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
-from abut.diagnosis.time_estimate import effort, seconds
-from abut.linear.choice import LARGE, chosen
+from abut.linear.choice import chosen
+from abut.linear.cost_model import LARGE, LARGE_ON_MANY, MEMORY, effort, seconds
 from abut.linear.direct import available_memory
 from abut.model import Model
-from abut.parallel.linear import LARGE as PETSC_LARGE
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair
-
-
-@dataclass(frozen=True)
-class Law:
-    """megabytes = base + memory n^power, for n free displacements."""
-
-    memory: float
-    power: float
-    base: float = 100.0
-
-
-LAWS = {  # by dimension, solver and degree of the cells: fitted to docs/performance.md (3D) and docs/check.md
-    (2, "direct", 1): Law(2.3e-3, 1.0),
-    (2, "direct", 2): Law(3.1e-3, 1.0),
-    (3, "direct", 1): Law(2.7e-4, 4 / 3),
-    (3, "direct", 2): Law(4.5e-4, 4 / 3),
-    (3, "amg", 1): Law(4.4e-3, 1.0, 60.0),
-    (3, "amg", 2): Law(1.0e-2, 1.0, 60.0),
-}
 
 
 @dataclass(frozen=True)
@@ -53,11 +33,11 @@ def foresee(model: Model, held: Supports, pairs: Sequence[Pair]) -> Foreseen:
     """What a run will need: seconds mostly within a factor of two, memory of two or three."""
     n = int(held.free.shape[1])
     petsc = model.solve.linear == "petsc"
-    sizes = PETSC_LARGE if petsc else LARGE
+    sizes = LARGE_ON_MANY if petsc else LARGE
     solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, held.coupled, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
-    law = LAWS[model.dim, "direct" if model.dim == 2 else solver, degree]
-    return Foreseen(solver, seconds(effort(model, n, pairs), solver), law.base + law.memory * n**law.power)
+    memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]
+    return Foreseen(solver, seconds(effort(model, n, pairs), solver), memory.megabytes(n))
 
 
 def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from abut.contact.contactor_choice import FINER
 from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
-from abut.diagnosis.advice import swap
+from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
 from abut.solution import Check, ContactResult, Solution
 
-FINER = 0.8  # contactor's facet size over the target's below which it sees the target's kinks
 SECOND = " (second pass)"
 SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"
 
@@ -26,7 +26,7 @@ def cure(check: Check, solution: Solution) -> str:
     name = check.contact.removesuffix(SECOND)
     contact = next(c for c in solution.model.contacts if c.name == name)
     result = next(c for c in solution.contacts if c.name == check.contact)
-    return OF_CONTACT[check.name](contact, result, swap(solution, contact))
+    return OF_CONTACT[check.name](contact, result, swap(solution.model, contact))
 
 
 def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
@@ -54,7 +54,8 @@ def _penetration(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _overlap(contact: Contact, result: ContactResult, sides: str) -> str:
-    finer = ", or take the finer side as contactor" if sides else ""
+    coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
+    finer = f", or {sides}" if sides and coarse > FINER else ""
     return f"refine both surfaces where they touch, until contact is two facets wide{finer}"
 
 
@@ -83,10 +84,10 @@ def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
     if contact.pressure != "auto":
         return f'pressure = "auto": "{contact.pressure}" can alternate from facet to facet'
     fine = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-    if fine < FINER:
+    if fine * FINER < 1.0:
         way = f"{sides}, or refine the target" if sides else "refine the target"
         return f"{way}: the contactor's facets are {fine:.2g} of the target's in size"
-    return "refine both surfaces where they touch" + (", and take the softer body as contactor" if sides else "")
+    return "refine both surfaces where they touch" + (f", or {sides}" if sides else "")
 
 
 def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:

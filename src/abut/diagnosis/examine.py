@@ -55,5 +55,5 @@ def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
             findings.append(not_facing(model, contact, error))
             continue
         built.append(own)
-        findings += [*interface(model, own, outside), *sides(model, own), *constraints(model, own, held)]
+        findings += [*interface(model, own, outside), *sides(model, contact), *constraints(model, own, held)]
     return built, findings

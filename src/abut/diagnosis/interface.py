@@ -16,6 +16,7 @@ from abut.errors import AbutError
 from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
+from abut.model.offset import smallest_offset
 from abut.problem.contact_pairs import Pair
 
 BINS, WIDTH = 8, 30  # of the histogram: bars, and characters of the longest
@@ -99,7 +100,7 @@ def _gaps(model: Model, pair: Pair) -> list[Finding]:
     at = couple(pair.contactor, pair.target, 0, points=2, reach=reach, keep_points=True).points
     if at is None or not len(at.gap):
         return []
-    gap = at.gap + contact.offset
+    gap = at.gap + smallest_offset(contact)
     least, most = float(gap.min()), float(gap.max())
     findings = [
         Finding(

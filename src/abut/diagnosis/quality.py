@@ -10,24 +10,17 @@ from abut.diagnosis.finding import Finding
 from abut.mesh.facets import bodies_at
 from abut.mesh.integrals import chunks
 from abut.mesh.mesh import Mesh
+from abut.mesh.shapes import cell_shapes
 
 POOR, BAD = 0.2, 0.02  # smallest scaled Jacobian (1 is best) from which on a cell is advised against, and warned of
 LONG = 100.0  # longest over shortest edge of a cell
-CORNERS = {  # at each corner the ends of its edges, right-handed
-    ("tri", 3): ((1, 2), (2, 0), (0, 1)),
-    ("quad", 4): ((1, 3), (2, 0), (3, 1), (0, 2)),
-    ("tet", 4): ((1, 2, 3), (2, 0, 3), (0, 1, 3), (0, 2, 1)),
-    ("hex", 8): ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3)),
-    ("wedge", 6): ((1, 2, 3), (2, 0, 4), (0, 1, 5), (5, 4, 0), (3, 5, 1), (4, 3, 2)),
-}
-BEST = {"tri": np.sqrt(0.75), "quad": 1.0, "tet": np.sqrt(0.5), "hex": 1.0, "wedge": np.sqrt(0.75)}
 
 
 def quality(mesh: Mesh) -> list[Finding]:
     """Worst cells by scaled Jacobian and by ratio of edges; of quadratic cells the corners count."""
     jacobian, ratio = np.empty(mesh.n_cells), np.empty(mesh.n_cells)
     for kind, nodes, cells in chunks(mesh):
-        jacobian[cells], ratio[cells] = _shapes(kind, mesh.points[nodes[:, : CELLS[kind].corners]])
+        jacobian[cells], ratio[cells] = cell_shapes(kind, mesh.points[nodes[:, : CELLS[kind].corners]])
     worst, longest = int(jacobian.argmin()), int(ratio.argmax())
     findings = [
         Finding(
@@ -61,28 +54,6 @@ def quality(mesh: Mesh) -> list[Finding]:
             )
         )
     return findings
-
-
-def ratios(mesh: Mesh) -> NDArray[np.float64]:
-    """Longest over shortest edge of each cell."""
-    result = np.empty(mesh.n_cells)
-    for kind, nodes, cells in chunks(mesh):
-        result[cells] = _shapes(kind, mesh.points[nodes[:, : CELLS[kind].corners]])[1]
-    return result
-
-
-def _shapes(kind: str, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Smallest scaled Jacobian over the corners and ratio of edges of cells with corners x (n, corners, dim)."""
-    name = next(own for own, _ in CORNERS if kind.startswith(own))
-    smallest = np.full(len(x), np.inf)
-    short, long = np.full(len(x), np.inf), np.zeros(len(x))
-    for corner, ends in enumerate(CORNERS[name, x.shape[1]]):
-        edges = x[:, list(ends)] - x[:, [corner]]
-        lengths = np.linalg.norm(edges, axis=2)
-        short, long = np.minimum(short, lengths.min(axis=1)), np.maximum(long, lengths.max(axis=1))
-        scaled = np.linalg.det(edges) / np.maximum(lengths.prod(axis=1), 1e-300) / BEST[name]
-        smallest = np.minimum(smallest, scaled)
-    return smallest, long / np.maximum(short, 1e-300)
 
 
 def _bodies(mesh: Mesh, cells: NDArray[np.int64]) -> str:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from abut.contact.geometry import full_moments
 from abut.diagnosis.finding import Finding
+from abut.materials.softest import softest
 from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.model import Force, Gravity, Model, Pressure, Traction
@@ -32,41 +35,43 @@ def body_size(mesh: Mesh, body: str) -> float:
 
 def _sizes(model: Model) -> list[Finding]:
     size = {body: body_size(model.mesh, body) for body in model.mesh.bodies}
-    small, large = min(size, key=lambda b: size[b]), max(size, key=lambda b: size[b])
-    if not size[large] > UNLIKE * size[small]:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"bodies '{small}' and '{large}'",
-            f"one is {size[small]:.3g} in size, the other {size[large]:.3g}: is one meshed in metres, "
-            "the other in millimetres?",
-            "scale the coordinates of one of them by 1000",
-        )
-    ]
+    return _far_apart(
+        size,
+        UNLIKE,
+        lambda small, large, _: (
+            f"one is {small:.3g} in size, the other {large:.3g}: is one meshed in metres, the other in millimetres?"
+        ),
+        "scale the coordinates of one of them by 1000",
+    )
 
 
 def _moduli(model: Model) -> list[Finding]:
-    young = {solid.body: solid.material.young for solid in model.solids}
-    if not young:
+    return _far_apart(
+        {body: material.modulus for body, material in model.materials.items()},
+        STIFF,
+        lambda soft, stiff, ratio: (
+            f"Young's moduli {soft:.3g} and {stiff:.3g} differ {ratio:.0e} times: is one in Pa, the other in MPa?"
+        ),
+        "give both in one unit, force over the mesh's length squared",
+    )
+
+
+def _far_apart(
+    values: dict[str, float], limit: float, what: Callable[[float, float, float], str], cure: str
+) -> list[Finding]:
+    """A warning where the smallest and the largest value of all bodies are further apart than a factor; what: the text for
+    both and their ratio."""
+    if not values:
         return []
-    soft, stiff = min(young, key=lambda b: young[b]), max(young, key=lambda b: young[b])
-    if not young[stiff] > STIFF * young[soft]:
+    small, large = min(values, key=lambda b: values[b]), max(values, key=lambda b: values[b])
+    if not values[large] > limit * values[small]:
         return []
-    return [
-        Finding(
-            "warning",
-            f"bodies '{soft}' and '{stiff}'",
-            f"Young's moduli {young[soft]:.3g} and {young[stiff]:.3g} differ {young[stiff] / young[soft]:.0e} times: is one "
-            "in Pa, the other in MPa?",
-            "give both in one unit, force over the mesh's length squared",
-        )
-    ]
+    text = what(values[small], values[large], values[large] / values[small])
+    return [Finding("warning", f"bodies '{small}' and '{large}'", text, cure)]
 
 
 def _loads(model: Model) -> list[Finding]:
     """The strain that a surface load makes in its own body: load per area over Young's modulus."""
-    young = {solid.body: solid.material.young for solid in model.solids}
     findings = []
     for i, load in enumerate(model.loads):
         if not isinstance(load, (Pressure, Traction, Force)) or callable(load.value):
@@ -74,10 +79,12 @@ def _loads(model: Model) -> list[Finding]:
         size = float(np.linalg.norm(load.value))
         if isinstance(load, Force):
             size /= float(full_moments(model.mesh.surface(load.on), 0)[:, 0].sum())
-        bodies = [b for b in bodies_at(model.mesh, model.mesh.surfaces[load.on][:, 0]) if b in young]
-        if not bodies or not size:
+        cells = model.mesh.surfaces[load.on][:, 0]
+        material = softest(model.mesh, model.materials, cells)
+        if material is None or not size:
             continue
-        strain = size / min(young[body] for body in bodies)
+        strain = size / material.modulus
+        body = next(b for b in bodies_at(model.mesh, cells) if model.materials.get(b) == material)
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
@@ -86,8 +93,8 @@ def _loads(model: Model) -> list[Finding]:
             Finding(
                 "warning" if large else "advice",
                 f"loads[{i}] on '{load.on}'",
-                f"{size:.3g} per area strains body '{bodies[0]}' (Young's modulus {min(young[b] for b in bodies):.3g}) by "
-                f"about {strain:.0e}, {says}",
+                f"{size:.3g} per area strains body '{body}' (Young's modulus {material.modulus:.3g}) by about {strain:.0e}, "
+                f"{says}",
                 "give load and Young's modulus in one unit, such as N and mm with MPa, or N and m with Pa",
             )
         )
@@ -137,7 +144,7 @@ def _gravity(model: Model) -> list[Finding]:
                     )
                 )
                 continue
-            speed = float(np.sqrt(solid.material.young / density))
+            speed = float(np.sqrt(solid.material.modulus / density))
             for unit, (least, most, slow, fast) in SOUND.items():
                 if least <= size <= most and not slow <= speed <= fast:
                     findings.append(

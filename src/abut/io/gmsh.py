@@ -82,9 +82,6 @@ class _Source:
         except (ValueError, OverflowError):
             self.fail("a token is not a number")
 
-    def tokens(self, kind: str, count: int) -> NDArray[Any]:
-        return self.array(kind, count)
-
 
 def read_gmsh(path: Path) -> RawMesh:
     """Read a .msh file: physical groups by name, node order as in ``abut.cells``.

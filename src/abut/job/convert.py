@@ -14,6 +14,7 @@ from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
 from abut.materials.elastic import LinearElastic
+from abut.materials.material import Material
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -56,8 +57,10 @@ def write_job(path: Path, job: Job) -> list[Path]:
 
 def job_table(model: Model, mesh: str) -> dict[str, Any]:
     """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
-    materials: dict[LinearElastic, str] = {}
+    materials: dict[Material, str] = {}
     for solid in model.solids:
+        if not isinstance(solid.material, LinearElastic):
+            raise InputError(f"solid '{solid.body}': job files know linear elastic materials only, not one of your own")
         materials.setdefault(solid.material, f"material-{len(materials) + 1}")
     table: dict[str, Any] = {"schema": 1, "mesh": {"file": mesh}}
     if model.plane is not None:

@@ -97,7 +97,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "ContactTable": {
         "name": "a name of your choice; left out: CONTACTOR-TARGET",
-        "contactor": "surface or body that carries the pressure (slave), or a list; better the softer one, not the finer",
+        "contactor": "surface or body that carries the pressure (slave), or a list; the softer, among equals the finer one",
         "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact without friction, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core.core_schema import CoreSchema, literal_schema
 
 from abut.job.key_descriptions import describe
-from abut.model import SolveOptions
+from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.solve_options import LINEAR, SolveOptions
 
 
 class Table(BaseModel):
@@ -17,6 +20,16 @@ class Table(BaseModel):
 
 
 Number = Annotated[float, Field(strict=False)]
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Marks a text as one of those that the model's own record allows."""
+
+    choices: tuple[str, ...]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return literal_schema(list(self.choices))
 
 
 Points = Annotated[
@@ -95,43 +108,46 @@ class RigidTable(Table):
     amplitude: Points | None = None
 
 
-class PressureTable(Table):
-    kind: Literal["pressure"]
+class ScalarTable(Table):
+    """Something with a number at a place."""
+
+    kind: str
     on: str
     value: Number
     amplitude: Points | None = None
 
 
-class TractionTable(Table):
+class VectorTable(Table):
+    """Something with a vector at a place."""
+
+    kind: str
+    on: str
+    value: list[Number]
+    amplitude: Points | None = None
+
+
+class PressureTable(ScalarTable):
+    kind: Literal["pressure"]
+
+
+class TractionTable(VectorTable):
     kind: Literal["traction"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class ForceTable(Table):
+class ForceTable(VectorTable):
     kind: Literal["force"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class NodalForceTable(Table):
+class NodalForceTable(VectorTable):
     """force at each node of the set"""
 
     kind: Literal["nodal-force"]
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
 
 
-class TemperatureTable(Table):
+class TemperatureTable(ScalarTable):
     """change of temperature at the nodes, degrees"""
 
     kind: Literal["temperature"]
-    on: str
-    value: Number
-    amplitude: Points | None = None
 
 
 class GravityTable(Table):
@@ -148,25 +164,28 @@ LoadTable = Annotated[
 
 
 class IntegrationTable(Table):
-    rule: Literal["gauss", "newton-cotes"] = "gauss"
+    rule: Annotated[str, OneOf(RULES)] = Integration.rule
     points: Literal["auto"] | int = "auto"
 
 
+# The model's own record says what is allowed and what is the default.
 class ContactTable(Table):
-    name: str = ""
+    name: str = Contact.name
     contactor: str | list[str] = ""
     target: str | list[str] = ""
     auto: bool = False
     bodies: list[str] | None = None
     reach: Number | None = None
-    kind: Literal["contact", "tied"] = "contact"
-    pressure: Literal["auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1"] = "auto"
-    law: Literal["complementarity", "constraint-function"] = "complementarity"
-    epsilon: Number = 1e-12
-    method: Literal["segment-to-segment", "node-to-segment", "node-to-segment-two-pass"] = "segment-to-segment"
+    kind: Annotated[str, OneOf(KINDS)] = Contact.kind
+    pressure: Annotated[str, OneOf(PRESSURES)] = Contact.pressure
+    law: Annotated[str, OneOf(LAWS)] = LAWS[0]
+    epsilon: Number = Contact.epsilon
+    method: Annotated[str, OneOf(METHODS)] = Contact.method
     integration: IntegrationTable = IntegrationTable()
-    offset: Number = 0.0
-    adjust: Annotated[Number, Field(description="gaps and overlaps up to this size count as zero, length")] = 0.0
+    offset: Number = Contact.offset
+    adjust: Annotated[Number, Field(description="gaps and overlaps up to this size count as zero, length")] = (
+        Contact.adjust
+    )
     amplitude: Points | None = None
 
 
@@ -183,7 +202,7 @@ class ProbeTable(Table):
 
 class SolveTable(Table):
     steps: int = SolveOptions.steps
-    linear: Literal["auto", "direct", "amg", "petsc"] = "auto"
+    linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.linear.cost_model import LARGE
 from abut.linear.direct import solver_name
 from abut.linear.saddle_point import SaddlePoint
 from abut.linear.schur_preconditioner import foresight, half_spaces, interfaces
@@ -20,17 +21,6 @@ from abut.mesh.mesh import Mesh
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem, Problem
-
-LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
-
-
-SECONDS = {"direct": {2: 1.0, 3: 8.0}, "amg": {2: 0.7, 3: 1.0}}  # to set up 100 000 displacements on one core, by dim
-GROWTH = {"direct": {2: 1.5, 3: 1.7}, "amg": {2: 1.0, 3: 1.0}}  # powers of the size that fit 10 000 to 150 000
-
-
-def expected_seconds(linear: str, n_free: int, dim: int) -> float:
-    """How long ``prepare`` will take, roughly: measured once on one core and scaled by theory with the size."""
-    return float(SECONDS[linear][dim] * (n_free / 1e5) ** GROWTH[linear][dim])
 
 
 def choose(linear: str, problem: ContactProblem) -> str:

@@ -179,7 +179,10 @@ class Flexibility:
         push = self.operator.T @ dp - residual
         du = scipy.linalg.cho_solve(self.factor, push)
         law = rows.by_displacement[free]
-        motions = self._resisted(free, law, push, self.weight @ (np.abs(pressure) + np.abs(dp)) + force)
+        loads = self.weight @ (np.abs(pressure) + np.abs(dp)) + force
+        motions = self._resisted(free, law, push, loads)
+        opened, held = let_go(np.asarray(law @ motions), self.weight[free])
+        opened, motions = motions @ opened, motions @ held  # where smooth laws are open, which take no notice of gaps
         n, m = len(free), motions.shape[1]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
@@ -188,6 +191,7 @@ class Flexibility:
         rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -motions.T @ push])
         solved = solve_dense(matrix, rhs, self.redundant)
         dp[free] = solved[:n]
+        self._balance(opened, push + self.operator[free].T @ solved[:n], loads)
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
@@ -199,10 +203,14 @@ class Flexibility:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
         loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
-        work = np.abs((self.motions @ loose).T @ push).max(initial=0.0)
+        self._balance(self.motions @ loose, push, force)
+        return self.motions @ held if loose.shape[1] else self.motions
+
+    def _balance(self, loose: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
+        """Raises SingularModelError where forces do work on motions (n, k) that nothing resists."""
+        work = np.abs(loose.T @ push).max(initial=0.0)
         if work > UNBALANCED * (np.abs(push).sum() + force):
             raise SingularModelError(UNBALANCED_LOADS)
-        return self.motions @ held if loose.shape[1] else self.motions
 
     def factorise(self, rows: Rows, force: float) -> Solve:
         """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows

@@ -8,7 +8,7 @@ strains out of the plane (``abut.materials.plane_stress``). Stress and tangent: 
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,14 @@ Array = NDArray[np.float64]
 Evaluated = tuple[Array, Array, Array]  # stress (n, 6), tangent d stress / d strain (n, 6, 6), new history (n, h)
 
 
+@runtime_checkable
 class Material(Protocol):
     """What bodies ask of their material; every class with these will do. Points are independent of each other."""
+
+    @property
+    def density(self) -> float:
+        """Mass per volume, used by gravity."""
+        ...
 
     @property
     def expansion(self) -> float:
@@ -44,3 +50,15 @@ class Material(Protocol):
         """Stress (n, 6), tangent (n, 6, 6) and new history (n, h) at strains (n, 6), after a history (n, h) that is not
         to be changed in place."""
         ...
+
+
+class OwnMaterial:
+    """What a user's own material may inherit: ``evaluate``, as in ``Material``, and ``modulus`` are left to be written."""
+
+    density = 0.0
+    expansion = 0.0
+    constant = False
+
+    def initial(self, n: int) -> Array:
+        """No history: (n, 0)."""
+        return np.zeros((n, 0))

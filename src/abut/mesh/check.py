@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +11,11 @@ from abut._core import shape_functions, smallest_determinants
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
-from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 from abut.mesh.turn import clockwise
+
+if TYPE_CHECKING:
+    from abut.mesh.mesh import Mesh
 
 DEGENERATE = 1e-10  # smallest Jacobian determinant over the largest extent to the power of the dimension
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.mesh.mesh import Mesh
+
+if TYPE_CHECKING:
+    from abut.mesh.mesh import Mesh
 
 
 def row_codes(rows: NDArray[Any]) -> NDArray[np.int64]:

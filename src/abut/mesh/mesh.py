@@ -11,15 +11,8 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.errors import InputError, nearest
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.surface import Surface
-
-
-@dataclass(frozen=True)
-class CellBlock:
-    """Cells of one type: ``kind`` a name in ``abut.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32."""
-
-    kind: str
-    nodes: NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -55,15 +48,15 @@ class Mesh:
     axisymmetric: bool = False
     notes: tuple[str, ...] = ()
 
-    @staticmethod
-    def read(path: str | Path) -> Mesh:
+    @classmethod
+    def read(cls, path: str | Path) -> Mesh:
         """Read a Gmsh ``.msh`` (2.2 or 4.1), ``.vtu``, or Abaqus or CalculiX ``.inp`` file and check it.
 
         Raises InputError for a file that is missing, truncated, of another kind, or whose mesh is unsound.
         """
         from abut.mesh.read import read_mesh
 
-        return read_mesh(Path(path))
+        return read_mesh(cls, Path(path))
 
     @property
     def dim(self) -> int:

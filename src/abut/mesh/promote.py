@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,7 +16,6 @@ EDGES: dict[str, tuple[tuple[int, int], ...]] = {
     "wedge": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
 }
 FAMILY = {"tri3": "tri", "quad4": "quad", "tet4": "tet", "hex8": "hex", "wedge6": "wedge"}
-Mover = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 def _shared_middles(

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,53 +19,79 @@ from abut.errors import InputError
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.check import check_mesh, inside
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
-from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.turn import turn_bodies
 
+if TYPE_CHECKING:
+    from abut.mesh.mesh import Mesh
+
+Parts = Mapping[str, NDArray[np.int64]]  # cells by type: (n, n_nodes) point numbers
 READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 
 
-def read_mesh(path: Path) -> Mesh:
-    """Read and check a mesh file by its ending. Raises InputError with the remedy for anything unsound."""
+def read_mesh(kind: type[Mesh], path: Path) -> Mesh:
+    """Read and check a mesh file by its ending. kind: the record to make. Raises InputError with the remedy for anything
+    unsound."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: unknown mesh format '{path.suffix}'; supported: {', '.join(READERS)}")
     if not path.is_file():
         raise InputError(f"mesh file {path} does not exist")
-    mesh = build(reader(path), str(path))
+    mesh = build(kind, reader(path), str(path))
     check_mesh(mesh)
     return mesh
 
 
-def build(raw: RawMesh, where: str = "mesh") -> Mesh:
+def build(kind: type[Mesh], raw: RawMesh, where: str = "mesh") -> Mesh:
     """Make bodies, surfaces and node sets of the groups of a file; points that no cell uses are dropped, and
     plane bodies of clockwise cells turned round."""
-    dims = {kind: CELLS[kind].dim for parts in raw.groups.values() for kind in parts if kind != "point"}
+    dims = {own: CELLS[own].dim for parts in raw.groups.values() for own in parts if own != "point"}
     top = max(dims.values(), default=0)
     if top < 2:
         raise InputError(f"{where}: no triangles, quadrilaterals or solid cells in the file")
     for parts in raw.groups.values():
-        for kind, nodes in parts.items():
+        for own, nodes in parts.items():
             if nodes.size and (nodes.min() < 0 or nodes.max() >= len(raw.points)):
-                raise InputError(f"{where}: {kind} cells use points that the file does not have; write the mesh again")
-    bodies = {n: {k: v for k, v in p.items() if dims.get(k) == top} for n, p in raw.groups.items()}
-    bodies = {n: p for n, p in bodies.items() if p}
-    notes = list(raw.notes)
-    if (
-        "" in bodies and len(bodies) > 1
-    ):  # cells outside every group are left out, as Gmsh itself does when it saves groups
-        count = sum(len(nodes) for nodes in bodies.pop("").values())
-        notes.append(f"{where}: {count} cells outside every group of cells were left out")
-    elif "" in bodies:
-        bodies = _components(bodies[""], len(raw.points))
+                raise InputError(f"{where}: {own} cells use points that the file does not have; write the mesh again")
+    bodies, notes = _bodies(raw, {own for own, dim in dims.items() if dim == top}, where)
     blocks, members = _blocks(bodies)
     used = np.unique(np.concatenate([b.nodes.ravel() for b in blocks]))
     number = np.full(len(raw.points), -1)
     number[used] = np.arange(len(used))
     blocks = tuple(CellBlock(b.kind, number[b.nodes].astype(np.int32)) for b in blocks)
-    points = raw.points[used]
+    points = _points(raw.points, used, top, where)
+    bare = turn_bodies(kind(np.ascontiguousarray(points), blocks, members, notes=tuple(notes)))
+    surfaces, node_sets = {}, {}
+    for name, parts in raw.groups.items():
+        if not name:
+            continue
+        facets = [corner_keys(number[v[:, : CELLS[k].corners]]) for k, v in parts.items() if dims.get(k) == top - 1]
+        if facets:
+            surfaces[name] = _match(name, np.unique(np.concatenate(facets), axis=0), bare, where)
+        elif name not in members:
+            node_sets[name] = _node_set(name, parts, number, where)
+    return replace(bare, surfaces=surfaces, node_sets=node_sets)
+
+
+def _bodies(raw: RawMesh, kinds: set[str], where: str) -> tuple[Mapping[str, Parts], list[str]]:
+    """Cells of the highest dimension, of some kinds, by body, and notes on the file."""
+    bodies = {n: {k: v for k, v in p.items() if k in kinds} for n, p in raw.groups.items()}
+    bodies = {n: p for n, p in bodies.items() if p}
+    notes = list(raw.notes)
+    if "" not in bodies:
+        return bodies, notes
+    if len(bodies) == 1:
+        return _components(bodies[""], len(raw.points)), notes
+    # Cells outside every group are left out, as Gmsh itself does when it saves groups.
+    count = sum(len(nodes) for nodes in bodies.pop("").values())
+    return bodies, [*notes, f"{where}: {count} cells outside every group of cells were left out"]
+
+
+def _points(every: NDArray[np.float64], used: NDArray[np.int64], top: int, where: str) -> NDArray[np.float64]:
+    """The points that cells of dimension ``top`` use; (x, y) alone where that is 2."""
+    points = every[used]
     if not np.isfinite(points).all():
         bad = int(used[~np.isfinite(points).all(axis=1)][0])
         raise InputError(
@@ -74,34 +102,30 @@ def build(raw: RawMesh, where: str = "mesh") -> Mesh:
         raise InputError(
             f"{where}: point {bad} (counted from 0) has a coordinate beyond {LARGEST:g}; write the mesh again"
         )
-    if top == 2:
-        if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():
-            raise InputError(
-                f"{where}: the highest cells are triangles or quadrilaterals, but not in a plane z = constant, and shells "
-                "are not supported; for a solid give its volume a physical group, so that its cells are saved"
-            )
-        points = points[:, :2]
-    bare = turn_bodies(Mesh(np.ascontiguousarray(points), blocks, members, notes=tuple(notes)))
-    surfaces, node_sets = {}, {}
-    for name, parts in raw.groups.items():
-        if not name:
-            continue
-        facets = [corner_keys(number[v[:, : CELLS[k].corners]]) for k, v in parts.items() if dims.get(k) == top - 1]
-        if facets:
-            surfaces[name] = _match(name, np.unique(np.concatenate(facets), axis=0), bare, where)
-        elif name not in members:
-            nodes = np.unique(np.concatenate([number[v].ravel() for v in parts.values()]))
-            node_sets[name] = nodes[nodes >= 0].astype(np.int64)
-            if not len(node_sets[name]):
-                raise InputError(
-                    f"{where}: no cell of a body uses the points of group '{name}'; take the group out, or give the body "
-                    "there a physical group"
-                )
-    return replace(bare, surfaces=surfaces, node_sets=node_sets)
+    if top == 3:
+        return points
+    if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():
+        raise InputError(
+            f"{where}: the highest cells are triangles or quadrilaterals, but not in a plane z = constant, and shells "
+            "are not supported; for a solid give its volume a physical group, so that its cells are saved"
+        )
+    return points[:, :2]
+
+
+def _node_set(name: str, parts: Parts, number: NDArray[np.int64], where: str) -> NDArray[np.int64]:
+    """Points of a group that is no body and no surface; number: (n,) of the file's points in the mesh, or -1."""
+    nodes = np.unique(np.concatenate([number[v].ravel() for v in parts.values()]))
+    nodes = nodes[nodes >= 0].astype(np.int64)
+    if not len(nodes):
+        raise InputError(
+            f"{where}: no cell of a body uses the points of group '{name}'; take the group out, or give the body "
+            "there a physical group"
+        )
+    return nodes
 
 
 def _blocks(
-    bodies: dict[str, dict[str, NDArray[np.int64]]],
+    bodies: Mapping[str, Parts],
 ) -> tuple[tuple[CellBlock, ...], dict[str, NDArray[np.int64]]]:
     """One block for each body and type; a cell listed in two bodies stands in the mesh twice and is found later."""
     blocks, members, first = [], {}, 0
@@ -114,7 +138,7 @@ def _blocks(
     return tuple(blocks), members
 
 
-def _components(parts: dict[str, NDArray[np.int64]], n_points: int) -> dict[str, dict[str, NDArray[np.int64]]]:
+def _components(parts: Parts, n_points: int) -> dict[str, Parts]:
     """Cells without groups: every connected set is a body."""
     ends = [(v[:, :1].repeat(v.shape[1], axis=1).ravel(), v.ravel()) for v in parts.values()]
     a, b = np.concatenate([e[0] for e in ends]), np.concatenate([e[1] for e in ends])

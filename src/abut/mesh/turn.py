@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.mesh.mesh import CellBlock, Mesh
+
+if TYPE_CHECKING:
+    from abut.mesh.mesh import Mesh
 
 
 def order(kind: str) -> NDArray[np.int64]:
@@ -49,7 +52,7 @@ def turn_bodies(mesh: Mesh) -> Mesh:
         corners[first : first + len(own)] = CELLS[block.kind].corners
         nodes = block.nodes.copy()
         nodes[own] = nodes[own][:, order(block.kind)]
-        blocks.append(CellBlock(block.kind, nodes))
+        blocks.append(replace(block, nodes=nodes))
     surfaces = {name: _mapped(rows, turned, corners) for name, rows in mesh.surfaces.items()}
     notes = [f"body '{name}': its cells were numbered clockwise; their numbering was reversed" for name in bodies]
     return replace(mesh, blocks=tuple(blocks), surfaces=surfaces, notes=(*mesh.notes, *notes))

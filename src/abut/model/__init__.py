@@ -1,32 +1,26 @@
 """What the user states, as frozen records that check themselves and each other."""
 
-from abut.model.model import (
-    LAWS,
-    METHODS,
-    PLANES,
-    PRESSURES,
-    RULES,
+from abut.model.conditions import (
     Amplitude,
     BodyForce,
-    Contact,
     Equation,
     Force,
     Gravity,
     History,
-    Integration,
     Load,
-    Model,
     NodalForce,
     Pressure,
-    Probe,
     Rigid,
-    Solid,
-    SolveOptions,
     Support,
     Temperature,
     Term,
     Traction,
 )
+from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.model import PLANES, Model
+from abut.model.probe import Probe
+from abut.model.solid import Solid
+from abut.model.solve_options import SolveOptions
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity",

@@ -1,205 +1,28 @@
-"""The model: what the user states, as frozen records that check themselves and each other."""
+"""The model: everything that defines a problem, checked as a whole."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from abut import checks
-from abut.bodies.integration import INTEGRATIONS, check_integration
+from abut.bodies.integration import check_integration
 from abut.bodies.solids import Solids
-from abut.contact.laws import Law
-from abut.contact.sides import (
-    Names,
-    Sides,
-    bodies_of,
-    check_names,
-    check_own,
-    check_twice,
-    find_sides,
-    label,
-    listed,
-    normalised,
-    words,
-)
+from abut.contact.sides import Sides, bodies_of, check_names, check_own, check_twice, find_sides, words
 from abut.errors import InputError
-from abut.materials.elastic import LinearElastic
+from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
-from abut.model.conditions import (
-    COMPONENTS,
-    Amplitude,
-    BodyForce,
-    Equation,
-    Force,
-    Gravity,
-    History,
-    Load,
-    NodalForce,
-    Pressure,
-    Rigid,
-    Support,
-    Temperature,
-    Term,
-    Traction,
-)
+from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
+from abut.model.contact import Contact
 from abut.model.probe import Probe, check_probes
-
-__all__ = [
-    "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model",
-    "NodalForce", "Pressure", "Probe", "Rigid", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-]  # fmt: skip
+from abut.model.solid import Solid
+from abut.model.solve_options import SolveOptions
 
 PLANES = ("strain", "stress", "axisymmetric")
-PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")
-LAWS = ("complementarity", "constraint-function")
-METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
-RULES = ("gauss", "newton-cotes")
-MOST_STEPS = 1_000_000  # load steps, and iterations in one
-LINEAR = ("auto", "direct", "amg", "petsc")
-
-
-@dataclass(frozen=True)
-class Solid:
-    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
-
-    ``integration`` of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
-    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5)."""
-
-    body: str
-    material: LinearElastic
-    temperature: float = 0.0
-    integration: str = "full"
-
-    def __post_init__(self) -> None:
-        checks.choice(self.integration, f"solid '{self.body}': integration", INTEGRATIONS)
-        checks.finite(self.temperature, f"solid '{self.body}': temperature")
-
-
-@dataclass(frozen=True)
-class Integration:
-    """Quadrature on segments: ``points`` per direction, or "auto" (exact on straight facets)."""
-
-    rule: str = "gauss"
-    points: int | str = "auto"
-
-    def __post_init__(self) -> None:
-        checks.choice(self.rule, "integration.rule", RULES)
-        if self.points == "auto":
-            return
-        low, high = (2, 9) if self.rule == "newton-cotes" else (1, 16)
-        if isinstance(self.points, bool) or not isinstance(self.points, int) or not low <= self.points <= high:
-            raise InputError(
-                f"integration.points: expected 'auto' or {low}..{high} for {self.rule}, got {self.points!r}"
-            )
-
-
-@dataclass(frozen=True)
-class Contact:
-    """A contact pair. The contactor carries the pressure. ``contactor`` and ``target`` are names of surfaces or bodies, or
-    lists of them, which have one pressure: every point of the contactor faces the nearest target along its normal; of a
-    body, the part of its boundary that can meet the other side.
-
-    ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
-    times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
-    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
-    ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``).
-
-    >>> import abut
-    >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
-    >>> press_fit.name
-    'shaft.side-hub.bore'
-    """
-
-    contactor: Names
-    target: Names
-    name: str = ""
-    kind: str = "contact"
-    pressure: str = "auto"
-    law: str | Law = "complementarity"
-    epsilon: float = 1e-12
-    method: str = "segment-to-segment"
-    integration: Integration = field(default_factory=Integration)
-    offset: float = 0.0
-    adjust: float = 0.0
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        for side in ("contactor", "target"):
-            object.__setattr__(self, side, normalised(getattr(self, side), f"contact '{self.name}': {side}"))
-        if not self.name:
-            object.__setattr__(self, "name", f"{label(self.contactor)}-{label(self.target)}")
-        where = f"contact '{self.name}'"
-        checks.choice(self.kind, f"{where}: kind", ("contact", "tied"))
-        checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
-        if isinstance(self.law, str) or not isinstance(self.law, Law):
-            checks.choice(self.law, f"{where}: law", LAWS)
-        checks.choice(self.method, f"{where}: method", METHODS)
-        if self.method != METHODS[0] and (self.kind, self.law, self.pressure) != ("contact", LAWS[0], "auto"):
-            raise InputError(
-                f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
-                "complementarity and pressure auto; leave them out, or use segment-to-segment"
-            )
-        if self.law == LAWS[1] and self.pressure.startswith("dual"):
-            raise InputError(
-                f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
-                "where dual functions are negative; leave pressure out, or the law"
-            )
-        checks.positive(self.epsilon, f"{where}: epsilon")
-        checks.finite(self.offset, f"{where}: offset")
-        if checks.finite(self.adjust, f"{where}: adjust") < 0.0:
-            raise InputError(f"{where}: adjust: expected a length >= 0, got {self.adjust!r}")
-        if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):
-            raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
-        both = [name for name in listed(self.contactor) if name in listed(self.target)]
-        if both:
-            raise InputError(f"{where}: contactor and target are the same surface {words(both)}")
-
-
-@dataclass(frozen=True)
-class SolveOptions:
-    """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
-    time), linear solver, iterations allowed in a step.
-
-    >>> import abut
-    >>> abut.SolveOptions(steps=4).ends
-    (0.25, 0.5, 0.75, 1.0)
-    """
-
-    steps: int = 1
-    linear: str = "auto"
-    max_iterations: int = 50
-    times: tuple[float, ...] | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("steps", "max_iterations"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
-                raise InputError(f"solve.{name}: expected a whole number from 1 to {MOST_STEPS}, got {value!r}")
-        checks.choice(self.linear, "solve.linear", LINEAR)
-        if self.times is not None:
-            self._check_times()
-
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Time at the end of each load step."""
-        return self.times or tuple(number / self.steps for number in range(1, self.steps + 1))
-
-    def _check_times(self) -> None:
-        try:
-            times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
-        except TypeError:
-            raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
-        if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
-            raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
-        if self.steps not in (1, len(times)):
-            raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
-        object.__setattr__(self, "times", times)
 
 
 @dataclass(frozen=True)
@@ -250,11 +73,15 @@ class Model:
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Of each body that deforms."""
+        return {solid.body: solid.material for solid in self.solids}
+
     @cached_property
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
-        materials = {solid.body: solid.material for solid in self.solids}
-        return Solids(self.mesh, materials, self.plane, {solid.body: solid.integration for solid in self.solids})
+        return Solids(self.mesh, self.materials, self.plane, {solid.body: solid.integration for solid in self.solids})
 
     @property
     def dim(self) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.bodies.stress import averaged
 from abut.contact.coupling import Coupling
+from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
@@ -87,7 +88,12 @@ class DistributedBodies:
 
 
 def deal_out(model: Model, team: Team) -> DistributedBodies:
-    """Divide the cells of a model among the processes of a team."""
+    """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
+    if not model.deformable.constant:
+        raise InputError(
+            'solve.linear "petsc" and several processes know linear elastic materials only; run without mpiexec, with '
+            'linear = "auto"'
+        )
     owner = owners(model.mesh, team)
     points = point_owners(model.mesh, owner)
     dealt = pieces(model.mesh, owner, team.size, points)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
 from abut.linear.choice import chosen
+from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
 from abut.linear.iterative import RESPONSE, compliance
@@ -42,10 +43,6 @@ from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
-LARGE = {
-    1: 5_000,
-    2: 5_000,
-}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 Vector = NDArray[np.float64]
 
 
@@ -266,7 +263,7 @@ def choose(problem: ContactProblem) -> str:
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
     linear = "amg" if wants_iterations() else "auto"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE)
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
 
 def wants_factors() -> bool:

@@ -12,9 +12,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.linear.multigrid import slots
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.exterior import facets_of, numbered
 from abut.mesh.facets import row_codes
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.mesh import Mesh
 from abut.parallel.team import Store, Team
 
 FEW = 10  # cells a process below which they are dealt out in their order: a partitioner would leave processes empty

@@ -11,7 +11,8 @@ from scipy.sparse import csr_matrix
 
 from abut._core import shape_functions
 from abut.cells import CELLS
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.cell_block import CellBlock
+from abut.mesh.mesh import Mesh
 from abut.probing.inverse import nearest
 
 INSIDE = 1e-9  # distance over the cell's size up to which a point lies in a cell: rounding of its coordinates

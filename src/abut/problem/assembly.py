@@ -18,16 +18,16 @@ from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
-from abut.problem.terms import DeadLoads, LinearBodies
+from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.solution import Observer, Phase
 
 
 @dataclass(frozen=True)
 class Assembled:
-    """A problem, and what its results need beside it. backend: the bodies, assembled."""
+    """A problem, and what its results need beside it."""
 
     problem: ContactProblem
-    backend: Backend
+    bodies: Bodies
     loaded: Loads
 
 
@@ -63,21 +63,23 @@ def assemble(
     require_unmoved(held_by, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
+    constant = model.deformable.constant
+    bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
-        terms=(LinearBodies(backend), DeadLoads(loaded, model.histories)),
+        terms=(bodies, DeadLoads(loaded, model.histories)),
         held=held,
         pairs=every,
         operator=stacked(every, n_free),
         restraint=held_by,
         springs=springs,
-        stiffness=reduced,
+        stiffness=reduced if constant else None,
         motions=held.coordinates(held_by.free),
-        unit=unit_of(reduced),
+        unit=unit_of(reduced) if constant else 0.0,
     )
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
-    return Assembled(problem, backend, loaded)
+    return Assembled(problem, bodies, loaded)
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

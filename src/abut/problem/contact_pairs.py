@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from abut.contact.clearance import of_corners, partly_adjusted
 from abut.contact.coupling import Couple, Coupling, couple, default_reach, surface_degree
-from abut.contact.geometry import CREASE, beside_others, facet_sizes, full_moments, side_normals
+from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.node_to_segment import node_to_segment
 from abut.contact.opposite import by_target
 from abut.contact.pressure_space import (
@@ -20,7 +20,6 @@ from abut.contact.pressure_space import (
     DUAL_P1,
     PressureSpace,
     inner_facets,
-    only,
     pressure_space,
     reduce,
     resolve,
@@ -31,19 +30,20 @@ from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
 from abut.errors import InputError
+from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
+from abut.model.offset import offsets
 from abut.problem.constraints import Supports
+from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
+from abut.problem.tied_rows import tied_rows
 
-HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
 SQUARE = (
     0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
 )
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
-SAME_DIRECTION = 0.3  # sine of the angle between normals at a crease below which their sides have one pressure
-NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
 DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
@@ -179,15 +179,19 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     reach = _reach(held, contactor, target)
     contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
     sizes = facet_sizes(contactor)
-    size, modulus = float(np.median(sizes)), _modulus(model, contactor, target)
-    stiffness = modulus / size
+    scales = _scales(model, contactor, target)
+    size, stiffness = float(np.median(sizes)), scales.young / float(np.median(sizes))
     if tied:
-        compliance = _compliance(model, contactor, target)
-        return _tied(contact, contactor, target, coupling, space, held, size, stiffness, compliance)
-    space = _without_held(space, contactor, coupling, held)
+        own = tied_rows(contactor, coupling, space, held)
+        return Pair(
+            contact, contactor, target, coupling, space, own.rows, own.free,
+            prescribed=own.rows @ held.prescribed, gap=np.zeros(len(own.weight)), scale=own.weight / stiffness, size=size,
+            stiffness=stiffness, index=own.index, components=own.components, compliance=scales.compliance,
+        )  # fmt: skip
+    space = without_held(space, contactor, coupling, held)
     rows = (space.transfer.T @ coupling.operator).tocsr()
     free = (rows @ held.free).tocsr()
-    moved = _row_norms(free) > NO_EFFECT * space.weight
+    moved = row_norms(free) > NO_EFFECT * space.weight
     if not moved.all():
         space = reduce(space, coupling, moved)
         rows = (space.transfer.T @ coupling.operator).tocsr()
@@ -200,8 +204,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
-        components=(space,), compliance=_compliance(model, contactor, target),
-        points=_points(coupling, space, held, modulus / sizes, constant, varying),
+        components=(space,), compliance=scales.compliance,
+        points=_points(coupling, space, held, scales.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=_planes(contactor, border, beyond, held),
     )  # fmt: skip
@@ -285,15 +289,6 @@ def _couple(
     return contactor, coupling, space
 
 
-def offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
-    """The offset that is there from the start, and that of each history (n_histories,)."""
-    varying = np.zeros(len(model.histories))
-    if contact.amplitude is None:
-        return contact.offset, varying
-    varying[model.histories.index(contact.amplitude)] = contact.offset
-    return 0.0, varying
-
-
 def _points(
     coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64],
     constant: float, varying: NDArray[np.float64],
@@ -311,110 +306,20 @@ def _points(
     )
 
 
-def _tied(
-    contact: Contact, contactor: Surface, target: Surface, coupling: Coupling, space: PressureSpace,
-    held: Supports, size: float, stiffness: float, compliance: float,
-) -> Pair:  # fmt: skip
-    """All components of the displacement are tied, theory (L9). A multiplier component that supports hold at its node
-    on the contactor follows its neighbour, direction by direction."""
-    dim = contactor.dim
-    rows, spaces = [], []
-    index, first = np.full((len(space), dim), -1), 0
-    for a in range(dim):
-        own, functions = space, np.arange(len(space))
-        sits = space.node >= 0
-        if sits.any():
-            share = np.zeros(len(space))
-            direction = np.broadcast_to(np.eye(dim)[a], (int(sits.sum()), dim))
-            share[sits] = held.held_share(space.node[sits], direction)
-            if (share < HELD).any():
-                own, functions = reduce(space, coupling, share < HELD), np.flatnonzero(share < HELD)
-        scalar = (own.transfer.T @ coupling.operator).tocsr()
-        spread = sp.csr_matrix(
-            (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dim * np.arange(scalar.shape[1]) + a)),
-            shape=(scalar.shape[1], dim * scalar.shape[1]),
-        )
-        component = (scalar @ spread).tocsr()
-        keep = _row_norms(component @ held.free) > NO_EFFECT * own.weight
-        rows.append(component[keep])
-        spaces.append(only(own, keep))
-        index[functions[keep], a] = first + np.arange(int(keep.sum()))
-        first += int(keep.sum())
-    every = sp.vstack(rows).tocsr()
-    weight = np.concatenate([own.weight for own in spaces])
-    return Pair(
-        contact, contactor, target, coupling, space, every, (every @ held.free).tocsr(),
-        prescribed=every @ held.prescribed, gap=np.zeros(len(weight)), scale=weight / stiffness, size=size,
-        stiffness=stiffness, index=index, components=tuple(spaces), compliance=compliance,
-    )  # fmt: skip
-
-
-def _without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
-    """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
-    theory (P7) falls from 0.8 to 0.03. Those of the sides of a crease whose normals supports leave one direction for become
-    one."""
-    sits = np.flatnonzero(space.node >= 0)
-    if not len(sits):
-        return space
-    _, at = side_normals(contactor)
-    normals = at[space.side[sits]]
-    keep = np.ones(len(space), dtype=bool)
-    keep[sits] = held.held_share(space.node[sits], normals) < HELD
-    if not keep.any():
-        return space
-    nodes, count = np.unique(space.node[sits[keep[sits]]], return_counts=True)
-    several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
-    onto = np.full(len(space), -1)
-    if len(several):
-        own = at[space.side[several]]
-        first = _repeated(space.node[several], own, held.can_move(space.node[several], own))
-        onto[several[first >= 0]] = several[first[first >= 0]]
-    return reduce(space, coupling, keep & (onto < 0), onto=onto)
-
-
-def _repeated(
-    nodes: NDArray[np.int64], normals: NDArray[np.float64], directions: NDArray[np.float64]
-) -> NDArray[np.int64]:
-    """Of directions (n, dim) at nodes (n,), the first one at the same node where they add nothing to those before them,
-    else -1. Those with one of the normals (n, dim) before them are no crease's, but of another part: -1."""
-    result = np.full(len(nodes), -1)
-    before: dict[int, list[NDArray[np.float64]]] = {}
-    first: dict[int, int] = {}
-    seen: dict[int, list[NDArray[np.float64]]] = {}
-    for i, (node, normal, direction) in enumerate(zip(nodes.tolist(), normals, directions)):
-        others = seen.setdefault(node, [])
-        if any(normal @ other > CREASE for other in others):
-            continue
-        others.append(normal)
-        basis = before.setdefault(node, [])
-        rest = direction - sum(((direction @ other) * other for other in basis), np.zeros(len(direction)))
-        size = float(np.linalg.norm(rest))
-        if basis and size < SAME_DIRECTION:
-            result[i] = first[node]
-            continue
-        first.setdefault(node, i)
-        basis.append(rest / max(size, 1e-300))
-    return result
-
-
-def _row_norms(matrix: Any) -> NDArray[np.float64]:
-    return np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
-
-
 def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
     return default_reach(contactor, target) + 2.0 * held.largest
 
 
-def _compliance(model: Model, contactor: Surface, target: Surface) -> float:
-    total = 0.0
-    for surface in (contactor, target):
-        bodies = [s for s in model.solids if np.isin(surface.cells, model.mesh.bodies[s.body]).any()]
-        total += max((2.0 * (1.0 - s.material.poisson**2) / s.material.young for s in bodies), default=0.0)
-    return total
+@dataclass(frozen=True)
+class _Scales:
+    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together.
+    A rigid side has none."""
+
+    young: float
+    compliance: float
 
 
-def _modulus(model: Model, contactor: Surface, target: Surface) -> float:
-    """The softer Young's modulus of the two sides; rigid bodies have none."""
-    young = {solid.body: solid.material.young for solid in model.solids}
-    cells = np.concatenate([contactor.cells, target.cells])
-    return min(young[body] for body in young if np.isin(cells, model.mesh.bodies[body]).any())
+def _scales(model: Model, contactor: Surface, target: Surface) -> _Scales:
+    both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
+    young = min(material.modulus for material in both if material is not None)  # the model has refused two rigid sides
+    return _Scales(young, sum(2.0 / contact_modulus(material) for material in both))

@@ -34,7 +34,8 @@ def loads(model: Model) -> Loads:
     value for each point."""
     applied, temperature = applied_load(model), nodal_temperature(model)
     resultant = applied.reshape(-1, model.dim, applied.shape[1]).sum(axis=0)
-    return Loads(applied + strain_load(model, temperature), resultant, temperature)
+    strained = strain_load(model, temperature) if model.deformable.constant else 0.0  # others: with the stresses
+    return Loads(applied + strained, resultant, temperature)
 
 
 def applied_load(model: Model) -> NDArray[np.float64]:

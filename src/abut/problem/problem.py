@@ -122,8 +122,10 @@ class ContactProblem:
         if self.constant:
             return now
         shares = self._shares(before, now)
-        news = {term.name: s.history for term, s in zip(self.terms, shares) if s.history is not None}
-        return replace(now, history=before.history.with_(news))
+        history = before.history
+        for term, share in zip(self.terms, shares):
+            history = history.with_term(term.name, share.history)
+        return replace(now, history=history)
 
     def expand(self, state: State, laws: Laws) -> State:
         """As in ``Problem``: nothing has been condensed."""

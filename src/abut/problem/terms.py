@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.model.conditions import History as Amplitudes
+from abut.bodies.assemble import respond
+from abut.bodies.solids import TemperatureChange
+from abut.bodies.stress import nodal_stress
+from abut.model import History as Amplitude
+from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.backend import Backend
+from abut.problem.backend import Backend, Serial
 from abut.problem.loads import Loads
 
 Vector = NDArray[np.float64]
@@ -18,22 +23,22 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """What a term sees of a state. displacement: (dim n_points,) of all points; history: (n_integration_points, k) of the
-    term, None at the start."""
+    """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
+    start."""
 
     time: float
     displacement: Vector
-    history: Vector | None = None
+    history: Mapping[str, Vector] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
-    tangent: (dim n_points, dim n_points) sparse, or the backend's own; None for none; history: as in ``Motion``, new."""
+    tangent: ``Backend`` that reduces to the free displacements, None for none; history: as in ``Motion``, new."""
 
     force: Vector
     tangent: Any = None
-    history: Vector | None = None
+    history: Mapping[str, Vector] = field(default_factory=dict)
 
 
 class Term(Protocol):
@@ -47,15 +52,25 @@ class Term(Protocol):
     def constant(self) -> bool: ...
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """Force and tangent at ``now``, which follows the converged ``before``."""
+        """Force and tangent at ``now``, which follows the converged ``before``, whose history both carry."""
+        ...
+
+
+class Bodies(Term, Protocol):
+    """A term that has stresses."""
+
+    def stress(self, motion: Motion) -> Vector:
+        """Nodal averages (n_points, 6)."""
         ...
 
 
 @dataclass(frozen=True)
 class LinearBodies:
-    """Linear elastic bodies under small strains: force = K u."""
+    """Linear elastic bodies under small strains: force = K u; their thermal strains are loads."""
 
     backend: Backend
+    loads: Loads
+    histories: Sequence[Amplitude]
     name: str = "bodies"
     constant: bool = True
 
@@ -63,14 +78,46 @@ class LinearBodies:
         """As in ``Term``; the tangent is the backend."""
         return Share(self.backend.internal(now.displacement), self.backend)
 
+    def stress(self, motion: Motion) -> Vector:
+        """As in ``Bodies``."""
+        nodal = motion.displacement.reshape(len(self.loads.temperature), -1)
+        return self.backend.stress(nodal, motion.time, self.loads.temperature @ weights(self.histories, motion.time))
+
+
+@dataclass(frozen=True)
+class SolidBodies:
+    """Bodies of any material under small strains, those of users' own among them."""
+
+    model: Model
+    loads: Loads
+    name: str = "bodies"
+    constant: bool = False
+
+    def evaluate(self, before: Motion, now: Motion) -> Share:
+        """As in ``Term``."""
+        nodal, change, history = self._at(now, before.history)
+        response = respond(self.model.deformable, nodal, change, history)
+        return Share(response.force, Serial(self.model, response.tangent), response.history)
+
+    def stress(self, motion: Motion) -> Vector:
+        """As in ``Bodies``."""
+        nodal, change, history = self._at(motion, motion.history)
+        return nodal_stress(self.model.deformable, nodal, change, history)
+
+    def _at(
+        self, motion: Motion, history: Mapping[str, Vector]
+    ) -> tuple[Vector, TemperatureChange, Mapping[str, Vector] | None]:
+        temperature = self.loads.temperature @ weights(self.model.histories, motion.time)
+        change = TemperatureChange(self.model.temperatures(motion.time), temperature)
+        return motion.displacement.reshape(len(temperature), -1), change, history or None
+
 
 @dataclass(frozen=True)
 class DeadLoads:
-    """Loads that keep their direction and place, and thermal strains of linear elastic bodies; histories: of the columns of
-    ``loads``."""
+    """Loads that keep their direction and place; histories: of the columns of ``loads``."""
 
     loads: Loads
-    histories: tuple[Amplitudes, ...]
+    histories: Sequence[Amplitude]
     name: str = "loads"
     constant: bool = True
 

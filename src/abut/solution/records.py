@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import drives
+from abut.model.offset import smallest_offset
 from abut.solution.contacts import Check, ContactResult
 from abut.solution.progress import Iteration
 from abut.solution.state import State
@@ -219,7 +220,7 @@ def _driven(model: Model) -> bool:
     """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
     given = (*model.supports, *model.loads, *model.equations, *model.rigid)
     hot = any(solid.temperature for solid in model.solids)
-    return hot or any(map(drives, given)) or any(contact.offset < 0.0 for contact in model.contacts)
+    return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
 
 
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it

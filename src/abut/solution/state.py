@@ -14,16 +14,18 @@ OPEN, CLOSED = np.int8(0), np.int8(1)  # status of a multiplier
 
 @dataclass(frozen=True)
 class History:
-    """What bodies and contacts remember: arrays by the name of the term that owns them, (n_integration_points, k)."""
+    """What bodies and contacts remember: arrays (n_integration_points, k) by name, "bodies.pin": that of the term that owns
+    them, and of its part."""
 
     arrays: Mapping[str, Vector] = field(default_factory=dict)
 
-    def of(self, name: str) -> Vector | None:
-        return self.arrays.get(name)
+    def of(self, term: str) -> Mapping[str, Vector]:
+        """The arrays of a term, by part."""
+        return {name.partition(".")[2]: own for name, own in self.arrays.items() if name.partition(".")[0] == term}
 
-    def with_(self, news: Mapping[str, Vector]) -> History:
-        """The same with some arrays replaced."""
-        return History({**self.arrays, **news}) if news else self
+    def with_term(self, term: str, parts: Mapping[str, Vector]) -> History:
+        """The same with a term's arrays replaced."""
+        return History({**self.arrays, **{f"{term}.{part}": own for part, own in parts.items()}}) if parts else self
 
 
 @dataclass(frozen=True)

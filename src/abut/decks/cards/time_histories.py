@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from abut.decks.cards.reasons import DeckError
 from abut.decks.cards.record import Deck, Prescribed, Step
@@ -171,11 +171,3 @@ def scaled(course: Course) -> tuple[float, Course | None]:
         return 0.0, None
     unit = tuple((t, value / size) for t, value in course)
     return size, None if unit == ((0.0, 0.0), (1.0, 1.0)) else unit
-
-
-def grouped(own: Mapping[Key, Course]) -> dict[tuple[float, Course], list[int]]:
-    """Numbers with the same direction and course together."""
-    result: dict[tuple[float, Course], list[int]] = {}
-    for (number, direction), course in own.items():
-        result.setdefault((direction, course), []).append(int(number))
-    return result

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.make.grading import graded_axis
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.mesh import Mesh
 from abut.mesh.promote import promote
 
 PLANE_CELLS = ("tri3", "tri6", "quad4", "quad8", "quad9")

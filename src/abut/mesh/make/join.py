@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from abut.errors import InputError
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.cell_block import CellBlock
+from abut.mesh.mesh import Mesh
 
 
 def join(meshes: Mapping[str, Mesh]) -> Mesh:

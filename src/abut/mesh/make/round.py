@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.errors import InputError
+from abut.mesh.cell_block import CellBlock
 from abut.mesh.make.block import axis, grid
 from abut.mesh.make.grading import graded
-from abut.mesh.mesh import CellBlock, Mesh
+from abut.mesh.mesh import Mesh
 from abut.mesh.promote import middles
 
 CROWDED = 0.3  # of the distances from the round sides of an octant: about the last fifth of the way to where they meet
@@ -28,8 +29,7 @@ def disc(
 ) -> Mesh:
     """A disc, graded toward its lowest point. fine, cells, growth as for ``half_disc``. Surface round; node set axis."""
     radius, along, up = _lines(radius, fine, cells, growth)
-    both = np.concatenate([-along[:0:-1], along])
-    mesh = grid([both, np.concatenate([up, -up[-2::-1]])], cell, lambda x: radius * _disc_map(x))
+    mesh = _section(_mirrored(along), np.concatenate([up, -up[-2::-1]]), radius, cell)
     surfaces = {"round": np.concatenate(list(mesh.surfaces.values()))}
     return _finish(replace(mesh, surfaces=surfaces, node_sets={"axis": _axis(mesh, radius)}), radius, centre)
 
@@ -59,12 +59,7 @@ def cylinder(
     mesh = grid([across, across, axis(z, cells[1], "cylinder: z")], cell, bend)
     sides = [mesh.surfaces[n] for n in ("left", "right", "front", "back")]
     surfaces = {"round": np.concatenate(sides), "bottom": mesh.surfaces["bottom"], "top": mesh.surfaces["top"]}
-    mesh = replace(mesh, surfaces=surfaces)
-    points = mesh.points.copy()
-    nodes = mesh.nodes_of("round")
-    points[nodes, :2] *= radius / np.linalg.norm(points[nodes, :2], axis=1, keepdims=True)
-    middles(points, mesh.blocks[0].nodes, cell, nodes)
-    return replace(mesh, points=points)
+    return _rounded(replace(mesh, surfaces=surfaces), radius, 2)
 
 
 def _tube(radius: float, inner: float, z: Sequence[float], cells: Sequence[int], cell: str) -> Mesh:
@@ -110,8 +105,7 @@ def half_disc(
     """
     checks.choice(flat, "flat", ("top", "bottom"))
     radius, along, up = _lines(radius, fine, cells, growth)
-    both = np.concatenate([-along[:0:-1], along])
-    mesh = grid([both, up], cell, lambda x: radius * _disc_map(x))
+    mesh = _section(_mirrored(along), up, radius, cell)
     surfaces = {
         "round": np.concatenate([mesh.surfaces[n] for n in ("left", "bottom", "right")]),
         "flat": mesh.surfaces["top"],
@@ -132,13 +126,23 @@ def quarter_disc(
     """The right half of a ``half_disc``: the section of a ball for axisymmetric models. Surfaces round, flat (top), left
     (on the line x = 0)."""
     radius, along, up = _lines(radius, fine, cells, growth)
-    mesh = grid([along, up], cell, lambda x: radius * _disc_map(x))
+    mesh = _section(along, up, radius, cell)
     surfaces = {
         "round": np.concatenate([mesh.surfaces[n] for n in ("bottom", "right")]),
         "flat": mesh.surfaces["top"],
         "left": mesh.surfaces["left"],
     }
     return _finish(replace(mesh, surfaces=surfaces), radius, centre)
+
+
+def _mirrored(along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Grid lines on [-1, 1] from those on [0, 1]."""
+    return np.concatenate([-along[:0:-1], along])
+
+
+def _section(x: NDArray[np.float64], y: NDArray[np.float64], radius: float, cell: str) -> Mesh:
+    """Grid lines in the square [-1, 1]^2, bent into a disc."""
+    return grid([x, y], cell, lambda points: radius * _disc_map(points))
 
 
 def _lines(
@@ -172,13 +176,19 @@ def _disc_map(x: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([u * np.sqrt(1.0 - 0.5 * v**2), v * np.sqrt(1.0 - 0.5 * u**2)], axis=1)
 
 
-def _finish(mesh: Mesh, radius: float, centre: Sequence[float]) -> Mesh:
-    """Put all nodes of the round side at their radius from the origin, and the origin at the centre."""
+def _rounded(mesh: Mesh, radius: float, axes: int) -> Mesh:
+    """Put all nodes of the round side at their radius from the origin, along the first ``axes`` axes."""
     points = mesh.points.copy()
     nodes = mesh.nodes_of("round")
-    points[nodes] *= radius / np.linalg.norm(points[nodes], axis=1, keepdims=True)
+    points[nodes, :axes] *= radius / np.linalg.norm(points[nodes, :axes], axis=1, keepdims=True)
     middles(points, mesh.blocks[0].nodes, mesh.blocks[0].kind, nodes)
-    return replace(mesh, points=points + checks.array(centre, "centre", shape=(mesh.dim,)))
+    return replace(mesh, points=points)
+
+
+def _finish(mesh: Mesh, radius: float, centre: Sequence[float]) -> Mesh:
+    """The round side made round, and the origin put at the centre."""
+    mesh = _rounded(mesh, radius, mesh.dim)
+    return replace(mesh, points=mesh.points + checks.array(centre, "centre", shape=(mesh.dim,)))
 
 
 def sphere_octant(

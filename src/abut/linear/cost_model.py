@@ -1,4 +1,6 @@
-"""Estimated time of a run, stage by stage: counts of operations times the measured cost of each.
+"""Cost of a run, time and memory, stage by stage: counts of operations times the measured cost of each.
+
+It is used by the choice of the linear solver (``abut.linear.choice``), the announced times of stages, and `abut check`.
 
 All constants are seconds on one core of a server of 2023 (some 5 Gflop/s in a sparse factorisation). Counts are known from
 the mesh and the pairs, but for those of linear solutions and Krylov iterations: these are typical ones.
@@ -13,8 +15,9 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.contact.geometry import by_kind, nodal_normals
-from abut.diagnosis.quality import ratios
 from abut.linear.static_condensation import LARGEST
+from abut.mesh.mesh import Mesh
+from abut.mesh.shapes import ratios
 from abut.model import Model
 from abut.problem.contact_pairs import Pair
 
@@ -39,72 +42,117 @@ LEVELS, CYCLE = 5e-8, 3e-9  # seconds an entry of the stiffness for setting mult
 FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins where the last ended
 KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
 START = 0.005
+LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
+LARGE_ON_MANY = {1: 5_000, 2: 5_000}  # the same on several processes: MUMPS factorises at every iteration
+
+
+@dataclass(frozen=True)
+class Memory:
+    """megabytes = base + factor n^power, for n free displacements."""
+
+    factor: float
+    power: float
+    base: float = 100.0
+
+    def megabytes(self, n: int) -> float:
+        return self.base + self.factor * float(n) ** self.power
+
+
+MEMORY = {  # by dimension, solver and degree of the cells: fitted to docs/performance.md (3D) and docs/check.md
+    (2, "direct", 1): Memory(2.3e-3, 1.0),
+    (2, "direct", 2): Memory(3.1e-3, 1.0),
+    (3, "direct", 1): Memory(2.7e-4, 4 / 3),
+    (3, "direct", 2): Memory(4.5e-4, 4 / 3),
+    (3, "amg", 1): Memory(4.4e-3, 1.0, 60.0),
+    (3, "amg", 2): Memory(1.0e-2, 1.0, 60.0),
+}
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """What the stiffness of the bodies asks of a linear solver: free displacements; entries; operations on fronts, up to a
+    factor."""
+
+    displacements: int
+    entries: float
+    fronts: float
 
 
 @dataclass(frozen=True)
 class Effort:
-    """What has to be done. cells: of each kind; entries: of the stiffness; fronts: operations on them, up to a factor;
-    multipliers, pairs, bodies: how many; cutting: seconds; steps; displacements: free ones; stretched: mean ratio of the
-    cells' edges."""
+    """What has to be done. cells: of each kind; multipliers, pairs, bodies, steps: how many; cutting: seconds; stretched:
+    mean ratio of the cells' edges."""
 
+    stiffness: Stiffness
     cells: dict[str, int]
-    entries: float
-    fronts: float
     multipliers: int
     pairs: int
     bodies: int
     cutting: float
     steps: int
-    displacements: int
     stretched: float
+
+
+def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
+    """Count what the stiffness on ``displacements`` free ones asks for."""
+    cells = _cells(mesh)
+    share = np.array([count * CELLS[kind].nodes for kind, count in cells.items()], dtype=float)
+    row = float(share @ [COUPLED[kind] for kind in cells] / share.sum())
+    return Stiffness(displacements, displacements * row, sum(_fronts(mesh, body) for body in mesh.bodies))
 
 
 def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
     """Count what a model asks for."""
-    mesh = model.mesh
-    cells: dict[str, int] = {}
-    for block in mesh.blocks:
-        cells[block.kind] = cells.get(block.kind, 0) + len(block.nodes)
-    share = np.array([count * CELLS[kind].nodes for kind, count in cells.items()], dtype=float)
-    row = float(share @ [COUPLED[kind] for kind in cells] / share.sum())
     return Effort(
-        cells=cells,
-        entries=displacements * row,
-        fronts=sum(_fronts(model, body) for body in mesh.bodies),
+        stiffness=of_stiffness(model.mesh, displacements),
+        cells=_cells(model.mesh),
         multipliers=sum(map(len, pairs)),
         pairs=len(pairs),
-        bodies=len(mesh.bodies),
+        bodies=len(model.mesh.bodies),
         cutting=sum(map(_cutting, pairs)),
-        steps=model.solve.steps,
-        displacements=displacements,
-        stretched=float(np.exp(np.log(ratios(mesh)).mean())),
+        steps=len(model.solve.ends),
+        stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
     )
+
+
+def preparing(own: Stiffness, solver: str) -> float:
+    """Seconds to set a linear solver up: to factorise once ("direct"), or to make the levels of multigrid ("amg")."""
+    return own.entries * LEVELS if solver == "amg" else ROW * own.displacements + FRONT * own.fronts
 
 
 def seconds(own: Effort, solver: str) -> dict[str, float]:
     """Seconds of each stage, with "direct" or "amg" as the linear solver."""
     solutions = FIRST + NEXT * (own.steps - 1) if own.multipliers else own.steps
+    prepared, displacements = preparing(own.stiffness, solver), own.stiffness.displacements
     if solver == "amg":
         krylov = KRYLOV * own.stretched**STRETCHED * (FIRST + NEXT * (own.steps - 1)) / FIRST
-        solving = own.entries * (LEVELS + CYCLE * krylov)
+        solving = prepared + own.stiffness.entries * CYCLE * krylov
     else:
         degree = max(CELLS[kind].degree for kind in own.cells)
         eliminated = own.multipliers <= LARGEST
         times = (1 + (ELIMINATIONS[degree] - 1) * own.steps if own.multipliers else 1) if eliminated else solutions
-        solving = times * (ROW * own.displacements + FRONT * own.fronts)
+        solving = times * prepared
         solving += A_PAIR * own.pairs + solutions * (SOLUTION + (DENSE * own.multipliers**3 if eliminated else 0.0))
     return {
         "assembly": START + sum(ASSEMBLY[kind] * count for kind, count in own.cells.items()),
         "interface": own.cutting + A_PAIR * own.pairs + A_BODY * own.bodies,
         "solve": solving,
-        "results": own.steps * (RESULT * own.displacements + A_PAIR * own.pairs),
+        "results": own.steps * (RESULT * displacements + A_PAIR * own.pairs),
     }
 
 
-def _fronts(model: Model, body: str) -> float:
+def _cells(mesh: Mesh) -> dict[str, int]:
+    """How many cells of each kind."""
+    result: dict[str, int] = {}
+    for block in mesh.blocks:
+        result[block.kind] = result.get(block.kind, 0) + len(block.nodes)
+    return result
+
+
+def _fronts(mesh: Mesh, body: str) -> float:
     """Operations of nested dissection: as many fronts as cross-sections that cut the body into cubes, each to the third."""
-    nodes, dim = model.mesh.nodes_of(body), model.dim
-    extent = np.ptp(model.mesh.points[nodes], axis=0)
+    nodes, dim = mesh.nodes_of(body), mesh.dim
+    extent = np.ptp(mesh.points[nodes], axis=0)
     n = float(dim * len(nodes))
     slender = float(extent.prod()) ** (1.0 / dim) / float(extent.max())
     section = n ** ((dim - 1) / dim) * slender

@@ -1,0 +1,33 @@
+"""A body of the mesh with its material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from abut import checks
+from abut.bodies.integration import INTEGRATIONS
+from abut.errors import InputError
+from abut.materials.material import Material
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
+
+    ``integration`` of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
+    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5).
+    ``material``: ``LinearElastic``, or one of your own (``abut.materials.material.OwnMaterial``)."""
+
+    body: str
+    material: Material
+    temperature: float = 0.0
+    integration: str = "full"
+
+    def __post_init__(self) -> None:
+        checks.choice(self.integration, f"solid '{self.body}': integration", INTEGRATIONS)
+        if not isinstance(self.material, Material):
+            raise InputError(
+                f"solid '{self.body}': material: expected LinearElastic or a material of your own, got "
+                f"{type(self.material).__name__}; see abut.materials.material.OwnMaterial"
+            )
+        checks.finite(self.temperature, f"solid '{self.body}': temperature")

@@ -1,0 +1,53 @@
+"""How a model is to be solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from abut import checks
+from abut.errors import InputError
+
+LINEAR = ("auto", "direct", "amg", "petsc")
+MOST_STEPS = 1_000_000  # load steps, and iterations in one
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
+    time), linear solver, iterations allowed in a step.
+
+    >>> import abut
+    >>> abut.SolveOptions(steps=4).ends
+    (0.25, 0.5, 0.75, 1.0)
+    """
+
+    steps: int = 1
+    linear: str = "auto"
+    max_iterations: int = 50
+    times: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("steps", "max_iterations"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
+                raise InputError(f"solve.{name}: expected a whole number from 1 to {MOST_STEPS}, got {value!r}")
+        checks.choice(self.linear, "solve.linear", LINEAR)
+        if self.times is not None:
+            self._check_times()
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Time at the end of each load step."""
+        return self.times or tuple(number / self.steps for number in range(1, self.steps + 1))
+
+    def _check_times(self) -> None:
+        try:
+            times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
+        except TypeError:
+            raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
+        if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
+            raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
+        if self.steps not in (1, len(times)):
+            raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
+        object.__setattr__(self, "times", times)
