@@ -179,8 +179,8 @@ class Flexibility:
         push = self.operator.T @ dp - residual
         du = scipy.linalg.cho_solve(self.factor, push)
         law = rows.by_displacement[free]
-        loads = self.weight @ (np.abs(pressure) + np.abs(dp)) + force
-        motions = self._resisted(free, law, push, loads)
+        size = self.weight @ (np.abs(pressure) + np.abs(dp)) + force
+        motions = self._resisted(free, law, push, size)
         opened, held = let_go(np.asarray(law @ motions), self.weight[free])
         opened, motions = motions @ opened, motions @ held  # where smooth laws are open, which take no notice of gaps
         n, m = len(free), motions.shape[1]
@@ -191,7 +191,7 @@ class Flexibility:
         rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -motions.T @ push])
         solved = solve_dense(matrix, rhs, self.redundant)
         dp[free] = solved[:n]
-        self._balance(opened, push + self.operator[free].T @ solved[:n], loads)
+        _balance(opened, push + self.operator[free].T @ solved[:n], size)
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
@@ -203,14 +203,8 @@ class Flexibility:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
         loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
-        self._balance(self.motions @ loose, push, force)
+        _balance(self.motions @ loose, push, force)
         return self.motions @ held if loose.shape[1] else self.motions
-
-    def _balance(self, loose: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
-        """Raises SingularModelError where forces do work on motions (n, k) that nothing resists."""
-        work = np.abs(loose.T @ push).max(initial=0.0)
-        if work > UNBALANCED * (np.abs(push).sum() + force):
-            raise SingularModelError(UNBALANCED_LOADS)
 
     def factorise(self, rows: Rows, force: float) -> Solve:
         """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows
@@ -312,6 +306,14 @@ def let_go(rows: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[NDAr
     _, size, basis = np.linalg.svd(np.concatenate([rows / weight[:, None], np.zeros((m, m))]), full_matrices=False)
     none = size <= FREE * max(size.max(initial=0.0), 1.0)
     return basis[none].T, basis[~none].T
+
+
+def _balance(loose: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
+    """Raises SingularModelError where forces (n,) do work on motions (n, k) that nothing resists. force: sum of all others,
+    beside which what is left of forces in balance is rounding."""
+    work = np.abs(loose.T @ push).max(initial=0.0)
+    if work > UNBALANCED * (np.abs(push).sum() + force):
+        raise SingularModelError(UNBALANCED_LOADS)
 
 
 def solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant: bool) -> NDArray[np.float64]:
