@@ -9,8 +9,9 @@
 
 namespace abut {
 
-// Cells of one type and an integration rule on the reference cell: points (any, dim), nodes (count, n);
-// shapes (rule, n), derivatives (rule, n, dim), weights (rule). mean_dilatation: that of the cell is used, theory (E3).
+// Cells of one type and an integration rule on the reference cell: points (any, dim), nodes (count, n); shapes (rule,
+// n), derivatives (rule, n, dim), weights (rule). mean_dilatation: the dilatation is its mean over the cell,
+// theory (E3).
 struct Cells {
   const double *points;
   const std::int32_t *nodes;

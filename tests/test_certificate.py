@@ -29,7 +29,7 @@ SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
     *("force balance", "moment balance", "penetration", "overlap", "faceting"),
     *("tension", "complementarity", "oscillation", "resolution"),
-    *("facet moments", "bare area", "removed multipliers", "covered twice"),
+    *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
 
 
@@ -302,7 +302,7 @@ def test_cover_is_checked() -> None:
     """A third of every loaded facet covered is too little; so is one multiplier in fifty that is left."""
     own, values = sound()
     part = own.coupling.covered / 3.0
-    assert certified(coupled(own, covered=part), values) == {"bare area"}
+    assert certified(coupled(own, covered=part), values) == {"loaded area without target"}
     few = replace(own, space=replace(own.space, removed=50 * len(own.space)))
     assert certified(few, values) == {"removed multipliers"}
 

@@ -183,7 +183,7 @@ def test_place_is_named_with_nodes_and_coordinates(tmp_path: Path) -> None:
     assert sorted(place.coordinates[:, 0].tolist()) == pytest.approx([1.0, 1.25, 1.5])
     assert place.coordinates[:, 1].tolist() == pytest.approx([1.0] * 3)
     np.testing.assert_array_equal(solution.model.mesh.points[place.nodes], place.coordinates)
-    assert str(place) == "contact 'c': facets [0, 1] do not settle, 2 in all, within (1, 1) to (1.5, 1)"
+    assert str(place) == "contact 'c': the contact status of 2 facets keeps changing: [0, 1], within (1, 1) to (1.5, 1)"
     write(solution, tmp_path)
     written = json.loads((tmp_path / "summary.json").read_text())
     assert written["steps"][-1]["unsettled"][0]["nodes"] == place.nodes.tolist()

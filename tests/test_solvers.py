@@ -1,4 +1,4 @@
-"""The condensed solution path against its slow twin, the sparse saddle point system factorised in every iteration."""
+"""Static condensation against its slow twin, the sparse saddle point system factorised in every iteration."""
 
 from __future__ import annotations
 

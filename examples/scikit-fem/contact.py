@@ -103,9 +103,7 @@ def solve() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         gap = opening + operator @ u
         rows = law.evaluate((gap / space.weight)[:, None], pressure[:, None], LawState(active))
         by_gap, by_pressure = sp.diags(rows.by_jump[:, 0, 0] / space.weight), sp.diags(rows.by_traction[:, 0, 0])
-        system = sp.bmat(
-            [[matrix[free][:, free], -operator[:, free].T], [by_gap @ operator[:, free], by_pressure]]
-        )
+        system = sp.bmat([[matrix[free][:, free], -operator[:, free].T], [by_gap @ operator[:, free], by_pressure]])
         forces = matrix @ u - operator.T @ pressure
         change = spsolve(system.tocsc(), -np.concatenate([forces[free], rows.residual[:, 0]]))
         u[free] += change[: len(free)]

@@ -1,5 +1,5 @@
-"""Small displacements leave the stiffness alone: it is eliminated once, down to the multipliers, and every Newton
-iteration of every load step solves dense systems of the size of the interface."""
+"""Static condensation of a constant problem: the displacements are eliminated once, and every Newton iteration of every
+load step solves a dense system of the size of the interface."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ FREE = 1e-10  # gap by a unit motion below which rows do not resist it
 UNBALANCED = 1e-6  # work of the forces on a motion that nothing resists, over their sum, from which on they move it
 PASSES, EVEN = 20, 0.1  # of equilibration, until the logarithm of the largest entries is below the second
 NOT_UNIQUE = "the equations have no unique solution; check supports, contacts and units"
-UNBALANCED_LOADS = "the loads move a body that nothing holds; check supports, contacts and units"
+UNBALANCED_LOADS = "the loads act on an unconstrained rigid-body mode; check supports, contacts and units"
 
 
 @dataclass(frozen=True)
 class CondensedProblem:
     """A constant problem on the multipliers and the displacements that had to be kept: ``abut.problem.problem.Problem``.
 
-    Everything but ``whole`` is its own affair: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
+    Everything but ``whole`` is private: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
     operator, compliance: theory (V3); pairs: on the kept displacements."""
 
     whole: ContactProblem
@@ -149,7 +149,7 @@ def dense(system: Linearised) -> Dense:
 
 @dataclass(frozen=True)
 class Flexibility:
-    """What the interface gives way under the multipliers.
+    """Displacements of the interface under the multipliers.
 
     factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
     the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures;

@@ -1,7 +1,7 @@
 """The contact problem as a convex quadratic programme: Mehrotra's predictor and corrector on displacements, pressures, gaps.
 
-Contact is made soft, row by row, by the ratio of gap and pressure; no row is ever let go, so that no active set on the way
-can be unlucky. What remains undecided in the end is few, and ``abut.nonlinear.search`` decides it exactly.
+Each row gets a compliance, the ratio of its gap and pressure; no row is ever released, so that intermediate active sets do
+not matter. The few rows that remain undecided in the end are resolved exactly by ``abut.nonlinear.search``.
 """
 
 from __future__ import annotations

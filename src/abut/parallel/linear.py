@@ -1,4 +1,4 @@
-"""Linear solvers on many processes: the same two ways as on one, by PETSc."""
+"""Linear solvers on several processes, by PETSc: direct, and iterative with multigrid."""
 
 from __future__ import annotations
 

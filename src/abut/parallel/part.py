@@ -1,4 +1,4 @@
-"""What each process does with its part of the cells: stiffness, internal forces, stresses."""
+"""Operations of each process on its part of the cells: stiffness, internal forces, stresses."""
 
 from __future__ import annotations
 
