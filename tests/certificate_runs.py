@@ -202,7 +202,12 @@ UNSOUND_RUNS = (
     Run("motion in metres", lambda: moved(0.03, unit=1e-3), outside, ("response",)),
     Run("load on a held surface", held_load, outside, ("response",)),
     Run("a part that never arrives", lambda: moved(0.005), outside, ("response",)),
-    Run("coarse shaft as contactor of a hub", lambda: sleeve(True, "quad4", (3, 7)), beside_fine_sleeve, ("bare area",)),
+    Run(
+        "coarse shaft as contactor of a hub",
+        lambda: sleeve(True, "quad4", (3, 7)),
+        beside_fine_sleeve,
+        ("loaded area without target",),
+    ),
     Run("bolt's head on a coarse plate", lambda: washer(False, 6), along(washer(False, 60), under_head), KINKS),
     Run("stopped after one iteration", lambda: replace(ball("quad4", 6), solve=abut.SolveOptions(max_iterations=1)),
         ball_truth(), ("complementarity",)),

@@ -129,10 +129,10 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
         "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
     )
     yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
-        "largest penetration at a point, over what the largest pressure presses in between nodes")  # fmt: skip
+        "largest penetration at a point, over what the largest pressure indents between nodes")  # fmt: skip
     shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
     yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
-        "pressure that facets make by standing for a curved surface, over the largest pressure")  # fmt: skip
+        "pressure caused by faceting of curved surfaces, over the largest pressure")  # fmt: skip
 
 
 def _pressure(case: _Case, residual: float) -> Iterator[Check]:
@@ -152,7 +152,7 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, pressure, support, largest) if counts else 0.0
     yield case.check("resolution", facets, RESOLUTION,
-        "one over the facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
+        "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:
@@ -161,10 +161,12 @@ def _cover(case: _Case) -> Iterator[Check]:
     others = np.zeros((len(areas), 2)) if case.around.elsewhere is None else case.around.elsewhere
     covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
     bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
-    yield case.check("bare area", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
+    yield case.check(
+        "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
+    )
     total = pair.space.removed + len(pair)
     yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
-        "share of the contactor's multipliers without target or held by supports")  # fmt: skip
+        "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
     counts = loaded if pair.tied else loaded | (case.hidden > OVERLAP)
     every = (cover + others[:, 1])[counts]

@@ -1,4 +1,4 @@
-"""Is the right side of a contact the contactor? By the rule of ``abut.contact.contactor_choice``, as ``auto = true``."""
+"""Check of the choice of contactor, by the rule of ``abut.contact.contactor_choice``, as for ``auto = true``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
 from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
 from abut.contact.sides import code, words
-from abut.detection.facing import NEAR
+from abut.detection.opposing_facets import NEAR
 from abut.diagnosis.finding import Finding
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
@@ -85,6 +85,6 @@ def _against(choice: Choice, own: Side, other: Side) -> str:
         "softer": "is the stiffer side",
         "covered": f"has only {own.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",
-        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose kinks its pressure will show",
+        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose faceting its pressure will show",
         "finer": f"is {own.size / other.size:.2g} times coarser than its target",
     }[choice.rule]

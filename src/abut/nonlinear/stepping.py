@@ -1,4 +1,4 @@
-"""From load step to load step: when the next one ends, and what follows an attempt."""
+"""Load stepping: the end of the next load step, and the treatment of failed attempts."""
 
 from __future__ import annotations
 
@@ -40,8 +40,9 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Control:
-    """limit: of iterations in a step; observe: is told each of them; begins: is told each step's number and end; prepares:
-    sets a linear solver up, with what is told about it; fallback: another solver where one gives up, with its reason."""
+    """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
+    prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
+    fails."""
 
     limit: int
     observe: Callable[[Iteration], None]
@@ -56,8 +57,8 @@ def march(
 ) -> Iterator[Attempt]:
     """Load step after load step, from the state ``first``; number: of the next one.
 
-    Each attempt starts from the last converged state: one that fails leaves nothing behind, and a solver that gives up is
-    replaced by another one, which begins the step anew."""
+    Each attempt starts from the last converged state: the state of a failed one is dropped, and a solver that fails is
+    replaced by another one, which begins the step again."""
     before, attempt = first, None
     own, prepared = None, None
     while (time := schedule.next(attempt)) is not None:
