@@ -19,7 +19,7 @@ NAMES = [
     for program in PROGRAMS
     for name in re.findall(r"^TEST\((\w+)\)", program.read_text(encoding="utf-8"), re.MULTILINE)
 ]
-FLAGS = ("-std=c++20", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-maybe-uninitialized")
+FLAGS = ("-std=c++20", "-O1", "-Wall", "-Wextra", "-Werror")
 
 
 def compiler() -> str:
