@@ -100,10 +100,10 @@ def test_links_lead_somewhere(document: Path) -> None:
 
 @pytest.mark.parametrize("page", ["api.md"])
 def test_python_on_pages_runs(page: str) -> None:
-    """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift. The law and
-    the material have the derivatives that they claim."""
+    """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift. The law
+    and the material have the derivatives that they claim."""
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
-    scope: dict = {"__name__": "page"}
+    scope: dict = {"__name__": "__main__"}  # dataclasses look their module up
     for code in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
         exec(code, scope)
     assert scope["operator"].shape == (4, 3 * 8)
