@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
 from abut.contact.coupling import couple, default_reach
-from abut.contact.geometry import area_vectors, facet_sizes, full_moments, straight
+from abut.contact.geometry import area_vectors, facet_sizes, full_moments, mean_normals, straight
 from abut.contact.sides import code, words
 from abut.detection.opposing_facets import NEAR
 from abut.diagnosis.finding import Finding
@@ -67,8 +67,11 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
 
 
 def _normals(surface: Surface) -> NDArray[np.float64]:
-    """Of each facet by itself, (n_facets, dim): one without an area, which has none, gets zero."""
-    normal = area_vectors(surface).sum(axis=1)
+    """One for each facet, (n_facets, dim); of each by itself where one has no area, so that its nodes have no normals."""
+    try:
+        return mean_normals(surface)
+    except InputError:
+        normal = area_vectors(surface).sum(axis=1)
     return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
 
 
