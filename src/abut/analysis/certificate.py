@@ -88,7 +88,7 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
     bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
     add("bare area", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
-    total = pair.space.removed + len(pair)
+    total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
     add("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
         "share of the contactor's multipliers without target or held by supports")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.

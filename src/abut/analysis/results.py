@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, certificate
 from abut.analysis.faceting import free_axes
+from abut.analysis.friction import friction_checks, friction_forces, friction_result
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.statistics import (
     forces_on_bodies,
@@ -35,9 +36,11 @@ from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
+from abut.problem.problem import CONTACTS
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, RigidResult, Step
+from abut.solution.state import OPEN
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
@@ -66,17 +69,19 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
     for pair in system.pairs:
         constant, varying = offsets(model, pair.contact)
         deepest.append(overlaps(pair, nodal, constant + float(varying @ factors)))
-    largest = [pair.space.transfer @ p for pair, p in zip(system.pairs, pressures) if not pair.tied]
+    largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, pressures) if not pair.tied]
     beside = max(
         [float(np.abs(p).max(initial=0.0)) for p in largest] + _largest_pressures(len(system.pairs), before) + [0.0]
     )
+    slips = state.history.of(CONTACTS)
     contacts = tuple(
         _contact(
             model.mesh,
             pair,
             pressure,
             gap,
-            active,
+            status,
+            slips.get(pair.contact.name),
             attempt.iterations[-1].contact_residual,
             reference,
             depth,
@@ -84,11 +89,11 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
             free_axes(model, held, pair),
             elsewhere,
         )
-        for pair, pressure, gap, active, reference, depth, elsewhere in zip(
+        for pair, pressure, gap, status, reference, depth, elsewhere in zip(
             system.pairs,
             pressures,
             system.split(system.gap(state)),
-            system.split(state.closed),
+            system.split(state.status),
             _largest_pressures(len(system.pairs), before),
             deepest,
             covered_elsewhere(system.pairs, pressures),
@@ -153,9 +158,10 @@ def _largest_pressures(n_pairs: int, steps: Sequence[Step]) -> list[float]:
 def _contact(
     mesh: Mesh,
     pair: Pair,
-    pressure: NDArray[np.float64],
+    multipliers: NDArray[np.float64],
     gap: NDArray[np.float64],
-    active: NDArray[np.bool_],
+    status: NDArray[np.int8],
+    slips: NDArray[np.float64] | None,
     residual: float,
     reference: float,
     overlap: NDArray[np.float64],
@@ -165,10 +171,14 @@ def _contact(
 ) -> ContactResult:
     dim = pair.contactor.dim
     coupling, degree = pair.coupling, pair.coupling.degree
+    pressure, weight, active = multipliers, pair.weight, status != OPEN
+    if not pair.tied:
+        pressure, weight, gap, active = (of[pair.normal] for of in (multipliers, weight, gap, active))
     values = pair.traction(pressure) if pair.tied else pair.space.transfer @ pressure
     own, other = nodal_forces(coupling, values, dim)
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
-    weight = pair.weight
+    if pair.frictional:
+        own, other = friction_forces(pair, multipliers)
     if pair.tied:
         normal = _compression(pair, values)
         gaps = np.zeros_like(normal)
@@ -187,6 +197,8 @@ def _contact(
     statistics = pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing)
     amount = resultant(mesh.points[ids], own[ids], mesh.axisymmetric, bool(np.abs(values).max(initial=0.0) <= nothing))
     shown = corner_values(pair.contactor, nodal)
+    if slips is None:
+        slips = np.zeros((len(pair), 2))
     return ContactResult(
         name=pair.contact.name,
         contactor=pair.contactor,
@@ -196,7 +208,7 @@ def _contact(
         area=area,
         max_penetration=max(depth, 0.0),
         active=int(active.sum()),
-        multipliers=len(pair),
+        multipliers=len(pair) if pair.tied else len(pair.space),
         removed=pair.space.removed,
         segments=int(coupling.segments.sum()),
         pressure=nodal,
@@ -208,12 +220,14 @@ def _contact(
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
         checks=certificate(
             pair, values, nodal, max(depth, 0.0), residual, reference, overlap, share, beside, free, elsewhere
-        ),
+        )
+        + friction_checks(pair, multipliers, status, slips, reference),
         statistics=statistics,
         resultant=amount,
         contactor_forces=own[ids],
         target_forces=other[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, other[target_ids]),
+        friction=None if at is None else friction_result(pair, at, multipliers, status, slips),
     )
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
+from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, finer, settled, solve_set
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
@@ -42,6 +43,8 @@ def solve_step(
     set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
     state, system = begin, solver.system
+    if any(pair.frictional for pair in system.pairs):
+        return solve_friction(solver, begin, increment, limit, observe, earlier)
     tied = system.tied
     seen: set[bytes] = set()
     history: list[NDArray[np.bool_]] = []
