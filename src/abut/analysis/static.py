@@ -17,7 +17,7 @@ from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.stepping import Control, Fixed, march
+from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import find_places, read
 from abut.problem.assembly import assemble, prescribed
 from abut.problem.clock import Clock
@@ -120,7 +120,8 @@ def solve(
     count = len(steps) + len(times)
 
     def begins(number: int, time: float) -> None:
-        observe(Phase(f"step {number} of {count}", None, number - 1, count))
+        of_all = max(count, number)
+        observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
         loads = held.free.T @ (loaded.forces @ weights(model.histories, time))
         require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
 
@@ -133,8 +134,16 @@ def solve(
         solver, kind = linear_solver("direct", problem, team), "direct"
         return solver
 
-    control = Control(model.solve.max_iterations, observe, begins, prepares, note, fallback)
-    for attempt in march(problem, state, Fixed(times), solver, control, len(steps) + 1):
+    def halves(attempt: Attempt, time: float) -> None:
+        note(
+            f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations: it goes to time {time:.6g} "
+            f"first, not to {attempt.state.time:.6g}"
+        )
+
+    friction = any(pair.frictional for pair in problem.pairs)
+    schedule: Schedule = Automatic(times, state.time) if friction else Fixed(times)
+    control = Control(model.solve.max_iterations, observe, begins, prepares, note, fallback, halves)
+    for attempt in march(problem, state, schedule, solver, control, len(steps) + 1):
         clock.mark("solve")
         observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
         steps.append(result(attempt))

@@ -73,8 +73,10 @@ def solve_friction(
             following = advance(solver, state, friction_laws(system, state))
         except SingularModelError:
             stuck = np.where(state.slipping, CLOSED, state.status)
-            if careful or not state.slipping.any():
+            if not state.slipping.any():
                 raise
+            if careful:
+                break
             careful, state = True, state.with_status(stuck)
             continue
         if careful:
@@ -173,10 +175,13 @@ def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small:
     if not pair.frictional:
         return result
     if np.isfinite(pair.contact.coefficient):
-        trial = np.linalg.norm(pair.tangential_traction(multipliers - gap / pair.scale), axis=1)
-        excess = trial - pair.contact.coefficient * np.maximum(pushed, 0.0)
-        slips = np.where(own == SLIPPING, excess >= -small, excess > small)
-        result = np.where(closed & slips & (trial > small), SLIPPING, result)
+        drag = pair.tangential_traction(multipliers)
+        trial = pair.tangential_traction(multipliers - gap / pair.scale)
+        size = np.linalg.norm(trial, axis=1)
+        excess = size - pair.contact.coefficient * np.maximum(pushed, 0.0)
+        back = np.einsum("kd,kd->k", drag, trial) < 0.0  # slips the way it is pulled: it sticks before it slips back
+        slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
+        result = np.where(closed & slips & (size > small), SLIPPING, result)
     return np.asarray(pair.of_functions(result))
 
 
