@@ -115,7 +115,7 @@ class Ready:
     solver: Prepared
 
     def ended(self, found: Found) -> State:
-        return self.own.expand(found.state, found.laws)
+        return self.own.expand(self.whole.start(), found.state, found.laws)
 
 
 def prepared(model: abut.Model) -> Ready:

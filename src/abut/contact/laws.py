@@ -89,7 +89,8 @@ class Tied:
 
 @dataclass(frozen=True)
 class Coulomb:
-    """Complementarity in the first component, Coulomb's law in the others, with the status as it is: theory (R3), (R4).
+    """Complementarity in the first component, Coulomb's law in the others, with the status as it is: theory (R3), (R4),
+    and (R5) for the derivatives.
 
     jump: gap, and slip since the last converged step; traction: pressure, and tangential traction on the contactor.
     stiffness: as of ``Complementarity``; friction: the coefficient, > 0, infinite where nothing slips.

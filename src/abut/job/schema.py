@@ -187,6 +187,7 @@ class ContactTable(Table):
         Contact.adjust
     )
     amplitude: Points | None = None
+    friction: Number | Literal["rough"] = Contact.friction
 
 
 class ProbeTable(Table):

@@ -163,7 +163,8 @@ class ContactProblem:
         return np.concatenate(own) if own else np.zeros(0)
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
-        """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, (R2); empty
+        """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, theory (R2);
+        empty
         without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []
