@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import IntegrationPoints
 
+UNEVEN = 1e-6  # difference of the shares that supports hold of two tangents, above which the frame follows them
+HELD = 1e-9  # share of a tangent along which a node can move, below which it cannot
 Array = NDArray[np.float64]
 
 
@@ -70,7 +72,3 @@ def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
         tangents[uneven] = np.einsum("nab,nad->nbd", turn, tangents[uneven])
     free = np.einsum("nad,nde,nae->na", tangents, moves, tangents) > HELD
     return tangents, free
-
-
-UNEVEN = 1e-6  # difference of the shares that supports hold of two tangents, above which the frame follows them
-HELD = 1e-9  # share of a tangent along which a node can move, below which it cannot

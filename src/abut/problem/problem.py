@@ -159,7 +159,8 @@ class ContactProblem:
         leave out of the slip, as from ``_slipped``."""
         own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
         for pair, gap, before in zip(self.pairs, own, slipped):
-            gap[pair.tangential] -= before
+            if pair.frictional:
+                gap[pair.tangential] -= before
         return np.concatenate(own) if own else np.zeros(0)
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
