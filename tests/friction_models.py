@@ -39,7 +39,7 @@ def stress(dim: int, shear: Array) -> Array:
 
 
 def displacement(x: Array, shear: Array) -> Array:
-    """The field of that stress with Young's modulus one, zero at the bottom's corner, without turning the bottom; x: (n, dim)
+    """The field of that stress with Young's modulus one, zero at the origin, without turning the bottom; x: (n, dim)
     before the blocks are turned."""
     dim = x.shape[1]
     plane = dim == 2

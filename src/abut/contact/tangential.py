@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 def slip_operators(at: IntegrationPoints) -> tuple[Any, ...]:
     """int H_k d . (u_C - u_T) for directions d in the tangent plane of each integration point, facet by facet, theory (R1):
-    (9 n_facets, dim n_points) sparse each. In 2D d is the tangent, the normal turned by a right angle; in 3D there are three,
-    the axes less their normal parts."""
+    (9 n_facets, dim n_points) sparse each. In 2D d is the normal turned by a right angle; in 3D there are three, the
+    axes less their normal parts."""
     normal = at.normal
     dim = normal.shape[1]
     entries = at.gap_operator.tocoo()
@@ -57,7 +57,7 @@ def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
 
     moves: (n, dim, dim), projector on the directions in which each node can move. In 3D the frame follows what supports
     hold, so that a tangent is free or held and never both; else its first tangent is the axis nearest to the plane."""
-    n, dim = normals.shape
+    dim = normals.shape[1]
     if dim == 2:
         tangents = turned(normals)[:, None]
     else:

@@ -36,7 +36,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
             Finding(
                 "info",
                 "bodies",
-                f"{len(shown)} rigid motions are held by contact alone, which can only push",
+                f"{len(shown)} rigid motions are held by contact alone, which can only push{_rub(pairs)}",
                 details=tuple(motion.text for motion in shown),
             )
         )
@@ -44,6 +44,10 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
     if complete:
         findings += _unheld(model, held_by)
     return findings, shown
+
+
+def _rub(pairs: Sequence[Pair]) -> str:
+    return " and rub" if any(pair.frictional for pair in pairs) else ""
 
 
 def _unheld(model: Model, held_by: Restraint) -> list[Finding]:

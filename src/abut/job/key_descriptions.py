@@ -109,7 +109,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "auto": "find the pairs: bodies whose facets face each other",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
-        "friction": "Coulomb's coefficient, or \"rough\" where nothing slips; left out: none",
+        "friction": 'Coulomb\'s coefficient, or "rough" where nothing slips; left out: none',
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
     "IntegrationTable": {

@@ -187,7 +187,7 @@ class ContactTable(Table):
         Contact.adjust
     )
     amplitude: Points | None = None
-    friction: Number | Literal["rough"] = Contact.friction
+    friction: Number | Literal["rough"] = 0.0
 
 
 class ProbeTable(Table):

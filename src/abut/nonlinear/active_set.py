@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, finer, settled, solve_set
+from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.smooth_laws import finish_smooth

@@ -153,11 +153,11 @@ def next_status(system: Linearised, state: State, increment: Increment) -> Statu
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
     reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
     small = FLAT * max(reference, NO_PRESSURE)
-    parts = (system.gap(state), state.multipliers, state.status)
+    gaps, multipliers, before = (system.split(own) for own in (system.gap(state), state.multipliers, state.status))
     return system.join(
         [
-            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, gap, multipliers, status, small)
-            for pair, gap, multipliers, status in zip(system.pairs, *map(system.split, parts))
+            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, gap, own, status, small)
+            for pair, gap, own, status in zip(system.pairs, gaps, multipliers, before)
         ]
     )
 

@@ -152,9 +152,7 @@ class ContactProblem:
         prescribed = self.held.prescribed @ weights(self.model.histories, state.time)
         return np.asarray(self.held.free @ state.unknowns + prescribed)
 
-    def _offset(
-        self, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()
-    ) -> NDArray[np.float64]:
+    def _offset(self, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()) -> NDArray[np.float64]:
         """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``; slipped: what to
         leave out of the slip, as from ``_slipped``."""
         own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]

@@ -67,8 +67,8 @@ class Resultant:
 class FrictionResult:
     """Friction of one contact pair at the end of a step.
 
-    coefficient: infinite for "rough"; traction: (n_contactor_facets, 9, dim) tangential, on the contactor, at the facets' own
-    nodes, force per area; slip, total_slip: the same, of the contactor over the target, in this step and in all steps while
+    coefficient: infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets' own nodes,
+    tangential force per area; slip, total_slip: the same, of the contactor over the target, in this step and in all steps while
     in contact, length; status: (n_contactor_facets, 9) 0 open, 1 stuck, 2 slipping, of a node without a multiplier the
     highest of its facet; sticking_area, slipping_area: as ``ContactResult.area``; work: that friction takes in this step.
     """

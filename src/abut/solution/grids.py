@@ -124,9 +124,7 @@ def _side(
     return result
 
 
-def _friction(
-    friction: FrictionResult, facets: NDArray[np.int64], n_nodes: int, side: int
-) -> dict[str, NDArray[Any]]:
+def _friction(friction: FrictionResult, facets: NDArray[np.int64], n_nodes: int, side: int) -> dict[str, NDArray[Any]]:
     """Tangential traction and slips (n, 3), and status (0 open, 1 stuck, 2 slipping), at the nodes of facets."""
     result: dict[str, NDArray[Any]] = {}
     for name in ("traction", "slip", "total_slip"):

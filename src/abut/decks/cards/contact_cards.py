@@ -11,6 +11,7 @@ from abut.decks.cards.reasons import Reasons
 from abut.decks.cards.record import GeneralContact, Numbers, Pair
 from abut.errors import nearest
 
+
 @dataclass(frozen=True)
 class Interaction:
     """What surfaces do to each other. overclosure: HARD, LINEAR, ...; friction: coefficient."""
