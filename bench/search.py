@@ -61,11 +61,8 @@ def problems() -> list[Problem]:
         *(Problem("beam", cell, facets, lambda n, c=cell: beam(n, c)) for cell in PLANE),
         *(Problem("beam in space", cell, (25, 50, 100), lambda n, c=cell: solid_beam(n, c)) for cell in SOLID),
         *(Problem("ball", cell, cells, lambda n, c=cell: ball(n, cell=c)) for cell in ("quad4", "quad8")),
-        *(
-            Problem("ball", f"quad8, {k} steps", cells[:m], lambda n, k=k: ball(n, cell="quad8", steps=k))
-            for k, m in ((4, 3), (10, 2))
-        ),
-        *(Problem("layer", cell, facets[:4], lambda n, c=cell: layer(n, c)) for cell in ("quad4", "quad8")),
+        *(Problem("ball", f"quad8, {k} steps", cells, lambda n, k=k: ball(n, cell="quad8", steps=k)) for k in (4, 10)),
+        *(Problem("layer", cell, facets, lambda n, c=cell: layer(n, c)) for cell in ("quad4", "quad8")),
         *(
             Problem("cylinder", f"{cell}, {space}", (10, 20, 40), lambda n, c=cell, s=space: line(n, c, pressure=s))
             for cell in ("quad8", "tri6")
@@ -127,7 +124,7 @@ def main() -> None:
                 cells = (own.name, own.detail, size, path, "/".join(map(str, found.solutions)), f"{found.seconds:.2f}")
                 print(*cells, "(by the direct solver)" if found.direct else "", sep=" | ", flush=True)
             if worst and not bounded(worst):
-                failed += max(worst) > MOST  # on the coarsest meshes two or three may be enough
+                failed += 1
                 print(f"more than {MOST}, or more than {GROWTH} times the first and {MORE}: {worst}")
     raise SystemExit(1 if failed else 0)
 

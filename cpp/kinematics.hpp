@@ -10,8 +10,8 @@
 namespace abut {
 
 // Cells of one type and an integration rule on the reference cell: points (any, dim), nodes (count, n); shapes (rule,
-// n), derivatives (rule, n, dim), weights (rule). mean_dilatation: the dilatation is its mean over the cell, theory
-// (E3).
+// n), derivatives (rule, n, dim), weights (rule). mean_dilatation: the dilatation is its mean over the cell,
+// theory (E3).
 struct Cells {
   const double *points;
   const std::int32_t *nodes;
@@ -53,27 +53,47 @@ public:
 
   // Strain at point q under displacements u (n, dim) of the nodes.
   void strain(std::size_t q, const double *u, double *strain) const {
-    std::fill_n(strain, STRAINS, 0.0);
+    double slope[3][3] = {{0}};
     for (std::size_t i = 0; i < n; ++i) {
-      double b[STRAINS][dim];
-      derivative(q, i, b);
-      for (int s = 0; s < STRAINS; ++s)
-        for (int a = 0; a < dim; ++a)
-          strain[s] += b[s][a] * u[i * dim + a];
+      const double *g = &gradient[(q * n + i) * dim];
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          slope[a][b] += u[i * dim + a] * g[b];
+      if constexpr (axisymmetric)
+        slope[2][2] += u[i * dim] * hoop[q * n + i];
     }
+    for (int a = 0; a < 3; ++a) {
+      strain[a] = slope[a][a];
+      strain[3 + a] = slope[a][(a + 1) % 3] + slope[(a + 1) % 3][a];
+    }
+    if (!cells.mean_dilatation)
+      return;
+    double more = -(strain[0] + strain[1] + strain[2]);
+    for (std::size_t j = 0; j < n * dim; ++j)
+      more += mean[j] * u[j];
+    for (int a = 0; a < 3; ++a)
+      strain[a] += more / 3;
   }
 
   // Adds the forces (n, dim) of a stress at point q.
   void add_force(std::size_t q, const double *stress, double *force) const {
+    // The mean stress works on the mean dilatation where that takes the place of the dilatation at the point.
+    const double averaged = cells.mean_dilatation ? (stress[0] + stress[1] + stress[2]) / 3 : 0, w = volume[q];
+    double sigma[3][3];
+    for (int a = 0; a < 3; ++a) {
+      sigma[a][a] = stress[a] - averaged;
+      sigma[a][(a + 1) % 3] = sigma[(a + 1) % 3][a] = stress[3 + a];
+    }
     for (std::size_t i = 0; i < n; ++i) {
-      double b[STRAINS][dim];
-      derivative(q, i, b);
+      const double *g = &gradient[(q * n + i) * dim];
       for (int a = 0; a < dim; ++a) {
-        double sum = 0;
-        for (int s = 0; s < STRAINS; ++s)
-          sum += b[s][a] * stress[s];
-        force[i * dim + a] += volume[q] * sum;
+        double sum = averaged * mean[i * dim + a];
+        for (int b = 0; b < dim; ++b)
+          sum += sigma[a][b] * g[b];
+        force[i * dim + a] += w * sum;
       }
+      if constexpr (axisymmetric)
+        force[i * dim] += w * sigma[2][2] * hoop[q * n + i];
     }
   }
 
@@ -106,15 +126,14 @@ public:
   void add_stiffness(std::size_t q, const Moduli &tangent, double *block) {
     const double w = volume[q], mu = tangent.mu;
     const double lambda = cells.mean_dilatation ? -2 * mu / 3 : tangent.lambda; // what is left is deviatoric
-    const double *ring = hoop.data() + (axisymmetric ? q * n : 0);
     bulk += w * (tangent.lambda + 2 * mu / 3);
     for (std::size_t i = 0; i < n; ++i) {
-      double g[dim];
+      double g[dim]; // local, so that it stays in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
+      const double hoop_i = axisymmetric ? hoop[q * n + i] : 0;
       for (std::size_t k = i; k < n; ++k) {
         const double *h = &gradient[(q * n + k) * dim];
-        double *out = &block[(i * n + k) * dim * dim];
-        double scalar = 0;
+        double *out = &block[(i * n + k) * dim * dim], scalar = 0;
         for (int a = 0; a < dim; ++a)
           scalar += g[a] * h[a];
         for (int a = 0; a < dim; ++a) {
@@ -123,9 +142,10 @@ public:
           out[a * dim + a] += w * mu * scalar;
         }
         if constexpr (axisymmetric) {
-          out[0] += w * (lambda + 2 * mu) * ring[i] * ring[k];
+          const double hoop_k = hoop[q * n + k];
+          out[0] += w * (lambda + 2 * mu) * hoop_i * hoop_k;
           for (int a = 0; a < dim; ++a)
-            out[a * dim] += w * lambda * g[a] * ring[k], out[a] += w * lambda * ring[i] * h[a];
+            out[a * dim] += w * lambda * g[a] * hoop_k, out[a] += w * lambda * hoop_i * h[a];
         }
       }
     }
@@ -170,10 +190,12 @@ private:
     double whole = 0;
     std::fill(mean.begin(), mean.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q) {
-      whole += volume[q];
-      for (std::size_t i = 0; i < n; ++i)
-        for (int a = 0; a < dim; ++a)
-          mean[i * dim + a] += volume[q] * dilatation(q, i, a);
+      const double *g = &gradient[q * n * dim], w = volume[q];
+      whole += w;
+      for (std::size_t j = 0; j < n * dim; ++j)
+        mean[j] += w * g[j];
+      for (std::size_t i = 0; axisymmetric && i < n; ++i)
+        mean[i * dim] += w * hoop[q * n + i];
     }
     for (double &value : mean)
       value /= whole;

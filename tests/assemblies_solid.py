@@ -8,7 +8,7 @@ import numpy as np
 
 import abut
 from abut.mesh import make
-from assemblies import Parts, Rng, press
+from assembly_parts import Parts, Rng, press
 
 
 def stack(rng: Rng) -> abut.Model:

@@ -29,7 +29,7 @@ SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
     *("force balance", "moment balance", "penetration", "overlap", "faceting"),
     *("tension", "complementarity", "oscillation", "resolution"),
-    *("facet moments", "bare area", "removed multipliers", "covered twice"),
+    *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
 
 
@@ -100,7 +100,7 @@ def test_oscillation_of_spurious_modes(cell: str, pressure: str, n: int, m: int)
         solution = None
     if solution is not None:
         own = solution.contacts[0].multiplier
-        even = n == m and np.nanmax(own) < 1.1 * np.nanmin(own)
+        even = n == m and np.nanmax(own) < 1.2 * np.nanmin(own)
         assert even or "oscillation" in failed(solution)
         assert even or checks(solution)["oscillation"].value > 0.2
     assert checks(abut.solve(pressed(n, m, cell)))["oscillation"].value < 0.01
@@ -302,7 +302,7 @@ def test_cover_is_checked() -> None:
     """A third of every loaded facet covered is too little; so is one multiplier in fifty that is left."""
     own, values = sound()
     part = own.coupling.covered / 3.0
-    assert certified(coupled(own, covered=part), values) == {"bare area"}
+    assert certified(coupled(own, covered=part), values) == {"loaded area without target"}
     few = replace(own, space=replace(own.space, removed=50 * len(own.space)))
     assert certified(few, values) == {"removed multipliers"}
 

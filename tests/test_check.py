@@ -30,8 +30,12 @@ SOFT = abut.LinearElastic(young=70e3, poisson=0.3)
 
 # fmt: off
 FAULTY = {  # what the one line must say, and its cure; the exit status
-    "sliding": ("body 'upper' can shift along x without resistance", "add a support, or a symmetry plane", 4),
-    "tie-and-support": ("support on 'upper.bottom' and the tie hold the same nodes", "remove support on 'upper.bottom'", 4),
+    "sliding": ("body 'upper' is free to translate along x", "add a support, or a symmetry plane", 4),
+    "tie-and-support": (
+        "support on 'upper.bottom' and the tie constrain the same nodes",
+        "remove support on 'upper.bottom'",
+        4,
+    ),
     "small-target": ("target 'lower.top' is too small", "add these facets to 'lower.top'", 0),
     "inside-out": ("4 quad4 cells of 'upper' are inverted", "their nodes run clockwise, those of other cells do not", 2),
     "metres-and-millimetres": ("one seems to be meshed in metres", "scale the coordinates of 'upper' by 1000", 2),
@@ -125,7 +129,7 @@ def test_histogram_of_gaps() -> None:
     points = upper.points.copy()
     points[:, 2] += 0.01 * (points[:, 0] - 2) / 6 * (15 - points[:, 2]) / 5
     report = check(blocks(replace(upper, points=points)))
-    (gap,) = (f for f in report.findings if "gap 0" in f.what or "gap 2" in f.what or "gap 1" in f.what)
+    (gap,) = (f for f in report.findings if f.what.startswith("gap "))
     assert len(gap.details) == 8
     shares = [float(line.split()[-1].rstrip("%")) for line in gap.details]
     assert shares == pytest.approx([12.5] * 8, abs=3.0)  # two points a facet: 40 columns in 8 bars
@@ -166,7 +170,7 @@ def test_symmetry_planes_across_a_tie_are_no_over_constraint() -> None:
     ("change", "message"),
     [
         ({"loads": [abut.Pressure("upper.left", 50e3)]}, "strains body 'upper'"),
-        ({"loads": [abut.Force("upper.left", (1e-5, 0, 0))]}, "which is hardly anything"),
+        ({"loads": [abut.Force("upper.left", (1e-5, 0, 0))]}, "which is close to zero"),
         ({"material": abut.LinearElastic(young=210.0, poisson=0.3, density=7.85e-9)}, "speaks of millimetres"),
         ({"material": abut.LinearElastic(young=1e-3, poisson=0.3)}, "is one in Pa, the other in MPa?"),
     ],
@@ -210,9 +214,11 @@ def test_loads_that_contact_cannot_balance(on: str, force: float, stands: bool) 
         assert abut.solve(model).converged
         return
     assert report.status == 4
-    how = {"foot": "shift along z", "arm": "turn about y"}[on]
-    assert f"body 'upper' can {how}: the loads pull it off its contact" in said(report, "error")
-    with pytest.raises(abut.SingularModelError, match=f"body 'upper' can {how}: the loads pull it off its contact"):
+    how = {"foot": "translate along z", "arm": "rotate about y"}[on]
+    assert f"body 'upper' is free to {how}: the loads pull it off its contact" in said(report, "error")
+    with pytest.raises(
+        abut.SingularModelError, match=f"body 'upper' is free to {how}: the loads pull it off its contact"
+    ):
         abut.solve(model)
 
 
@@ -228,9 +234,9 @@ def test_loose_motions_are_advice_and_drawn(tmp_path: Path, capsys: pytest.Captu
     assert sum(f["severity"] == "advice" for f in answer["findings"]) == 3
     held = {m["motion"]: m["resisted_by"] for m in answer["motions"]}
     assert held == {
-        "body 'upper' can shift along x": "nothing",
-        "body 'upper' can shift along y": "nothing",
-        "body 'upper' can turn about z": "nothing",
+        "translation of body 'upper' along x": "nothing",
+        "translation of body 'upper' along y": "nothing",
+        "rotation of body 'upper' about z": "nothing",
     }
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(tmp_path / "out" / "motions.vtu"))

@@ -13,6 +13,7 @@ import pytest
 import abut
 from abut.cli import main
 from abut.job import load_job
+from abut.verify import law_tangents, material_tangent
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
@@ -99,14 +100,18 @@ def test_links_lead_somewhere(document: Path) -> None:
 
 @pytest.mark.parametrize("page", ["api.md"])
 def test_python_on_pages_runs(page: str) -> None:
-    """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift."""
+    """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift. The law
+    and the material have the derivatives that they claim."""
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
-    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    scope: dict = {}
-    exec(code, scope)
+    scope: dict = {"__name__": "__main__"}  # dataclasses look their module up
+    for code in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(code, scope)
     assert scope["operator"].shape == (4, 3 * 8)
     assert np.abs(scope["operator"] @ np.tile([0.3, -0.2, 0.7], 8)).max() < 1e-14
     assert np.abs(scope["gap"]).max() < 1e-14
+    law, material = scope["SoftLayer"](1e5), scope["Hooke"](5.0, 1.0)
+    assert law_tangents(law, np.array([[-0.01], [0.02]]), np.array([[5.0], [1.0]])) < 1e-7
+    assert material_tangent(material, np.random.default_rng(0).uniform(-1, 1, (5, 6))) < 1e-7
 
 
 def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -132,7 +132,9 @@ def test_block_on_a_slope_below_the_angle_of_friction(share: float) -> None:
 
 
 def test_block_on_a_slope_above_the_angle_of_friction() -> None:
-    with pytest.raises(SingularModelError, match=r"body 'upper' can shift along x: .* friction up to its coefficient"):
+    with pytest.raises(
+        SingularModelError, match=r"body 'upper' can shift along x: .* friction only up to its coefficient"
+    ):
         abut.solve(on_a_slope(1.001 * np.arctan(FRICTION)))
 
 

@@ -48,7 +48,7 @@ def test_the_harness_sees_what_it_should(tmp_path: Path) -> None:
     """Tracebacks, bugs, warnings, leftovers: each is a problem."""
     from fuzz.worker import judge
 
-    assert "status 1" in judge(1, "abut: this is a bug in abut", tmp_path)
+    assert "status 1" in judge(1, "abut: internal error: this is a bug in abut", tmp_path)
     assert "status 2" in judge(2, "Traceback (most recent call last)", tmp_path)
     assert "status 4" in judge(4, "x.py:1: RuntimeWarning: overflow", tmp_path)
     assert judge(2, "abut: error: expected a number", tmp_path) == ""

@@ -1,4 +1,4 @@
-"""Bodies that nothing holds are named, before anything is solved: contact can only push."""
+"""Bodies with free rigid-body modes are named, before anything is solved: contact carries no tension."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_block_pushed_with_nothing_behind_it(space: str, unit: str, gap: float) 
     supports = [abut.Support("punch.top", **{up(space): -0.02 * size}, **across(space))]
     model = assembled(space, side_by_side(space, loose, size), supports, [], size)
     axis = "the axis -y" if space == "axisymmetric" else f"-{up(space)}"
-    fails_with(model, f"body 'block' can shift along {axis}: contact can only push it that way")
+    fails_with(model, f"body 'block' is free to translate along {axis}: contact can only push it that way")
 
     floored = side_by_side(space, {**loose, "floor": (3.0, -2.0, -1.0 - gap)}, size)
     floor = abut.Support("floor.bottom", **{up(space): 0.0}, **across(space))
@@ -115,7 +115,7 @@ def test_pushed_along_a_floor() -> None:
         solids = [abut.Solid(body, steel(1.0)) for body in mesh.bodies]
         return abut.Model(mesh, solids, supports, [abut.Pressure("block.top", 1.0)], contacts, plane="strain")
 
-    fails_with(model(False), "body 'block' can shift along x: contact can only push it that way")
+    fails_with(model(False), "body 'block' is free to translate along x: contact can only push it that way")
     assert check(model(True)).status == 0
     assert abut.solve(model(True)).converged
 
@@ -133,10 +133,10 @@ def test_beam_pulled_off_at_its_tip(unit: str) -> None:
 
     seen: list[object] = []
     model = scaled(10.01)
-    with pytest.raises(abut.SingularModelError, match=r"body 'beam' can .*: the loads pull it off its contact"):
+    with pytest.raises(abut.SingularModelError, match=r"body 'beam' is free to .*: the loads pull it off its contact"):
         abut.solve(model, seen.append)
     assert not [row for row in seen if isinstance(row, Iteration)]
-    fails_with(model, "body 'beam' can")
+    fails_with(model, "body 'beam' is free to")
     assert check(scaled(9.99)).status == 0
     assert abut.solve(scaled(9.99)).converged
 
@@ -157,11 +157,11 @@ def test_pulled_off_in_a_later_step() -> None:
     )
     done: list[int] = []
     with pytest.raises(
-        abut.SingularModelError, match=r"body 'block' can shift along y: the loads pull it off .* in step 3"
+        abut.SingularModelError, match=r"body 'block' is free to translate along y: the loads pull it off .* in step 3"
     ):
         abut.solve(model, on_step=lambda so_far, _: done.append(len(so_far.steps)))
     assert done == [1, 2]
-    fails_with(replace(model, solve=abut.SolveOptions(steps=1)), "body 'block' can shift along y")
+    fails_with(replace(model, solve=abut.SolveOptions(steps=1)), "body 'block' is free to translate along y")
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -206,7 +206,7 @@ def test_ball_between_plates_may_spin(space: str, unit: str, load: str) -> None:
     assert not any("push it that way" in finding.line for finding in report.findings)
     assert abut.solve(model([])).converged
     sideways = abut.Force("ball.round", (1.0, *(0.0 for _ in others)))
-    fails_with(model([sideways]), "body 'ball' can shift along x without resistance")
+    fails_with(model([sideways]), "body 'ball' is free to translate along x")
 
 
 def test_about_to_tip_is_held() -> None:

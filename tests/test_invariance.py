@@ -176,7 +176,8 @@ def test_matching_sides_change_places(kind: str, seed: int, shape: str, gap: flo
         a = getattr(one, f"{mine}_part").toarray()[rows][:, part]
         b = getattr(two, f"{theirs}_part").toarray()
         b = b[:, n:] if mine == "contactor" else b[:, :n]
-        assert np.abs(a + b).max() < 1e-9 * area.max()
+        # Inverse maps of quadrilaterals are no polynomials: they are integrated to theory (Q6), from either side.
+        assert np.abs(a + b).max() < 5e-9 * area.max()
 
 
 @pytest.mark.parametrize("cell", ["tri3", "quad4", "quad8", "quad9", "tet4", "hex8", "hex20"])

@@ -23,7 +23,6 @@ LARGER = {  # still to be divided: file and function
     "analysis/static.py solve",
     "contact/coupling.py couple",
     "cpp/cells.hpp shape",
-    "cpp/flatten.hpp flatten",
     "cpp/segments.cpp couple",
     "nonlinear/active_set.py solve_step",
 }

@@ -22,7 +22,7 @@ from test_mesh_files import volume
 
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")
 GMSH = {"tri3": 2, "tri6": 9, "quad4": 3, "quad8": 16, "quad9": 10, "line2": 1, "line3": 8}
-NOTE = "body 'b': its cells ran clockwise and were turned round"
+NOTE = "body 'b': its cells were numbered clockwise; their numbering was reversed"
 
 
 def sheared(cell: str) -> Mesh:

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 import abut
 from abut.linear import iterative
 from abut.linear.fractional import inverse_root
-from abut.linear.schur_preconditioner import interfaces, schur_inverse
+from abut.linear.schur_preconditioner import half_spaces, interfaces, schur_inverse
 from abut.mesh.make import box, join, rectangle
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pairs
@@ -234,3 +234,16 @@ def test_interface_operator_is_close_to_the_true_one() -> None:
         values = np.linalg.eigvals(product).real
         assert values.min() > 0.2
         assert values.max() < 5.0 * max(values.min(), 0.2)
+
+
+def test_interfaces_at_once_are_those_one_by_one() -> None:
+    """Half spaces of several pairs do not see each other; the inverse undoes the operator."""
+    model = blocks(4, tilt=0.0)
+    (pair,) = pairs(model, supports(model))
+    several = [pair, replace(pair, compliance=3.0 * pair.compliance)]
+    together, alone = half_spaces(interfaces(several)), half_spaces(interfaces([pair]))
+    p = np.random.default_rng(0).standard_normal((2, len(pair)))
+    gap = together.forward(p.ravel()).reshape(2, -1)
+    assert np.abs(gap[0] - alone.forward(p[0])).max() < 1e-10 * np.abs(gap[0]).max()
+    assert np.abs(gap[1] - 3.0 * alone.forward(p[1])).max() < 1e-10 * np.abs(gap[1]).max()
+    assert np.abs(together.inverse(gap.ravel()) - p.ravel()).max() < 0.05 * np.abs(p).max()  # roots are to 1 %

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from abut.contact.merging import added
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
+from abut.parallel import part
 from abut.parallel.partition import cell_graph, layout, pieces, point_owners
 from patch import two_blocks
 
@@ -109,3 +111,22 @@ def test_layout_has_a_place_for_each(coupled: bool) -> None:
         assert len(np.unique(np.column_stack([of_point, places.slot // 3]), axis=0)) == len(np.unique(of_point))
     values = np.random.default_rng(4).random((free.shape[1], 2))
     assert np.array_equal(places.values([share for (share,) in places.shares(values)]), values)
+
+
+def test_forces_of_a_part_are_the_same_without_its_matrix() -> None:
+    """A part whose matrix has made room integrates its forces anew, for every column; one without cells has none."""
+    mesh = glued()
+    own = Solids(mesh, {"a": LinearElastic(2.0, 0.3), "b": LinearElastic(5.0, 0.2)})
+    store: dict[str, Any] = {}
+    part.assemble(store, own)
+    u = np.random.default_rng(5).uniform(-1, 1, (mesh.points.size, 2))
+    with_matrix = part.internal(store, u)
+    del store["stiffness"]
+    for moved, force in ((u, with_matrix), (u[:, 0], with_matrix[:, 0])):
+        assert np.abs(part.internal(store, moved) - force).max() < 1e-14 * np.abs(force).max()
+    empty = pieces(mesh, np.zeros(mesh.n_cells, dtype=int), 2)[1].mesh
+    part.assemble(store, Solids(empty, own.materials))
+    assert store["stiffness"].shape == (0, 0)
+    del store["stiffness"]
+    assert part.internal(store, np.zeros((0, 2))).shape == (0, 2)
+    assert part.stresses(store, {}, np.zeros((0, 3)), np.zeros(0))[0].shape == (0, 6)

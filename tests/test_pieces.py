@@ -14,12 +14,12 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
+from abut.bodies.solids import Solids
 from abut.errors import InputError
 from abut.mesh.make import box, join, rectangle
 from abut.output.fields import write_fields
 from abut.output.parallel import Pieces
 from abut.output.results import is_written, write
-from abut.parallel.part import Part
 from abut.parallel.partition import pieces
 from abut.solution import Solution
 from abut.solution.grids import field_grid
@@ -46,7 +46,7 @@ def dealt(size: int, solution: Solution) -> Team:
     team, mesh = Team(size), solution.model.mesh
     parts = pieces(mesh, np.sort(np.arange(mesh.n_cells) % size), size)
     for store, part in zip(team.stores, parts):
-        store["part"] = Part(part.mesh, {}, None, {})
+        store["part"] = Solids(part.mesh, {})
     team.store["pieces"] = parts
     return team
 

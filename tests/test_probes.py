@@ -18,7 +18,7 @@ from abut.mesh.quadrature import gauss_rule
 from abut.mesh.reference import reference_nodes
 from abut.probing import boxes, find_place, read
 from abut.probing.cells import locate
-from abut.probing.feet import feet
+from abut.probing.closest_points import feet
 from abut.probing.inverse import nearest
 from abut.solution import Step
 from probe_models import JOB, distorted, free, two_blocks

@@ -104,13 +104,6 @@ def test_more_iterations_cure_a_limit_that_is_too_low() -> None:
     assert abut.solve(applied(solution.model, remedy)).converged
 
 
-def sharp() -> abut.Model:
-    """Rollers between plates: one of the few assemblies on which the constraint function fails (1 of 234 tried)."""
-    model = PLANE["balls"](np.random.default_rng(151))
-    contacts = [replace(c, law="constraint-function", epsilon=1e-14) for c in model.contacts]
-    return replace(model, contacts=contacts)
-
-
 def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """The constraint function without a line search, so that it fails at once."""
     monkeypatch.setattr(smooth_laws, "HALVINGS", 0)
@@ -121,15 +114,6 @@ def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPat
     (remedy,) = remedies(solution)
     assert remedy.action == "contact 'ball.round-block.top': law = \"complementarity\""
     assert abut.solve(applied(solution.model, remedy)).converged
-
-
-@pytest.mark.long
-def test_complementarity_cures_the_constraint_function() -> None:
-    solution = abut.solve(sharp())
-    assert not solution.converged
-    found = remedies(solution)
-    assert found[0].action.endswith('law = "complementarity"')
-    assert abut.solve(applied(solution.model, found[0])).converged
 
 
 def overlapping(kind: str) -> tuple[abut.Model, str]:
@@ -199,7 +183,7 @@ def test_place_is_named_with_nodes_and_coordinates(tmp_path: Path) -> None:
     assert sorted(place.coordinates[:, 0].tolist()) == pytest.approx([1.0, 1.25, 1.5])
     assert place.coordinates[:, 1].tolist() == pytest.approx([1.0] * 3)
     np.testing.assert_array_equal(solution.model.mesh.points[place.nodes], place.coordinates)
-    assert str(place) == "contact 'c': facets [0, 1] do not settle, 2 in all, within (1, 1) to (1.5, 1)"
+    assert str(place) == "contact 'c': the contact status of 2 facets keeps changing: [0, 1], within (1, 1) to (1.5, 1)"
     write(solution, tmp_path)
     written = json.loads((tmp_path / "summary.json").read_text())
     assert written["steps"][-1]["unsettled"][0]["nodes"] == place.nodes.tolist()

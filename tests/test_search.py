@@ -46,7 +46,7 @@ def counts(model: abut.Model) -> list[int]:
 
 
 SMALL = {  # of each of the problems, sizes that take no time
-    "beam": (50, 200), "beam in space": (25, 50), "ball": (48, 96), "layer": (50, 100), "cylinder": (10, 20),
+    "beam": (50, 200), "beam in space": (25, 50), "ball": (48, 96), "layer": (50, 400), "cylinder": (10, 20),
     "loose pin": (12, 24),
 }  # fmt: skip
 QUICK = ("quad4", "quad8", "hex8", "quad8, auto")  # cells by the slower ways
@@ -60,10 +60,7 @@ def test_counts_do_not_grow(name: str, path: str) -> None:
         if own.name == name and (path == "elimination" or own.detail in QUICK or name == "loose pin"):
             found = [bench.count(own.model(size), path) for size in SMALL[name]]
             worst = [max(one.solutions) for one in found]
-            if name == "cylinder":  # so easy that two solutions may do; one set after the other took 6 to 14
-                assert max(worst) <= 11, (own, found)
-            else:
-                assert bench.bounded(worst), (own, found)
+            assert bench.bounded(worst), (own, found)
             assert path != "multigrid" or not any(one.direct for one in found)
 
 
@@ -99,7 +96,7 @@ def test_multigrid(kind: str) -> None:
 def test_pulled_off_is_named_at_once() -> None:
     """Beyond half its weight the force at its end turns the beam over: no pressure balances that."""
     seen: list[abut.Iteration] = []
-    with pytest.raises(abut.SingularModelError, match=r"body 'beam' can .*: the loads pull it off its contact"):
+    with pytest.raises(abut.SingularModelError, match=r"body 'beam' is free to .*: the loads pull it off its contact"):
         abut.solve(beam(100, "quad4", lift=10.5), lambda told: seen.append(told))
     assert len([row for row in seen if hasattr(row, "changed")]) <= MOST
     assert counts(beam(100, "quad4", lift=9.9))[0] <= MOST

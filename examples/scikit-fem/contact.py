@@ -26,7 +26,7 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 import abut
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import couple
-from abut.contact.laws import linearise_active
+from abut.contact.laws import Complementarity, LawState
 from abut.contact.pressure_space import pressure_space, resolve
 from abut.mesh.make import join
 from abut.mesh.mesh import CellBlock
@@ -98,18 +98,17 @@ def solve() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     pressure = np.zeros(len(space))
     active = np.ones(len(space), dtype=bool)
-    scale = space.weight / YOUNG  # weighted gap per pressure: compares gap and pressure
+    law = Complementarity(stiffness=YOUNG)  # pressure per length: compares gap and pressure
     for _ in range(30):
         gap = opening + operator @ u
-        law = linearise_active(gap, pressure, active, scale)
-        system = sp.bmat(
-            [[matrix[free][:, free], -operator[:, free].T], [law.by_gap @ operator[:, free], law.by_pressure]]
-        )
+        rows = law.evaluate((gap / space.weight)[:, None], pressure[:, None], LawState(active))
+        by_gap, by_pressure = sp.diags(rows.by_jump[:, 0, 0] / space.weight), sp.diags(rows.by_traction[:, 0, 0])
+        system = sp.bmat([[matrix[free][:, free], -operator[:, free].T], [by_gap @ operator[:, free], by_pressure]])
         forces = matrix @ u - operator.T @ pressure
-        change = spsolve(system.tocsc(), -np.concatenate([forces[free], law.residual]))
+        change = spsolve(system.tocsc(), -np.concatenate([forces[free], rows.residual[:, 0]]))
         u[free] += change[: len(free)]
         pressure += change[len(free) :]
-        wanted = scale * pressure > opening + operator @ u
+        wanted = space.weight * pressure / YOUNG > opening + operator @ u
         if (wanted == active).all():
             break
         active = wanted

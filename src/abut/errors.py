@@ -1,4 +1,4 @@
-"""Every error that abut raises on purpose, each with the exit status of the command line."""
+"""The errors that abut raises, each with the exit status of the command line."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 
 class AbutError(Exception):
-    """Base of abut's errors: the message says what is wrong, where, and how to mend it."""
+    """Base of abut's errors: the message says what is wrong, where, and how to correct it."""
 
     exit_status = 2
 
@@ -31,7 +31,7 @@ class ConvergenceError(AbutError, RuntimeError):
 
 
 class SingularModelError(AbutError, RuntimeError):
-    """The model has no unique solution: free rigid motion or over-constraint."""
+    """The model has no unique solution: free rigid-body mode or over-constraint."""
 
     exit_status = 4
 

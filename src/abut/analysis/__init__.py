@@ -1,4 +1,4 @@
-"""The spine: from a model to its solution."""
+"""The whole analysis: from a model to its solution."""
 
 from abut.analysis.static import solve
 

@@ -64,10 +64,10 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         pressed_in = max(pair.compliance * matters / np.pi, FLAT)
         hidden = (np.zeros(len(areas)) if overlap is None else overlap) / pressed_in
         add("overlap", hidden.max(initial=0.0), OVERLAP,
-            "largest penetration at a point, over what the largest pressure presses in between nodes")  # fmt: skip
+            "largest penetration at a point, over what the largest pressure indents between nodes")  # fmt: skip
         shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
         add("faceting", faceting(pair, nodal, CLOSED * largest, shifts) / matters, FACETING,
-            "pressure that facets make by standing for a curved surface, over the largest pressure")  # fmt: skip
+            "pressure caused by faceting of curved surfaces, over the largest pressure")  # fmt: skip
         tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
         add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
         add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
@@ -78,8 +78,8 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
         add("oscillation", alternating, OSCILLATION,
             "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
         facets = resolution(pair, pressure, support, largest) if largest > LESSER * beside else 0.0
-        add("resolution", facets, RESOLUTION, "one over the facets from the edge of contact to its middle, at the end",
-            last=True)  # fmt: skip
+        add("resolution", facets, RESOLUTION,
+            "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
     if pair.contact.method == "segment-to-segment":
         add("facet moments", _moment_error(pair, areas, cover, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
             "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
@@ -87,10 +87,10 @@ def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float
     others = np.zeros((len(areas), 2)) if elsewhere is None else elsewhere
     covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
     bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
-    add("bare area", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
+    add("loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
     total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
     add("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
-        "share of the contactor's multipliers without target or held by supports")  # fmt: skip
+        "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
     counts = loaded if pair.tied else loaded | (hidden > OVERLAP)
     every = (cover + others[:, 1])[counts]

@@ -1,4 +1,4 @@
-"""What chords of curved surfaces get wrong: the roundness that linear facets leave out, theory (L11)."""
+"""Faceting of curved surfaces: the error of linear facets, theory (L11)."""
 
 from __future__ import annotations
 

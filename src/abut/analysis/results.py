@@ -1,4 +1,4 @@
-"""From the unknowns of a step to what a user reads."""
+"""Results of a step from its state: displacements, stresses, reactions, contact results."""
 
 from __future__ import annotations
 

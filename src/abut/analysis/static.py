@@ -164,10 +164,10 @@ def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[
     largest = float(np.abs(displacement).max(initial=0.0))
     if not largest < ABSURD * extent:
         raise SingularModelError(
-            f"displacements of {largest:.2g} in a model of size {extent:.2g} make no sense: check the units of Young's "
-            "moduli, loads and mesh, and that supports hold every body"
+            f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}: check the "
+            "units of Young's moduli, loads and mesh, and that supports constrain every body"
         )
     if largest > extent:
         note(
-            f"displacements of {largest:.2g} exceed the model's size {extent:.2g}: check units (displacements must be small)"
+            f"displacements of {largest:.2g} exceed the model size {extent:.2g}: check units (displacements must be small)"
         )

@@ -1,4 +1,4 @@
-"""What a contact amounts to in a few numbers: of the reported pressure over the loaded area, and of the nodal forces.
+"""Statistics of a contact: of the reported pressure over the loaded area, and of the nodal forces.
 
 Forces and moments come from the multiplier's nodal forces, never from integrating nodal pressures.
 """
@@ -115,7 +115,7 @@ def nodal_forces(
     coupling: Coupling, values: NDArray[np.float64], dim: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forces of the multiplier on all points, on the contactor's side and on the target's, each (n_points, dim); in 2D per
-    unit thickness, axisymmetric of the whole turn.
+    unit thickness, axisymmetric of the full circumference.
 
     values: facet-wise coefficients of the pressure (9 n_facets,), of a tie's traction (9 n_facets, dim)."""
     own, other = (np.asarray(part.T @ values) for part in (coupling.contactor_part, coupling.target_part))

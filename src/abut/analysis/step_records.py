@@ -1,4 +1,4 @@
-"""What is kept of a converged step, and the way back to it."""
+"""Records of converged steps for a restart, and their attempts from these."""
 
 from __future__ import annotations
 

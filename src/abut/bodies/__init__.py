@@ -1,1 +1,1 @@
-"""Element kernels of solids, and what they feed: stiffness, stresses, loads."""
+"""Element integrals of solids: stiffness, stresses, loads."""

@@ -1,5 +1,5 @@
-"""Forces and stiffness of solids at a displacement; dof of component a at point i: dim i + a. Force per unit thickness in
-2D, all round if axisymmetric."""
+"""Forces and stiffness of solids at a displacement; dof of component a at point i: dim i + a. Forces per unit
+thickness in 2D, all round if axisymmetric."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def stiffness(solids: Solids) -> Any:
 def internal_force(
     solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED, history: History | None = None
 ) -> Array:
-    """int B^T sigma, (dim n_points,), at a displacement (n_points, dim) after a history (none: the initial one)."""
+    """int B^T sigma, theory (E4), (dim n_points,), at a displacement (n_points, dim) after a history (None: the initial)."""
     return respond(solids, displacement, temperature, history, tangent=False).force
 
 

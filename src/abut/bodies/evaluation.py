@@ -34,22 +34,23 @@ def evaluate(
 
     Raises InputError for a material that returns other shapes."""
     material = solids.materials[group.body]
-    respond = law(material, solids.plane)
+    where = f"material of body '{group.body}'"
+    respond = law(lambda *at: _checked(material.evaluate(*at), at[1].shape, where), solids.plane)
     moved = np.zeros(solids.points.shape) if displacement is None else displacement
     for part in group.portions(rule):
         cells = part.arrays(solids, rule)
         strain = strains(cells, moved, temperature.strain(solids, part))
         rows = slice(part.first, part.first + len(strain))
         before = history[group.body][rows] if history else material.initial(len(strain))
-        yield cells, _checked(respond(strain, before), before.shape, f"material of body '{group.body}'")
+        yield cells, respond(strain, before)
 
 
 def _checked(result: Evaluated, history: tuple[int, ...], where: str) -> Evaluated:
     n = history[0]
-    stress, tangent, after = (np.ascontiguousarray(values, dtype=float) for values in result)
+    stress, tangent, after = (np.asarray(values, dtype=float) for values in result)
     for name, values, shape in zip(
         ("stress", "tangent", "history"), (stress, tangent, after), ((n, 6), (n, 6, 6), history)
     ):
         if values.shape != shape:
             raise InputError(f"{where}: evaluate returned a {name} of shape {values.shape}, expected {shape}")
-    return stress, tangent, after
+    return np.ascontiguousarray(stress), np.ascontiguousarray(tangent), after

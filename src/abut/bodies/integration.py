@@ -18,11 +18,11 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
             raise InputError(f"{where}: {kind} cells have a single point already; use 'full'")
         if kind not in REDUCED:
             raise InputError(
-                f"{where}: 'reduced' leaves {kind} cells motions without energy (hourglass modes) that spread through the "
+                f"{where}: 'reduced' leaves {kind} cells zero-energy modes (hourglass modes) that spread through the "
                 f"mesh; use {'full or b-bar' if kind in BBAR else 'full'}, or {', '.join(REDUCED)} cells"
             )
     for kind in kinds if how == "b-bar" else ():
         if kind not in BBAR:
             raise InputError(f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'")
         if plane == "stress":
-            raise InputError(f"{where}: 'b-bar' has nothing to offer in plane stress, which does not lock; use 'full'")
+            raise InputError(f"{where}: 'b-bar' has no benefit in plane stress, which does not lock; use 'full'")

@@ -25,7 +25,7 @@ PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
-    130 stopped by Ctrl-C (143 by SIGTERM), 1 a bug. Of several processes all but the first keep silent about it."""
+    130 stopped by Ctrl-C (143 by SIGTERM), 1 internal error. Of several processes all but the first keep silent about it."""
     if processes() > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when NumPy and the core are imported
     arguments = _parse(argv)
@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if getattr(arguments, "debug", False):
             traceback.print_exc()
-        print(f"abut: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
+        print(f"abut: internal error: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
         print(
             "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
         )

@@ -1,4 +1,4 @@
-"""abut check: what is wrong with a job, and the cure, before it is solved."""
+"""abut check: errors of a job and how to correct them, before it is solved."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ def add_check(commands: Any) -> None:
     """Add the command to the parser's ``commands``."""
     check = commands.add_parser(
         "check",
-        help="examine a job without solving it",
-        description="Free motions, over-constraint, gaps, normals, mesh and units of a job: each finding with its cure.",
+        help="check a job without solving it",
+        description="Rigid-body modes, over-constraint, gaps, normals, mesh, units of a job: each finding with its remedy.",
         epilog="exit status: 0 no errors; 2 bad input; 4 no unique solution",
     )
     check.add_argument("job", type=Path, help="the job file or deck")
     add_ignore(check)
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
-    check.add_argument("--output", type=Path, metavar="DIR", help="write the free rigid motions to DIR/motions.vtu")
+    check.add_argument("--output", type=Path, metavar="DIR", help="write the free rigid-body modes to DIR/motions.vtu")
     check.add_argument(
         "--write-pairs", type=Path, metavar="OUT", help="write the job to OUT with all pairs that auto = true finds"
     )
-    check.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    check.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     check.set_defaults(command=_check)
 
 
@@ -71,7 +71,7 @@ def _print(report: Report, as_json: bool) -> None:
             print(f"           {line}")
     counts = [(report.count(severity), severity) for severity in ("error", "warning", "advice")]
     said = [f"{n} {severity}{'s' if n > 1 and severity != 'advice' else ''}" for n, severity in counts if n]
-    print(", ".join(said) or "nothing to mend")
+    print(", ".join(said) or "no problems found")
 
 
 def _write_motions(directory: Path, job: Job, report: Report) -> None:
@@ -84,7 +84,7 @@ def _write_motions(directory: Path, job: Job, report: Report) -> None:
     mesh = job.model.mesh
     make_directory(directory)
     fields = {
-        f"{number + 1}: {motion.text} (held by {motion.resisted_by})": np.pad(
+        f"{number + 1}: {motion.text} (constrained by {motion.resisted_by})": np.pad(
             motion.displacement, ((0, 0), (0, 3 - mesh.dim))
         )
         for number, motion in enumerate(report.motions)

@@ -25,7 +25,7 @@ def add_convert(commands: Any) -> None:
     convert.add_argument("target", type=Path, help="job file (.toml) or mesh (.vtu)")
     add_ignore(convert)
     convert.add_argument("--quiet", action="store_true", help="print errors only")
-    convert.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    convert.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     convert.set_defaults(command=_convert)
 
 

@@ -1,4 +1,4 @@
-"""What a run shows while it goes on: a table of iterations, and never silence for long."""
+"""Progress of a run on the terminal: a table of iterations and the current stage."""
 
 from __future__ import annotations
 

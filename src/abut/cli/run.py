@@ -29,15 +29,15 @@ if TYPE_CHECKING:
 DONE = 0
 STATUS = """exit status:
   0    done
-  2    bad input: the message says what, where, and how to mend it
-  3    not converged: the last state is written, the message names facets and remedies
+  2    bad input: the message says what, where, and how to correct it
+  3    not converged: the last state is written, the message names facets and gives advice
   4    the model has no unique solution
   130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
        --restart goes on from there
-  1    a bug in abut
+  1    internal error: a bug in abut
 
 several processes (docs/mpi.md): mpiexec -n N abut run JOB [OPTION OF PETSC ...]
-  needs petsc4py and mpi4py; process 0 speaks, and its exit status counts. Options that abut does not know and PETSc
+  needs petsc4py and mpi4py; process 0 prints, and its exit status counts. Options that abut does not know and PETSc
   does stand after the job: -ksp_type minres -ksp_monitor. On one process they need linear = "petsc" in the job.
 """
 
@@ -55,10 +55,12 @@ def add_run(commands: Any) -> None:
     run.add_argument("job", type=Path, help="the job file or deck")
     add_ignore(run)
     run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
-    run.add_argument("--restart", action="store_true", help="go on after the last step that an earlier run has written")
+    run.add_argument(
+        "--restart", action="store_true", help="continue after the last step that an earlier run has written"
+    )
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
-    run.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    run.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     run.set_defaults(command=_start, together=True)
 
 
@@ -69,7 +71,7 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="CARD",
-        help="leave a card (FRICTION) or parameter (NLGEOM) of a deck out that abut does not do; may be repeated",
+        help="omit a card (FRICTION) or parameter (NLGEOM) of a deck that abut does not support; may be repeated",
     )
 
 
@@ -184,7 +186,9 @@ def _unused(options: Sequence[str]) -> str:
     """What became of options that PETSc did not ask for; empty where there are none."""
     names = unused(options) if options else []
     return (
-        f"PETSc did not use {', '.join(names)}: misspelt, or of no use to the solver that was chosen" if names else ""
+        f"PETSc did not use {', '.join(names)}: misspelt, or without meaning for the solver that was chosen"
+        if names
+        else ""
     )
 
 
@@ -215,7 +219,7 @@ def _failure(solution: Solution, directory: Path) -> str:
 
     step = solution.steps[-1]
     places = [str(place) for place in unsettled(step)]
-    where = "; ".join(places) or f"equilibrium is missed by {step.iterations[-1].residual:.1e} of the forces"
+    where = "; ".join(places) or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
     tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
     return f"step {step.number} did not converge: {where}. The last state is in {directory}. Try{tries}"
 

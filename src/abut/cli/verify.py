@@ -1,4 +1,4 @@
-"""abut verify and abut infsup: the method's claims, checked on problems with known answers and on a user's own model."""
+"""abut verify and abut infsup: the method on problems with known answers, and on a user's own model."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def add_verify(commands: Any) -> None:
     verify.add_argument("--plot", type=Path, metavar="FILE", help="with --levels: save the plot (png, svg; matplotlib)")
     verify.add_argument("--job", type=Path, help="patch test of every contact of this job, on its own meshes")
     verify.add_argument("--json", action="store_true", help="print the results as JSON")
-    verify.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    verify.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     verify.set_defaults(command=_verify)
 
 
@@ -53,7 +53,7 @@ def add_infsup(commands: Any) -> None:
         help="also on generated meshes with cells halved, up to N - 1 times",
     )
     infsup.add_argument("--json", action="store_true", help="print the results as JSON")
-    infsup.add_argument("--debug", action="store_true", help="show the traceback of a bug")
+    infsup.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     infsup.set_defaults(command=_infsup)
 
 

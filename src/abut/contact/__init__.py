@@ -1,1 +1,2 @@
-"""The contact operator: segments, multiplier spaces, laws. It knows surfaces only, no solids; other codes may call it."""
+"""The mortar contact operator: segments, multiplier spaces, laws, for surfaces; independent of solids, so that other codes
+may call it."""

@@ -28,7 +28,7 @@ MARGIN = 1.1  # by which sizes and shares must pass their limits for the choice 
 REASONS = {
     "softer": "softer",
     "covered": "the facets of the other side reach far beyond this one",
-    "kinks": "the other side is much finer and would show the kinks of this one",
+    "kinks": "the other side is much finer and would show the faceting of this one",
     "finer": "finer",
     "alike": "first of two alike",
 }

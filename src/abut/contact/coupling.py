@@ -47,7 +47,7 @@ class IntegrationPoints:
 
 @dataclass(frozen=True)
 class Sights:
-    """Corners and middles of all segments, and what the contactor sees from there (n of them).
+    """Gap samples: corners and middles of all n segments, with the target opposite.
 
     facet, target_facet: (n,) of contactor and target; gap: (n,) geometric gap, length; normal: (n, dim) unit, from target to
     contactor; own, other: (n, 9) shape functions of the contactor's and the target's facet, zero where padded.
@@ -74,8 +74,8 @@ class Coupling:
     gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
     covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
     points, sights: where they were asked for.
-    Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the whole turn), ``gap`` times
-    a length.
+    Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the full circumference),
+    ``gap`` times a length.
     """
 
     degree: int
@@ -120,7 +120,8 @@ def couple(
     hidden: bool = False,
     only: NDArray[np.bool_] | None = None,
 ) -> Coupling:
-    """Cut the contactor by the target along the contactor's continuous normal and integrate (paper, section 4).
+    """Divide the contactor into segments by the target, projected along the contactor's continuous normal, and integrate
+    (paper, section 4).
 
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
     rule:   "gauss" or "newton-cotes".
@@ -130,7 +131,7 @@ def couple(
     componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
             sights: keep corners and middles of the segments, which takes a tenth of the time.
     adjust: gaps and overlaps up to this size count as zero, length.
-    hidden: count also what lies behind something nearer; else each point of the contactor sees the nearest target only,
+    hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target only,
             theory (S12).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.contact.merging``.

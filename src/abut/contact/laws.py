@@ -1,7 +1,7 @@
 """Contact laws: residual and derivatives from jump and traction at points; Newton does the rest.
 
-Each law states its residual r(jump, traction) = 0 for n points and c components; the solver finds K u - B^T p = f, theory
-(F6), together with r = 0. Normal component: gap >= 0 open, pressure >= 0 compressive, theory (F2).
+Each law states its residual r(jump, traction) = 0 for n points and c components; the solver finds K u - B^T p = f,
+theory (F6), together with r = 0. Normal component: gap >= 0 open, pressure >= 0 compressive, theory (F2).
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LawState:
-    """What a law may know beside jump and traction. closed: (n,) bool, the contact status that the search holds; history:
-    (n, k) what the law left behind in the last converged step, None where it keeps nothing; slipping: (n,) bool, of those
-    closed, None without friction."""
+    """Data of a law besides jump and traction. closed: (n,) bool, the contact status that the search holds; history:
+    (n, k) of the law after the last converged step, None where it has none; slipping: (n,) bool, of those closed, None
+    without friction."""
 
     closed: NDArray[np.bool_]
     history: Array | None = None
@@ -42,7 +42,7 @@ class LawResult:
 
 @runtime_checkable
 class Law(Protocol):
-    """A contact law, abut's own or a user's: an object with this method."""
+    """A contact law, of abut or a user: an object with this method."""
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
         """jump: (n, c) length, the gap alone for a normal law (c = 1); traction: (n, c) force per area, the pressure alone

@@ -1,4 +1,4 @@
-"""The coupling of a whole interface from those of its parts."""
+"""Merging of couplings: that of a whole interface from those of its parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pressure and gap at the facets' nodes, on both sides: what is shown of a multiplier."""
+"""Nodal recovery: pressure and gap at the facets' nodes, on both sides, from the multiplier."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 """Node-to-segment contact, the method that segment-to-segment replaces: a reference for comparison only.
 
-Each contactor node is held off the target facet that its normal meets; its multiplier is the nodal force over the node's
-tributary area. One pass fails the patch test where the meshes differ. Two passes (both sides as contactor) pass it between
-straight facets of first order in 2D only, and their inf-sup constant is zero (El-Abbasi and Bathe 2001, sections 2 and 5).
+Each contactor node must not penetrate the target facet that its normal meets; its multiplier is the nodal force over the
+node's tributary area. One pass fails the patch test where the meshes differ. Two passes (both sides as contactor) pass it
+between straight facets of first order in 2D only, and their inf-sup constant is zero (El-Abbasi and Bathe 2001, sections 2
+and 5).
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""What the facets of a contactor face: targets that do not hang together move apart, and the pressure jumps between them."""
+"""The target opposite each facet of a contactor: targets that are not connected move independently, and the pressure jumps
+between them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The contactor's rim: where it ends on a target that goes on, the pressure of a body with corners is singular."""
+"""The contactor's boundary: where it ends on a target that extends beyond it, the pressure of a body with corners is
+singular."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Points of a contactor where several contacts meet, or several targets of one: only one pressure has a function of its own
 there.
 
-A point gives way along its normal once. Two functions at it, each over a part of its facets, ask that of it twice, and where
-the targets do not give way (rigid ones, or much stiffer) the pressures are not unique."""
+A point has one displacement along its normal. Two functions at it, each over a part of its facets, constrain it twice, and
+if the targets are rigid, or much stiffer, the pressures are not unique."""
 
 from __future__ import annotations
 

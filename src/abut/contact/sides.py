@@ -1,4 +1,4 @@
-"""The two sides of a contact: surfaces and bodies, one or several, put together to one surface each."""
+"""Contactor and target of a contact: surfaces and bodies, one or several, merged into one surface each."""
 
 from __future__ import annotations
 

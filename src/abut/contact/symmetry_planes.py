@@ -1,4 +1,4 @@
-"""Planes of symmetry, beyond which the pressure goes on as its mirror image: what that says of averages next to them."""
+"""Planes of symmetry, beyond which the pressure continues as its mirror image: correction of averages next to them."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Abaqus and CalculiX decks: what they say (``cards``), and the model that is meant (``translation``)."""
+"""Abaqus and CalculiX decks: their cards (``cards``), and their translation into a model (``translation``)."""

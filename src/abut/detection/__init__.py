@@ -1,4 +1,4 @@
-"""Contact pairs found by what faces what: no surface has to be named."""
+"""Contact detection: pairs of surfaces that face each other; no surface has to be named."""
 
 from abut.detection.find import AUTO, FoundContact, add_surfaces, find_contacts
 

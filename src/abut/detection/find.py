@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut import checks
 from abut.contact.contactor_choice import Choice, choose, side
-from abut.detection.facing import Facing, Outside, facing, outside, seen_by
+from abut.detection.opposing_facets import Facing, Outside, facing, outside, seen_by
 from abut.errors import InputError, nearest
 from abut.materials.material import Material
 from abut.materials.softest import contact_modulus

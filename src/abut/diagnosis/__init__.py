@@ -1,4 +1,4 @@
-"""What is wrong with a model, and the cure, before it is solved."""
+"""Checks of a model before it is solved, advice after: each finding with its remedy."""
 
 from abut.diagnosis.examine import check
 from abut.diagnosis.finding import Finding, Motion, Report, from_error

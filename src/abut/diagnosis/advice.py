@@ -1,4 +1,4 @@
-"""What is most likely to help where a step did not converge, or where surfaces overlap."""
+"""Advice where a step did not converge, or where surfaces overlap."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Remedy:
 
 @dataclass(frozen=True)
 class Place:
-    """Facets of a contactor whose contact does not settle: facets (n,) their numbers within the surface; nodes (m,) point
-    numbers of the mesh; coordinates (m, dim)."""
+    """Facets of a contactor whose contact status keeps changing: facets (n,) their numbers within the surface; nodes (m,)
+    point numbers of the mesh; coordinates (m, dim)."""
 
     contact: str
     facets: NDArray[np.int64]
@@ -44,11 +44,14 @@ class Place:
         facets = ", ".join(map(str, self.facets[:8].tolist())) + (", ..." if len(self.facets) > 8 else "")
         low, high = self.coordinates.min(axis=0), self.coordinates.max(axis=0)
         box = " to ".join("(" + ", ".join(f"{v:.4g}" for v in corner) + ")" for corner in (low, high))
-        return f"contact '{self.contact}': facets [{facets}] do not settle, {len(self.facets)} in all, within {box}"
+        return (
+            f"contact '{self.contact}': the contact status of {len(self.facets)} facets keeps changing: [{facets}], "
+            f"within {box}"
+        )
 
 
 def unsettled(step: Step) -> list[Place]:
-    """Where the contact of a step does not settle, contact by contact."""
+    """Where the contact status of a step keeps changing, contact by contact."""
     surfaces = {c.name: c.contactor for c in step.contacts}
     places = []
     for name, facets in step.cycling.items():
@@ -59,9 +62,9 @@ def unsettled(step: Step) -> list[Place]:
 
 
 def remedies(solution: Solution) -> tuple[Remedy, ...]:
-    """At most three remedies, the most likely first, for a run that did not converge, or whose certificate finds surfaces
-    that overlap; else none. There are no others than those that have been seen to help: the search for the contact ends
-    whatever the mesh, the load steps and the choice of the sides are."""
+    """At most three pieces of advice, the most likely first, for a run that did not converge, or whose certificate finds
+    surfaces that overlap; else none. Only such as have been seen to help: the search for the contact status converges
+    independently of the mesh, the load steps and the choice of the contactor."""
     found = _by_overlap(solution) if solution.converged else (*_by_law(solution), *_by_limit(solution))
     return tuple(found)[:COUNT]
 
@@ -78,7 +81,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         if contact.pressure == "P1" and surface_degree(result.contactor) == 2:
             yield Remedy(
                 f'{where}pressure = "auto"',
-                "P2 has functions that stand on fewer facets, so that contact on one row of facets counts",
+                "the functions of P2 span fewer facets, so that contact on a single row of facets is seen",
             )
         coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
         if coarse > FINER and (sides := swap(solution.model, contact)):
@@ -94,7 +97,7 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
         if contact.law == LAWS[0] and contact.method == METHODS[0]:
             yield Remedy(
                 f'{where}law = "constraint-function"',
-                "it looks at points and errs the other way (too stiff): the truth lies between",
+                "it enforces contact at points and errs on the other side (too stiff): the exact result lies in between",
             )
 
 
@@ -115,5 +118,5 @@ def _by_limit(solution: Solution) -> Iterator[Remedy]:
     if taken >= limit:
         yield Remedy(
             f"solve.max_iterations = {max(MORE * limit, SolveOptions().max_iterations)}",
-            f"the contact was still settling after the {limit} iterations that are allowed",
+            f"the contact status was still changing after the {limit} iterations that are allowed",
         )

@@ -1,4 +1,4 @@
-"""Supports that hold the same nodes as contacts and ties."""
+"""Over-constraint: supports on the same nodes as contacts and ties."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST, ALL = 0.5, 1.0 - 1e-9  # share of the contactor's nodes: a symmetry plane 
 
 
 def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
-    """A contact or tie most of whose contactor nodes supports hold already has nothing left to do there."""
+    """Contacts and ties most of whose contactor nodes are constrained by supports already."""
     surface = pair.contactor
     facing = surface.nodes[pair.coupling.segments > 0]
     nodes = np.unique(facing[facing >= 0]).astype(np.int64)
@@ -38,8 +38,8 @@ def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
         Finding(
             "error" if pair.tied and part > ALL else "warning",
             where,
-            f"over-constrained: {names} and {does} hold the same nodes, {int(taken.sum())} of {len(nodes)} of contactor "
-            f"{words(pair.contact.contactor)}, so that {does} acts on the target alone",
+            f"over-constrained: {names} and {does} constrain the same nodes, {int(taken.sum())} of {len(nodes)} of "
+            f"contactor {words(pair.contact.contactor)}, so that {does} acts on the target alone",
             cure,
             status=SingularModelError.exit_status,
         )

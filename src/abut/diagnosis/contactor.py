@@ -1,19 +1,21 @@
-"""Is the right side of a contact the contactor? By the rule of ``abut.contact.contactor_choice``, as ``auto = true``."""
+"""Check of the choice of contactor, by the rule of ``abut.contact.contactor_choice``, as for ``auto = true``."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
 from abut.contact.coupling import couple, default_reach
-from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
+from abut.contact.geometry import area_vectors, facet_sizes, full_moments, mean_normals, straight
 from abut.contact.sides import code, words
-from abut.detection.facing import NEAR
+from abut.detection.opposing_facets import NEAR
 from abut.diagnosis.finding import Finding
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
+from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 
 CURES = {
@@ -58,10 +60,19 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
         facing = [np.unique(at.facet[near]), np.unique(at.target_facet[near])]
         opposite = float(at.weight[near].sum())
     one, other = (
-        side(size[f], full_moments(own, 0)[f, 0], mean_normals(own)[f], opposite, modulus)
+        side(size[f], full_moments(own, 0)[f, 0], _normals(own)[f], opposite, modulus)
         for own, size, f, modulus in zip(flat, sizes, facing, moduli)
     )
     return one, other
+
+
+def _normals(surface: Surface) -> NDArray[np.float64]:
+    """One for each facet, (n_facets, dim); of each by itself where one has no area, so that its nodes have no normals."""
+    try:
+        return mean_normals(surface)
+    except InputError:
+        normal = area_vectors(surface).sum(axis=1)
+    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
 
 
 def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:
@@ -84,6 +95,6 @@ def _against(choice: Choice, own: Side, other: Side) -> str:
         "softer": "is the stiffer side",
         "covered": f"has only {own.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",
-        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose kinks its pressure will show",
+        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose faceting its pressure will show",
         "finer": f"is {own.size / other.size:.2g} times coarser than its target",
     }[choice.rule]

@@ -1,4 +1,4 @@
-"""What a run will take: solver, memory and time, before it is solved."""
+"""Cost of a run, estimated before it is solved: solver, memory and time."""
 
 from __future__ import annotations
 

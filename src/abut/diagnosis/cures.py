@@ -1,4 +1,4 @@
-"""What to do about each line of the certificate that fails: one sentence each."""
+"""How to correct what makes a line of the certificate fail: one sentence each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from abut.model import LAWS, METHODS, Contact
 from abut.solution import Check, ContactResult, Solution
 
 SECOND = " (second pass)"
-SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and hold every body by supports of its own"
+SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"
 
 
 def cure(check: Check, solution: Solution) -> str:
@@ -36,7 +36,7 @@ def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
 
 MODEL = {
     "model balance": f'solve again with solve.linear = "direct"; if it stays, {SINGULAR_HINT}',
-    "regularisation": "add a support, or a symmetry plane (normal = 0), that holds the motion named in the notes",
+    "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
@@ -50,7 +50,7 @@ def _balance(contact: Contact, result: ContactResult, sides: str) -> str:
 def _penetration(contact: Contact, result: ContactResult, sides: str) -> str:
     if contact.law == LAWS[1]:
         return f'law = "complementarity", an epsilon below {contact.epsilon:g}, or finer facets where they touch'
-    return "raise solve.max_iterations: contact has not closed; else refine where the surfaces touch"
+    return "raise solve.max_iterations: the contact status is not final; else refine where the surfaces touch"
 
 
 def _overlap(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -74,8 +74,8 @@ def _tension(contact: Contact, result: ContactResult, sides: str) -> str:
 
 def _complementarity(contact: Contact, result: ContactResult, sides: str) -> str:
     if contact.law == LAWS[1]:
-        return 'law = "complementarity", or raise solve.max_iterations: the law of contact is not met yet'
-    return "raise solve.max_iterations: the law of contact is not met yet"
+        return 'law = "complementarity", or raise solve.max_iterations: the contact law is not met yet'
+    return "raise solve.max_iterations: the contact law is not met yet"
 
 
 def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -105,7 +105,7 @@ def _bare(contact: Contact, result: ContactResult, sides: str) -> str:
 def _removed(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
         "check that these two surfaces face each other, and name only the facets of the contactor that may touch, none that "
-        "supports hold"
+        "supports constrain"
     )
 
 
@@ -127,7 +127,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "oscillation": _oscillation,
     "resolution": _resolution,
     "facet moments": _moments,
-    "bare area": _bare,
+    "loaded area without target": _bare,
     "removed multipliers": _removed,
     "covered twice": _twice,
 }

@@ -1,4 +1,4 @@
-"""check(model): everything that can be said of a model before it is solved."""
+"""check(model): all checks of a model that need no solution."""
 
 from __future__ import annotations
 

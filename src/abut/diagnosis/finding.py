@@ -1,4 +1,4 @@
-"""One thing that `abut check` has to say, and all of them together."""
+"""Findings of `abut check`, and its report."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ SOUND, BAD_INPUT = 0, 2
 
 @dataclass(frozen=True)
 class Finding:
-    """severity: error (the run fails or its result is worthless), warning (the result may be wrong), advice (it would be
-    better otherwise) or info; what, where, and the cure: what to do, empty where there is nothing to do; details: further
+    """severity: error (the run fails or its result is useless), warning (the result may be wrong), advice (a change would
+    improve it) or info; what, where, and the cure: how to correct it, may be empty; details: further
     lines; status: exit status that an error stands for.
     """
 
@@ -40,7 +40,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Motion:
-    """A rigid motion that supports leave free: in words, what resists it ("contact" or "nothing"), displacement
+    """A rigid-body mode that supports leave free: in words, what constrains it ("contact" or "nothing"), displacement
     (n_points, dim), a tenth of the body's size."""
 
     text: str
@@ -50,7 +50,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Report:
-    """All findings, the gravest first, and the rigid motions that supports leave free."""
+    """All findings, the gravest first, and the rigid-body modes that supports leave free."""
 
     findings: tuple[Finding, ...]
     motions: tuple[Motion, ...] = ()

@@ -1,4 +1,4 @@
-"""The two sides of a contact: do they face each other, how far apart are they, does the target reach far enough?"""
+"""Checks of contactor and target: whether they face each other, their distance, the size of the target."""
 
 from __future__ import annotations
 

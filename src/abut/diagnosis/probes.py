@@ -1,4 +1,4 @@
-"""Probes that read nothing, and choices that are made for them."""
+"""Checks of probes: those outside the model, and choices made for the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rigid motions of the bodies: which ones contact alone resists, and which nothing does."""
+"""Rigid-body check: the modes that contact alone constrains, and those that nothing constrains."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
             Finding(
                 "info",
                 "bodies",
-                f"{len(shown)} rigid motions are held by contact alone, which can only push{_rub(pairs)}",
+                f"{len(shown)} rigid-body modes are constrained by contact{_rub(pairs)} alone, which carries no tension",
                 details=tuple(motion.text for motion in shown),
             )
         )
@@ -47,11 +47,11 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
 
 
 def _rub(pairs: Sequence[Pair]) -> str:
-    return " and rub" if any(pair.frictional for pair in pairs) else ""
+    return " and friction" if any(pair.frictional for pair in pairs) else ""
 
 
 def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
-    """An error for a motion that nothing holds; else those on which no load does any work, which need no holding."""
+    """An error for an unconstrained mode on which loads do work; else advice for each free mode."""
     ends, held = loads(model).at_ends(model), held_by.held
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
@@ -63,8 +63,8 @@ def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
         Finding(
             "advice",
             "bodies",
-            text.replace(" (regularisation)", ""),
-            "if it is to stand elsewhere, add a support or a symmetry plane",
+            text,
+            "if its position matters, add a support or a symmetry plane",
         )
         for text in loose.notes
     ]

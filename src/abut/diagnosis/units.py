@@ -1,4 +1,4 @@
-"""Do sizes, materials and loads go together? What does not is mostly a matter of units."""
+"""Checks of units: whether sizes, materials and loads are consistent."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def _loads(model: Model) -> list[Finding]:
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
-        says = "more than small strains allow" if large else "which is hardly anything"
+        says = "more than small strains allow" if large else "which is close to zero"
         findings.append(
             Finding(
                 "warning" if large else "advice",

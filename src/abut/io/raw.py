@@ -1,4 +1,4 @@
-"""What a mesh file holds before abut makes bodies and surfaces of it."""
+"""The raw contents of a mesh file, before they become bodies and surfaces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every key of a job file means, for the JSON Schema (editors show it) and the reference page.
+"""Descriptions of the keys of a job file, for the JSON Schema (editors show it) and the reference page.
 
 A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
 """
@@ -10,7 +10,7 @@ from typing import Any
 ANYWHERE = {  # keys that mean the same in every table
     "on": "name of the surface",
     "amplitude": "pairs of time and factor; linear between them, constant outside; left out: the load step's time, 0 to 1",
-    "name": "your own name for it, used in messages and results",
+    "name": "a name of your choice, used in messages and results",
     "x": "displacement along x; left out: free [length]",
     "y": "displacement along y; left out: free [length]",
     "z": "displacement along z (3D only); left out: free [length]",
@@ -22,7 +22,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "mesh": "where the mesh comes from: a file, or bodies made by abut",
         "model": "what kind of model it is",
         "materials": "materials by name",
-        "solids": "which body is made of what",
+        "solids": "the material of each body",
         "supports": "prescribed displacements",
         "loads": "pressures, tractions, forces and the like; each has a kind",
         "contacts": "pairs of surfaces that may touch, or are tied",
@@ -34,7 +34,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "MeshTable": {
         "file": "mesh file beside the job file (.msh, .vtu)",
-        "bodies": "bodies that abut meshes itself, by name",
+        "bodies": "bodies meshed by abut, by name",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {"plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)"},
@@ -59,7 +59,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
     "ForceTable": {
         "kind": "total force, spread evenly over a surface",
-        "value": "vector; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+        "value": "vector; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
     },
     "GravityTable": {
         "kind": "acceleration that acts on the density",
@@ -69,7 +69,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "NodalForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
-        "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the whole turn [force]",
+        "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
     },
     "TemperatureTable": {
         "kind": "change of temperature, which strains bodies by their expansion",
@@ -96,17 +96,17 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rz": "small rotation about z (in 2D the only one); left out: free [radian]",
     },
     "ContactTable": {
-        "name": "your own name for it; left out: CONTACTOR-TARGET",
-        "contactor": "surface or body that carries the pressure, or a list; better the softer, among equals the finer one",
-        "target": "surface or body opposite, or a list, of which the nearest counts everywhere",
+        "name": "a name of your choice; left out: CONTACTOR-TARGET",
+        "contactor": "surface or body that carries the pressure (slave), or a list; the softer, among equals the finer one",
+        "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
         "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
-        "method": "node-to-segment methods are there for comparison only",
+        "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
         "offset": "added to the gap; negative: interference [length]",
-        "auto": "find the pairs: bodies whose facets face each other",
+        "auto": "contact detection: find the pairs of bodies whose facets face each other",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
         "friction": 'Coulomb\'s coefficient, or "rough" where nothing slips; left out: none',
@@ -117,7 +117,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "points": "points for each direction of a segment; auto: as many as make it exact",
     },
     "ProbeTable": {
-        "name": "your own name for it, also of its file probe_NAME.csv",
+        "name": "a name of your choice, also of its file probe_NAME.csv",
         "at": "a point of the undeformed mesh [length]",
         "line": "two points, start and end [length]",
         "on": "name of the node set or surface whose nodes are read",

@@ -58,8 +58,8 @@ DECK = ".inp"
 
 @dataclass(frozen=True)
 class Job:
-    """A loaded job: the model, where its results go, the file and its text; in words what was found and chosen, or what a
-    deck asked for that is done otherwise (notes), and what of it was left out because the user said so (ignored)."""
+    """A loaded job: the model, where its results go, the file and its text; notes: what was found and chosen, or
+    replaced in a deck; ignored: what the user had omitted from a deck."""
 
     model: Model
     directory: Path

@@ -178,7 +178,7 @@ class ContactTable(Table):
     reach: Number | None = None
     kind: Annotated[str, OneOf(KINDS)] = Contact.kind
     pressure: Annotated[str, OneOf(PRESSURES)] = Contact.pressure
-    law: Annotated[str, OneOf(LAWS)] = Contact.law
+    law: Annotated[str, OneOf(LAWS)] = LAWS[0]
     epsilon: Number = Contact.epsilon
     method: Annotated[str, OneOf(METHODS)] = Contact.method
     integration: IntegrationTable = IntegrationTable()

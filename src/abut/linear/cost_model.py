@@ -1,7 +1,6 @@
-"""What a run costs, time and memory, stage by stage: counts of what has to be done, times what one of it took, measured.
+"""Cost of a run, time and memory, stage by stage: counts of operations times the measured cost of each.
 
-From here come the choice of the linear solver (``abut.linear.choice``), the times of stages that a run announces, and what
-`abut check` says.
+It is used by the choice of the linear solver (``abut.linear.choice``), the announced times of stages, and `abut check`.
 
 All constants are seconds on one core of a server of 2023 (some 5 Gflop/s in a sparse factorisation). Counts are known from
 the mesh and the pairs, but for those of linear solutions and Krylov iterations: these are typical ones.

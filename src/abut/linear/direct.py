@@ -92,7 +92,7 @@ def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.f
         solver.set_phase(22)
         solver._call_pardiso(upper, np.zeros(upper.shape[0]))
     except failures as error:
-        raise SingularModelError(f"the direct solver gave up ({error}); check supports and contacts") from None
+        raise SingularModelError(f"the direct solver failed ({error}); check supports and contacts") from None
 
     def solve(b: NDArray[np.float64]) -> NDArray[np.float64]:
         solver.set_phase(33)
@@ -231,7 +231,7 @@ def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> ND
         solver.set_phase(23)
         x: NDArray[np.float64] = solver._call_pardiso(matrix, rhs)
     except module.pardiso_wrapper.PyPardisoError as error:
-        raise SingularModelError(f"the direct solver gave up ({error}); check supports, contacts and units") from None
+        raise SingularModelError(f"the direct solver failed ({error}); check supports, contacts and units") from None
     finally:
         solver.free_memory(everything=True)
     return x
@@ -242,4 +242,4 @@ def _solve_superlu(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> ND
     try:
         return np.asarray(spla.splu(full.tocsc()).solve(rhs))
     except RuntimeError as error:
-        raise SingularModelError(f"the direct solver gave up ({error}); check supports, contacts and units") from None
+        raise SingularModelError(f"the direct solver failed ({error}); check supports, contacts and units") from None

@@ -1,5 +1,5 @@
-"""Flexible GMRES on displacements and active pressures, preconditioned by blocks: multigrid for the stiffness, the
-interface's own operator for the pressures. Nothing but the interface's part changes with the active set."""
+"""Flexible GMRES on displacements and active pressures, with a block triangular preconditioner: multigrid for the stiffness,
+an approximate Schur complement for the pressures, which alone changes with the active set."""
 
 from __future__ import annotations
 

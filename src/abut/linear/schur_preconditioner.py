@@ -1,8 +1,9 @@
-"""What pressures do to gaps, approximately: a preconditioner for B K^-1 B^T, theory (V13).
+"""Approximate Schur complement B K^-1 B^T (half-space compliance), a preconditioner for the pressures; theory (V13).
 
-A half space under a pressure cos(k x) yields 2 (1 - nu^2) / (E k) of it, so that the operator behaves as the inverse root of
-the surface Laplacian: S = kappa M (M^-1 (L + M / l^2))^-1/2 with kappa = 2 sum (1 - nu^2) / E over both sides and l the size
-of the contact, beyond which bodies are no half spaces. Its inverse needs nothing but sparse solutions on the interface.
+The surface of a half space under a pressure cos(k x) is displaced by 2 (1 - nu^2) / (E k) of it, so that the operator
+behaves as the inverse root of the surface Laplacian: S = kappa M (M^-1 (L + M / l^2))^-1/2 with kappa = 2 sum (1 - nu^2) / E
+over both sides and l the size of the contact, beyond which bodies do not behave as half spaces. Its inverse needs sparse
+solutions on the interface only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a linear solver is to Newton's method: set up once for what never changes, and asked as often as wanted."""
+"""Interface of the linear solvers: set up once for matrices that do not change, then used for any number of solutions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Solve = Callable[[Vector, Vector], tuple[Vector, Vector]]
 
 
 class NotConverged(Exception):
-    """The linear iteration gave up; a direct solver may not."""
+    """The linear iteration did not converge; a direct solver may succeed."""
 
 
 @dataclass

@@ -1,5 +1,5 @@
-"""Small displacements leave the stiffness alone: it is eliminated once, down to the multipliers, and every Newton
-iteration of every load step solves dense systems of the size of the interface."""
+"""Static condensation of a constant problem: the displacements are eliminated once, and every Newton iteration of every
+load step solves a dense system of the size of the interface."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ FREE = 1e-10  # gap by a unit motion below which rows do not resist it
 UNBALANCED = 1e-6  # work of the forces on a motion that nothing resists, over their sum, from which on they move it
 PASSES, EVEN = 20, 0.1  # of equilibration, until the logarithm of the largest entries is below the second
 NOT_UNIQUE = "the equations have no unique solution; check supports, contacts and units"
-UNBALANCED_LOADS = "the loads move a body that nothing holds; check supports, contacts and units"
+UNBALANCED_LOADS = "the loads act on an unconstrained rigid-body mode; check supports, contacts and units"
 
 
 @dataclass(frozen=True)
 class CondensedProblem:
     """A constant problem on the multipliers and the displacements that had to be kept: ``abut.problem.problem.Problem``.
 
-    Everything but ``whole`` is its own affair: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
+    Everything but ``whole`` is private: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
     operator, compliance: theory (V3); pairs: on the kept displacements."""
 
     whole: ContactProblem
@@ -149,7 +149,7 @@ def dense(system: Linearised) -> Dense:
 
 @dataclass(frozen=True)
 class Flexibility:
-    """What the interface gives way under the multipliers.
+    """Displacements of the interface under the multipliers.
 
     factor: Cholesky factor of the condensed stiffness, made regular by ``motions``; motions: (n, m) orthonormal basis of
     the rigid motions that supports leave free; response: (n, n_multipliers) displacement by unit pressures;
@@ -179,7 +179,10 @@ class Flexibility:
         push = self.operator.T @ dp - residual
         du = scipy.linalg.cho_solve(self.factor, push)
         law = rows.by_displacement[free]
-        motions = self._resisted(free, law, push, self.weight @ (np.abs(pressure) + np.abs(dp)) + force)
+        size = self.weight @ (np.abs(pressure) + np.abs(dp)) + force
+        motions = self._resisted(free, law, push, size)
+        opened, held = let_go(np.asarray(law @ motions), self.weight[free])
+        opened, motions = motions @ opened, motions @ held  # where smooth laws are open, which take no notice of gaps
         n, m = len(free), motions.shape[1]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
@@ -188,6 +191,7 @@ class Flexibility:
         rhs = np.concatenate([(wanted - rows.by_pressure @ dp)[free] - law @ du, -motions.T @ push])
         solved = solve_dense(matrix, rhs, self.redundant)
         dp[free] = solved[:n]
+        _balance(opened, push + self.operator[free].T @ solved[:n], size)
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
@@ -199,9 +203,7 @@ class Flexibility:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
         loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
-        work = np.abs((self.motions @ loose).T @ push).max(initial=0.0)
-        if work > UNBALANCED * (np.abs(push).sum() + force):
-            raise SingularModelError(UNBALANCED_LOADS)
+        _balance(self.motions @ loose, push, force)
         return self.motions @ held if loose.shape[1] else self.motions
 
     def factorise(self, rows: Rows, force: float) -> Solve:
@@ -304,6 +306,14 @@ def let_go(rows: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[NDAr
     _, size, basis = np.linalg.svd(np.concatenate([rows / weight[:, None], np.zeros((m, m))]), full_matrices=False)
     none = size <= FREE * max(size.max(initial=0.0), 1.0)
     return basis[none].T, basis[~none].T
+
+
+def _balance(loose: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
+    """Raises SingularModelError where forces (n,) do work on motions (n, k) that nothing resists. force: sum of all others,
+    beside which what is left of forces in balance is rounding."""
+    work = np.abs(loose.T @ push).max(initial=0.0)
+    if work > UNBALANCED * (np.abs(push).sum() + force):
+        raise SingularModelError(UNBALANCED_LOADS)
 
 
 def solve_dense(matrix: NDArray[np.float64], rhs: NDArray[np.float64], redundant: bool) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Plane stress of any material: the strains out of the plane are those that leave no stress there."""
+"""Plane stress of any material: the strains out of the plane are those that leave no stress there, theory (E5)."""
 
 from __future__ import annotations
 
@@ -8,26 +8,28 @@ from functools import partial
 import numpy as np
 
 from abut.errors import ConvergenceError
-from abut.materials.material import Array, Evaluated, Material
+from abut.materials.material import Array, Evaluated
 
 OUT = np.array([2, 4, 5])  # zz yz zx
 LIMIT = 25  # iterations; Newton's method needs one for a linear material and about five for others
 ROUNDING = 1e-13  # stress left out of the plane, relative to tangent times strain
 
-
-def law(material: Material, plane: str | None) -> Callable[[Array, Array], Evaluated]:
-    """``material.evaluate``, in plane stress with the strains out of the plane found (those given are the first guess)."""
-    return partial(in_plane_stress, material) if plane == "stress" else material.evaluate
+Evaluate = Callable[[Array, Array], Evaluated]
 
 
-def in_plane_stress(material: Material, strain: Array, history: Array) -> Evaluated:
-    """As ``Material.evaluate``, but strains zz yz zx (n, 3 of 6) are found from zero stresses by Newton's method; the
-    tangent is that of the components in the plane, with zeros elsewhere.
+def law(evaluate: Evaluate, plane: str | None) -> Evaluate:
+    """A material's ``evaluate``, in plane stress with the strains out of the plane found, beginning with those given."""
+    return partial(in_plane_stress, evaluate) if plane == "stress" else evaluate
+
+
+def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Evaluated:
+    """As ``Material.evaluate``, but strains zz yz zx are found from zero stresses there by Newton's method; the tangent is
+    that of the components in the plane, with zeros elsewhere.
 
     Raises ConvergenceError where they are not found."""
     strain = strain.copy()
     for _ in range(LIMIT):
-        stress, tangent, after = material.evaluate(strain, history)
+        stress, tangent, after = evaluate(strain, history)
         block = tangent[:, OUT[:, None], OUT]
         scale = np.abs(tangent).max(axis=(1, 2), initial=0.0) * np.abs(strain).max(axis=1, initial=0.0)
         if (np.abs(stress[:, OUT]) <= ROUNDING * scale[:, None]).all():

@@ -1,4 +1,4 @@
-"""Is a mesh sound? Every finding names cells or facets and the cure."""
+"""Checks of a mesh. Every finding names cells or facets and how to correct them."""
 
 from __future__ import annotations
 

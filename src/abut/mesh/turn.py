@@ -1,4 +1,4 @@
-"""Cells of plane meshes whose nodes run clockwise, turned round: whoever draws a section does not look at that."""
+"""Cells of plane meshes with clockwise node numbering, reversed."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def turn_bodies(mesh: Mesh) -> Mesh:
         nodes[own] = nodes[own][:, order(block.kind)]
         blocks.append(replace(block, nodes=nodes))
     surfaces = {name: _mapped(rows, turned, corners) for name, rows in mesh.surfaces.items()}
-    notes = [f"body '{name}': its cells ran clockwise and were turned round" for name in bodies]
+    notes = [f"body '{name}': its cells were numbered clockwise; their numbering was reversed" for name in bodies]
     return replace(mesh, blocks=tuple(blocks), surfaces=surfaces, notes=(*mesh.notes, *notes))
 
 

@@ -1,4 +1,4 @@
-"""What is prescribed: supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
+"""Supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def drives(condition: Any) -> bool:
 @dataclass(frozen=True)
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); what is left out stays free. Values in the mesh's length unit, times ``amplitude``; x, y and z
+    outward normal); components left out are free. Values in the mesh's length unit, times ``amplitude``; x, y and z
     may be functions of position, points (n, dim) -> (n,), taken at the nodes.
 
     >>> import abut
@@ -102,7 +102,7 @@ class Support:
             if name == "normal" or not callable(value):
                 checks.finite(value, f"support on '{self.on}': {name}")
         if not given:
-            raise InputError(f"support on '{self.on}': nothing is held; give x, y, z or normal")
+            raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
             raise InputError(f"support on '{self.on}': give either normal or components, not both")
         _amplitude(self.amplitude, f"support on '{self.on}'")
@@ -152,10 +152,10 @@ class Equation:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and turns
-    rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``; components
-    left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and in contact
-    it is the target.
+    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and
+    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``;
+    components left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and
+    in contact it is the target.
 
     >>> import abut
     >>> punch = abut.Rigid("punch", y=-0.01, rz=0.0)  # pressed down, kept upright, free to move sideways
@@ -242,7 +242,7 @@ class Force:
 
 @dataclass(frozen=True)
 class NodalForce:
-    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the whole turn)."""
+    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the full circumference)."""
 
     on: str
     value: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Whether what is prescribed fits the mesh: names that exist, as many components as dimensions, rigid bodies apart."""
+"""Checks of supports and loads against the mesh: names, numbers of components, rigid bodies without common points."""
 
 from __future__ import annotations
 

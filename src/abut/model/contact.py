@@ -42,14 +42,14 @@ class Integration:
 class Contact:
     """A contact pair. The contactor carries the pressure. ``contactor`` and ``target`` are names of surfaces or bodies, or
     lists of them, which have one pressure: every point of the contactor faces the nearest target along its normal; of a
-    body that part of its outside counts which can meet the other side.
+    body, the part of its boundary that can meet the other side.
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
-    ``method``: the node-to-segment ones are there for comparison only. ``law``: "complementarity", "constraint-function" or
+    ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
     a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, or "rough" for surfaces that never
-    slip while they touch; then the order of the loads matters, and steps should follow it.
+    slip while they touch; the result then depends on the order of the loads, and on the load steps.
 
     >>> import abut
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius

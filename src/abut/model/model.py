@@ -27,11 +27,11 @@ PLANES = ("strain", "stress", "axisymmetric")
 
 @dataclass(frozen=True)
 class Model:
-    """Everything that defines a problem. Checked as a whole: names against the mesh, dimensions, materials.
+    """The complete description of a problem, checked as a whole: names against the mesh, dimensions, materials.
 
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the whole turn; points on the axis stay on it without a support of their own. Every body is one of
-    ``solids`` or ``rigid``.
+    forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
+    one of ``solids`` or ``rigid``.
 
     >>> import abut
     >>> from abut.mesh import make

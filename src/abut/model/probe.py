@@ -1,4 +1,4 @@
-"""What a user wants to know at places of the model: a record that checks itself, and the names of its results."""
+"""Probes: results at points, along lines and on sets; a record that checks itself, and the names of its results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Semi-smooth Newton for one load step: the active set is an output of the law, changed until it stands still."""
+"""Semi-smooth Newton method (primal-dual active set strategy) for one load step."""
 
 from __future__ import annotations
 
@@ -143,5 +143,5 @@ def _check_balance(solver: Prepared) -> None:
     motion = solver.system.restraint.unbalanced(solver.system.forces)
     if motion:
         raise SingularModelError(
-            f"{motion}: the loads pull it off its contact; hold it by a support or turn the load round"
+            f"{motion}: the loads pull it off its contact; constrain it by a support or reverse the load"
         )

@@ -1,4 +1,4 @@
-"""One solution with a given active set, exact but for rounding or what an iterative solver leaves."""
+"""One linear solution with a given active set, exact but for rounding or the error of an iterative solver."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The contact problem as a convex quadratic programme: Mehrotra's predictor and corrector on displacements, pressures, gaps.
 
-Contact is made soft, row by row, by the ratio of gap and pressure; no row is ever let go, so that no active set on the way
-can be unlucky. What remains undecided in the end is few, and ``abut.nonlinear.search`` decides it exactly.
+Each row gets a compliance, the ratio of its gap and pressure; no row is ever released, so that intermediate active sets do
+not matter. The few rows that remain undecided in the end are resolved exactly by ``abut.nonlinear.search``.
 """
 
 from __future__ import annotations
@@ -20,6 +20,9 @@ from abut.solution.state import State
 BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
 CENTRAL = 1e-3  # of the mean product of gaps and pressures: what the smallest keeps ...
 SHORTER, TRIES = 0.8, 12  # ... by steps that many times shorter, so often at most
+CORRECTORS = 2  # that make a step longer, where they cost no factorisation ...
+FARTHER, WORTH = 0.3, 0.1  # ... by that much, and the share of it from which on they do ...
+OUTLIER = 0.1  # ... by gaps times pressures that far at least from what is aimed at
 UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
 Vector = NDArray[np.float64]
 
@@ -146,7 +149,7 @@ def begin(programme: Programme, state: State) -> Interior:
 
 
 def iterate(programme: Programme, here: Interior) -> Interior:
-    """One iteration, theory (V18), (V19)."""
+    """One iteration, theory (V18), (V19), with Gondzio's correctors."""
     free, scale, p, g = ~programme.tied, programme.scale, here.state.multipliers, here.slack
     inverse = np.where(free, 1.0 / np.where(free, p, 1.0), 0.0)
     solve = programme.solver(here.state, g * inverse)
@@ -157,11 +160,25 @@ def iterate(programme: Programme, here: Interior) -> Interior:
         du, dp = solve(residual, product * inverse)
         return du, dp, np.where(free, (product - g * p - g * dp) * inverse, 0.0)
 
+    def length_of(dp: Vector, dg: Vector) -> float:
+        return min(1.0, _longest(p, dp, free), _longest(g, dg, free))
+
     _, closing, opening = direction(np.zeros_like(p))
-    length = min(1.0, _longest(p, closing, free), _longest(g, opening, free))
+    length = length_of(closing, opening)
     foreseen = programme.mean(p + length * closing, g + length * opening)
     centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
-    du, dp, dg = direction(centring * mean * scale - closing * opening)
+    product = centring * mean * scale - closing * opening
+    du, dp, dg = direction(product)
+    for _ in range(CORRECTORS if programme.prepared.exact else 0):
+        length = length_of(dp, dg)
+        aim = min(1.0, length + FARTHER)
+        reached, wanted = (p + aim * dp) * (g + aim * dg), centring * mean * scale
+        change = np.maximum(np.clip(reached, OUTLIER * wanted, wanted / OUTLIER) - reached, -wanted / OUTLIER)
+        following = product + np.where(free, change, 0.0)
+        corrected = direction(following)
+        if length_of(*corrected[1:]) < length + WORTH * FARTHER:
+            break
+        product, (du, dp, dg) = following, corrected
     length = min(1.0, BOUNDARY * _longest(p, dp, free), BOUNDARY * _longest(g, dg, free))
     shorter = length * SHORTER ** np.arange(TRIES)
     length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)

@@ -1,4 +1,4 @@
-"""What every search for the contact status shares: one Newton step, the status that the law asks for, what is told."""
+"""Parts shared by the searches for the contact status: a Newton step, the next active set, the record of an iteration."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ ROUNDING = 1e-7  # the same that may be left where it no longer falls
 
 @dataclass(frozen=True)
 class Task:
-    """A load step to solve. before: the last converged state; limit: of iterations; observe: is told each of them."""
+    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them."""
 
     problem: Problem
     before: State

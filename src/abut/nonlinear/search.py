@@ -1,4 +1,4 @@
-"""A search for the active set that always ends: interior point iterations, then exact solutions with the set they tell."""
+"""A globally convergent search for the active set: interior point iterations, then exact solutions with the set found."""
 
 from __future__ import annotations
 

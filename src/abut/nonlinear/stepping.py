@@ -1,4 +1,4 @@
-"""From load step to load step: when the next one ends, and what follows an attempt."""
+"""Load stepping: the end of the next load step, and the treatment of failed attempts."""
 
 from __future__ import annotations
 
@@ -66,9 +66,9 @@ class Automatic:
 
 @dataclass(frozen=True)
 class Control:
-    """limit: of iterations in a step; observe: is told each of them; begins: is told each step's number and end; prepares:
-    sets a linear solver up, with what is told about it; fallback: another solver where one gives up, with its reason;
-    halves: is told of an attempt that failed, and when the next one ends."""
+    """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
+    prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
+    fails; halves: called with an attempt that failed and the end of the next one."""
 
     limit: int
     observe: Callable[[Iteration], None]
@@ -84,8 +84,8 @@ def march(
 ) -> Iterator[Attempt]:
     """Load step after load step, from the state ``first``; number: of the next one.
 
-    Each attempt starts from the last converged state: one that fails leaves nothing behind, and comes out only where no
-    other follows it; a solver that gives up is replaced by another one, which begins the step anew."""
+    Each attempt starts from the last converged state: the state of a failed one is dropped, and yielded only where no other
+    follows it; a solver that fails is replaced by another one, which begins the step again."""
     before, attempt = first, None
     own, prepared = None, None
     time = schedule.next(attempt)

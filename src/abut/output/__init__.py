@@ -1,1 +1,1 @@
-"""What a run leaves behind: results, fields, restart files."""
+"""The output directory: results, fields, restart files."""

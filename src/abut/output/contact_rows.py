@@ -1,4 +1,4 @@
-"""What summary.json and history.csv say of a contact at the end of a step."""
+"""Values of a contact at the end of a step for summary.json and history.csv."""
 
 from __future__ import annotations
 

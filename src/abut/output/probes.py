@@ -1,4 +1,4 @@
-"""Probes in the output directory: a table of its own for each, and what of it stands in summary.json and history.csv."""
+"""Probes in the output directory: a table for each, and its values in summary.json and history.csv."""
 
 from __future__ import annotations
 

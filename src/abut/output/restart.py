@@ -1,4 +1,4 @@
-"""Restart files: what it takes to go on after each converged step, and whether the model is still the same."""
+"""Restart files: the state of each converged step, and a check that the model is still the same."""
 
 from __future__ import annotations
 

@@ -32,12 +32,11 @@ def write(
     steps: Sequence[Step] | None = None,
     fields: WriteFields = write_fields,
 ) -> Path:
-    """Write everything about a solution to ``directory`` (made if need be) and return it.
+    """Write everything about a solution to ``directory`` (created if needed) and return it.
 
     report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
-    each contact; probe_NAME.csv for each probe. origin: what the report says of the job (its name, its text, what theory
-    expects); steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields
-    of a step.
+    each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the report; steps:
+    those whose VTU files are still to be written, all of them by default; fields: what writes the fields of a step.
     Raises InputError where the directory cannot be written.
 
     >>> from tempfile import TemporaryDirectory

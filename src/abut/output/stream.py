@@ -1,4 +1,4 @@
-"""The output directory while a run goes on: each step's results as soon as it has converged, each iteration as a line."""
+"""The output directory during a run: the results of each step as soon as it has converged, and each iteration."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many processes a run was started on, and whether what it takes is installed: said without importing any of it."""
+"""The number of processes of a run, and whether the packages it needs are installed, without importing them."""
 
 from __future__ import annotations
 

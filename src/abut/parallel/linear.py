@@ -1,4 +1,4 @@
-"""Linear solvers on many processes: the same two ways as on one, by PETSc."""
+"""Linear solvers on several processes, by PETSc: direct, and iterative with multigrid."""
 
 from __future__ import annotations
 
@@ -43,10 +43,6 @@ from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
-LARGE = {
-    1: 5_000,
-    2: 5_000,
-}  # free displacements in 3D from where on multigrid wins: MUMPS factorises at every iteration
 Vector = NDArray[np.float64]
 
 

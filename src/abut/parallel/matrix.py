@@ -1,4 +1,4 @@
-"""The stiffness on the free displacements as a matrix of PETSc's, and what process 0 has of it."""
+"""The stiffness on the free displacements as a distributed PETSc matrix, and its handle on process 0."""
 
 from __future__ import annotations
 

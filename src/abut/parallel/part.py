@@ -1,4 +1,4 @@
-"""What each process does with its part of the cells: stiffness, internal forces, stresses."""
+"""Operations of each process on its part of the cells: stiffness, internal forces, stresses."""
 
 from __future__ import annotations
 
@@ -25,9 +25,11 @@ def internal(store: Store, displacement: NDArray[np.float64]) -> NDArray[np.floa
     if "stiffness" in store:
         return np.asarray(store["stiffness"] @ displacement)
     part: Solids = store["part"]
-    columns = displacement.reshape(len(displacement), -1).T
-    forces = [internal_force(part, column.reshape(part.mesh.points.shape)) for column in columns]
-    return np.stack(forces, axis=-1).reshape(displacement.shape)
+    force = np.empty_like(displacement)
+    for column in np.ndindex(displacement.shape[1:]):
+        own = (slice(None), *column)
+        force[own] = internal_force(part, displacement[own].reshape(part.mesh.points.shape))
+    return force
 
 
 def stresses(

@@ -1,4 +1,4 @@
-"""Who does what: cells dealt out by SCOTCH or ParMETIS, points and free displacements to whoever has a cell there."""
+"""Partition of the mesh: cells by SCOTCH or ParMETIS, points and free displacements by the cells around them."""
 
 from __future__ import annotations
 

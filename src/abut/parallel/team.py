@@ -1,7 +1,7 @@
-"""The processes of a run: process 0 leads, all of them work. What is done where is a function and its arguments.
+"""The processes of a run: process 0 leads, all of them work. Work is a function and its arguments.
 
-The serial code runs on process 0 as it is; what is as large as the volume (stiffness, products, linear solutions, stresses)
-it has done by all processes, itself among them, each on its part of the cells.
+Process 0 runs the serial algorithm; operations whose cost grows with the number of cells (stiffness, products, linear
+solutions, stresses) are done by all processes, each on its part of the cells.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Results at places: where the points of a probe lie in cells and on contact surfaces, and what a step says there."""
+"""Evaluation of probes: the cells and contact facets that their points lie in, and the results of a step there."""
 
 from __future__ import annotations
 

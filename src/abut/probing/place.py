@@ -17,7 +17,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model
 from abut.model.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
-from abut.probing.feet import feet
+from abut.probing.closest_points import feet
 from abut.probing.sides import CONTACTOR, TARGET, Side, choose
 
 

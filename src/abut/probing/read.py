@@ -1,4 +1,4 @@
-"""What a step says at a place."""
+"""Values of a step at a place."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.probe import ON_CONTACTS, Probe
-from abut.probing.feet import feet
+from abut.probing.closest_points import feet
 
 CONTACTOR, TARGET = "contactor", "target"
 NOWHERE, TOUCHES, LIES = 0, 1, 2  # how much of a probe is on a surface: nothing, a point of it, or a part of it

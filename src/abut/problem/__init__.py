@@ -1,1 +1,1 @@
-"""What is solved: constraints, loads, contact pairs on the free displacements, put together."""
+"""The discrete problem: constraints, bodies, loads and contact pairs on the free displacements."""

@@ -1,4 +1,4 @@
-"""From a model to its problem: what stays the same over all load steps."""
+"""Assembly of the problem of a model; it serves all load steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rigid motions that nothing resists: held without a force where loads do no work on them, theory (V14)."""
+"""Free rigid-body modes: set to zero in the mean where loads do no work on them, theory (V14)."""
 
 from __future__ import annotations
 
@@ -79,16 +79,17 @@ def regularise(
         size, worst = _work(rigid, groups, own, loads)
         if worst is not None:
             raise SingularModelError(
-                f"{describe(rigid, worst, one_way=True)} without resistance{_others(own)}: the loads push it that way, and "
-                f"neither supports nor contact hold it; {CURE}"
+                f"{describe(rigid, worst, one_way=True)}{_others(own)}: neither a support nor contact constrains it, "
+                f"and the loads act in that direction; {CURE}"
             )
         if size == 0.0 and len(groups) == 1 and own.shape[1] == rigid.per_group:
             raise SingularModelError(
-                f"{describe(rigid, own)} without resistance{_others(own)}: neither supports nor contact hold it, and "
-                f"nothing loads it; {CURE}"
+                f"{describe(rigid, own)}{_others(own)}: neither a support nor contact constrains it, and no load acts "
+                f"on it; {CURE}"
             )
         notes += [
-            f"{text}, on which the loads do no work: held at rest in the mean, without a force (regularisation)"
+            f"{text}: unconstrained, and the loads do no work on it; its mean rigid-body motion is set to zero; no reaction "
+            "arises"
             for text, _ in each_motion(rigid, own)
         ]
     return _springs(rigid, motions, held, stiffness, tuple(notes))
@@ -153,4 +154,4 @@ def _work(
 
 
 def _others(motions: NDArray[np.float64]) -> str:
-    return f" (and {motions.shape[1] - 1} more motions)" if motions.shape[1] > 1 else ""
+    return f" (and {motions.shape[1] - 1} more rigid-body modes)" if motions.shape[1] > 1 else ""

@@ -44,9 +44,9 @@ class Linearised:
     the problem is constant, so that K, B and C are the same objects at every state and a linear solver keeps its factors.
 
     factors: (n_histories,) of the histories at ``time``; stiffness K: (n_free, n_free); load f: (n_free,); operator B:
-    (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed, theory
-    (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where contact
-    lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
+    (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed,
+    theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
+    contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
     """
 
     time: float

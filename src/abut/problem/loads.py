@@ -1,4 +1,4 @@
-"""What loads a model: nodal forces and temperatures, one column for each of its histories."""
+"""Loads of a model: nodal forces and temperatures, one column for each of its histories."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class Problem(Protocol):
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
         """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
-        they are nowhere. Theory (P9)."""
+        they are nowhere; theory (P9)."""
         ...
 
 
@@ -64,8 +64,8 @@ class ContactProblem:
     """Bodies, loads and contact on the free displacements.
 
     terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
-    (n, n_free) all of them stacked; restraint: what holds each body; springs: on motions that nothing resists; stiffness:
-    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid motions that supports leave free;
+    (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
+    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
     unit: size of the stiffness' entries, where it is constant.
     """
 

@@ -1,4 +1,4 @@
-"""What holds each body: supports, ties, contact; and what to do where an active set lets one go."""
+"""Rigid-body restraint by supports, ties and contact; and the repair of an active set that leaves a body unsupported."""
 
 from __future__ import annotations
 
@@ -223,13 +223,13 @@ def require_balance(restraint: Restraint, force: NDArray[np.float64], when: str 
     motion = restraint.unbalanced(force)
     if motion:
         raise SingularModelError(
-            f"{motion}: the loads pull it off its contact{when}, which can only push{_rub(restraint)}; hold it by a support "
-            "or turn the load round"
+            f"{motion}: the loads pull it off its contact{when}, which carries no tension{_rub(restraint)}; "
+            "constrain it by a support or reverse the load"
         )
 
 
 def _rub(restraint: Restraint) -> str:
-    return ", with friction up to its coefficient" if any(pair.frictional for pair in restraint.pairs) else ""
+    return " and friction only up to its coefficient" if any(pair.frictional for pair in restraint.pairs) else ""
 
 
 def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]]) -> None:
@@ -238,8 +238,8 @@ def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]])
     motion = restraint.unheld(forces)
     if motion:
         raise SingularModelError(
-            f"{motion}: contact can only push it that way, and neither supports, other contact nor loads hold it there; add "
-            "a support, what it rests on, or the load that keeps it in place"
+            f"{motion}: contact can only push it that way, and no support, other contact or load opposes that; add a "
+            "support, the body that it rests on, or the load that keeps it in place"
         )
 
 

@@ -1,4 +1,4 @@
-"""Rigid bodies: all points follow a few unknowns, translation and small turns about the body's centre; theory (F12)."""
+"""Rigid bodies: all points follow a few unknowns, translation and small rotations about the centre; theory (F12)."""
 
 from __future__ import annotations
 

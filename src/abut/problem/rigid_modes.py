@@ -1,4 +1,4 @@
-"""Rigid-body motions: which of them nothing resists."""
+"""Rigid-body modes, and those that no constraint resists."""
 
 from __future__ import annotations
 
@@ -121,17 +121,25 @@ def simple_motions(rigid: RigidModes, motion: NDArray[np.float64]) -> NDArray[np
 
 
 def describe(rigid: RigidModes, motions: NDArray[np.float64], one_way: bool = False) -> str:
-    """Say which body moves and how, from the free motions (n_modes, n_free): a shift or turn along an axis if one of
-    them is, else the first. one_way: the sign of the motion matters."""
+    """Say which body is free to move and how, from the free motions (n_modes, n_free): a translation or rotation along an
+    axis if one of them is, else the first. one_way: the sign of the motion matters."""
     pure = np.zeros(0) if one_way else _pure(motions)
-    return _in_words(rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0], one_way)
+    bodies, several, rotation, axis = _in_words(
+        rigid, np.eye(len(motions))[pure[0]] if len(pure) else motions[:, 0], one_way
+    )
+    return f"{bodies} {'are' if several else 'is'} free to {'rotate' if rotation else 'translate'} {axis}"
 
 
 def each_motion(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
-    """Every one of the free motions in words, and itself (n_modes,): shifts and turns along axes first, then the rest."""
+    """Every one of the free motions in words, and itself (n_modes,): translations and rotations along axes first, then the
+    rest."""
     pure = np.eye(len(motions))[:, _pure(motions)]
     rest, size, _ = np.linalg.svd(motions - pure @ (pure.T @ motions), full_matrices=False)
-    return [(_in_words(rigid, motion), motion) for motion in [*pure.T, *rest[:, size > 0.5].T]]
+    result = []
+    for motion in [*pure.T, *rest[:, size > 0.5].T]:
+        bodies, _, rotation, axis = _in_words(rigid, motion)
+        result.append((f"{'rotation' if rotation else 'translation'} of {bodies} {axis}", motion))
+    return result
 
 
 def _pure(motions: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -139,20 +147,22 @@ def _pure(motions: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.flatnonzero(np.linalg.norm(motions, axis=1) > 0.999)
 
 
-def _in_words(rigid: RigidModes, motion: NDArray[np.float64], one_way: bool = False) -> str:
+def _in_words(rigid: RigidModes, motion: NDArray[np.float64], one_way: bool = False) -> tuple[str, bool, bool, str]:
+    """The bodies that move, whether they are several, whether the motion is a rotation, and its axis."""
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
     own = parts[group]
     alike = [g for g, part in enumerate(parts) if np.abs(part - own).max() < 1e-9 * np.abs(own).max()]
     names = [" + ".join(f"'{name}'" for name in rigid.groups[g]) for g in alike]
-    bodies = f"body {names[0]}" if len(names) == 1 else f"bodies {', '.join(names)} together"
+    several = len(names) > 1
+    bodies = f"bodies {', '.join(names)} together" if several else f"body {names[0]}"
     if rigid.per_group == 1:
-        return f"{bodies} can shift along the axis {'-' if one_way and own[0] < 0.0 else ''}y"
+        return bodies, several, False, f"along the axis {'-' if one_way and own[0] < 0.0 else ''}y"
     dim = 2 if rigid.per_group == 3 else 3
     shift, turn = own[:dim], own[dim:]
     if np.abs(shift).max() >= np.abs(turn).max():
-        return f"{bodies} can shift along {_axis(shift, one_way)}"
-    return f"{bodies} can turn about {'z' if dim == 2 else _axis(turn)}"
+        return bodies, several, False, f"along {_axis(shift, one_way)}"
+    return bodies, several, True, f"about {'z' if dim == 2 else _axis(turn)}"
 
 
 def _axis(vector: NDArray[np.float64], one_way: bool = False) -> str:

@@ -1,4 +1,4 @@
-"""What adds to the balance of forces: bodies and loads, each as force and tangent at a displacement."""
+"""Terms of the balance of forces: bodies and loads, each as force and tangent at a displacement."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The report of a run: one HTML file with a picture to turn, the certificate and plots (``docs/report.md``)."""
+"""The report of a run: one HTML file with an interactive picture, the certificate and plots (``docs/report.md``)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Origin", "read_origin", "write_report"]
 def write_report(solution: Solution, path: str | Path, origin: Origin | None = None) -> Path:
     """Write the report of a solution to the HTML file ``path`` and return it.
 
-    origin: the job's name and text, and what theory says of it. Raises InputError where the file cannot be written, and
+    origin: the name and text of the job, and reference values. Raises InputError where the file cannot be written, and
     AbutError in a source tree whose libraries of the report are not built (``make build``).
 
     >>> from tempfile import TemporaryDirectory

@@ -1,4 +1,4 @@
-"""Where a solution came from: the job's name and text, and what theory says of it."""
+"""Origin of a solution: the name and text of its job, and reference values."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def _head(solution: Solution, origin: Origin) -> str:
         names = ", ".join(f"{c.contact}: {c.name}" if c.contact else c.name for c in failed)
         good, verdict = False, f"Converged, but {len(failed)} of {len(solution.certificate)} checks fail: {names}."
     elif theory:
-        good, verdict = False, f"Converged, but not what theory says: {', '.join(r['quantity'] for r in theory)}."
+        good, verdict = False, f"Converged, but different from theory: {', '.join(r['quantity'] for r in theory)}."
     else:
         good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass."
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
@@ -118,7 +118,7 @@ def _certificate(solution: Solution) -> str:
         ]
         for check in solution.certificate
     ]
-    return _table(["", "contact", "check", "value", "limit", "what it says"], rows, raw=True)
+    return _table(["", "contact", "check", "value", "limit", "meaning"], rows, raw=True)
 
 
 def _cure(text: str) -> str:
@@ -146,7 +146,7 @@ def _comparison(solution: Solution, origin: Origin) -> str:
     known = [solution.contacts[0].name] if solution.contacts else []
     known += ["probes"] if any(name.startswith("probe.") for name in origin.expected) else []
     head = ["", f"of {escape(' and '.join(known))}", "computed", "theory", "deviation", "source"]
-    return "<section><h2>Beside theory</h2>" + _table(head, rows, raw=True) + "</section>"
+    return "<section><h2>Compared with theory</h2>" + _table(head, rows, raw=True) + "</section>"
 
 
 def _contacts(solution: Solution) -> str:
@@ -189,7 +189,7 @@ def _rigid(solution: Solution) -> str:
         [name, *(vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
         for name, r in solution.steps[-1].rigid.items()
     ]
-    head = ["rigid body", "displacement", "rotation", "force that moves it", "moment about its reference"]
+    head = ["rigid body", "displacement", "rotation", "force on it", "moment about its reference"]
     return _table(head, rows) if rows else ""
 
 
@@ -210,7 +210,7 @@ def _trouble(solution: Solution) -> str:
     if not solution.converged:
         last = solution.steps[-1].iterations[-1]
         places = [f"{place}; nodes {_some(place.nodes)}" for place in unsettled(solution.steps[-1])]
-        where = places or [f"nowhere in particular: equilibrium is missed by {last.residual:.1e} of the forces"]
+        where = places or [f"no single facets: the residual of equilibrium is {last.residual:.1e} of the forces"]
         text += (
             f"<section><h2>Not converged</h2><p>Where:</p>{_list(where)}<p>What to try, the most likely first:</p>"
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
@@ -218,7 +218,7 @@ def _trouble(solution: Solution) -> str:
     elif advice := remedies(solution):
         text += f"<section><h2>Surfaces overlap</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
     if solution.ignored:
-        text += f"<section><h2>Left out of the deck, as asked</h2>{_list(solution.ignored)}</section>"
+        text += f"<section><h2>Omitted from the deck, as asked</h2>{_list(solution.ignored)}</section>"
     return text
 
 

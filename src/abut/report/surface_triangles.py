@@ -1,4 +1,4 @@
-"""What one sees of a mesh: the skin of each body and the facets of contact surfaces as points, triangles and edges."""
+"""Surface triangles of a mesh: the boundary of each body and the facets of contact surfaces, as points, triangles, edges."""
 
 from __future__ import annotations
 

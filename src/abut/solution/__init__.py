@@ -1,4 +1,4 @@
-"""What solving yields, as frozen records."""
+"""Results, as frozen records."""
 
 from abut.solution.contacts import Check, ContactResult, FrictionResult, PressureStatistics, Resultant
 from abut.solution.progress import Iteration, Observer, Phase

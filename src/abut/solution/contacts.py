@@ -13,8 +13,8 @@ from abut.mesh.surface import Surface
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the certificate: a dimensionless error of a contact, its limit, and what it says in words.
-    last: it counts in the last step only, since it is bound to fail while loads are still small."""
+    """One line of the certificate: a dimensionless error of a contact, its limit, and its meaning.
+    last: it counts in the last step only, since it fails while loads are small."""
 
     contact: str
     name: str
@@ -50,12 +50,12 @@ class PressureStatistics:
 
 @dataclass(frozen=True)
 class Resultant:
-    """What the nodal forces of a contact on its contactor amount to, in undeformed coordinates.
+    """Resultant of the nodal forces of a contact on its contactor, in undeformed coordinates.
 
-    force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the whole turn; moment: (1,) or (3,)
-    about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the force's line
-    of action nearest to the mean of the nodes (weighted by their forces along the resultant); on a plane contact it lies in
-    that plane, in axisymmetric models on the axis; NaN where forces cancel or there are none.
+    force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the full circumference; moment: (1,)
+    or (3,) about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the
+    force's line of action nearest to the mean of the nodes (weighted by their forces along the resultant); on a plane
+    contact it lies in that plane, in axisymmetric models on the axis; NaN where forces cancel or there are none.
     """
 
     force: NDArray[np.float64]
@@ -68,8 +68,8 @@ class FrictionResult:
     """Friction of one contact pair at the end of a step.
 
     coefficient: infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets' own nodes,
-    tangential force per area; slip, total_slip: the same, of the contactor over the target, in this step and in all steps while
-    in contact, length; status: (n_contactor_facets, 9) 0 open, 1 stuck, 2 slipping, of a node without a multiplier the
+    tangential force per area; slip, total_slip: the same, length, of the contactor over the target, in this step and in all
+    steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 stuck, 2 slipping, of a node without a multiplier the
     highest of its facet; sticking_area, slipping_area: as ``ContactResult.area``; work: that friction takes in this step.
     """
 
@@ -90,10 +90,10 @@ class ContactResult:
     force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
     pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length. The
     pressure is the multiplier's average over each corner's function, linear between corners: theory (P10).
-    multiplier: (n_contactor_facets, 9) the multiplier itself, which may jump between facets and swing; share:
+    multiplier: (n_contactor_facets, 9) the multiplier itself, which may jump between facets and oscillate; share:
     (n_contactor_facets, 9) covered share of each point's support. max_pressure: the largest where that is at least a half.
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
-    target_pressure: (n_target_facets, 9), the pressure carried over, 0 where the target is not touched.
+    target_pressure: (n_target_facets, 9), the pressure transferred, 0 where the target is not in contact.
     covered_share: covered area over the contactor's area; checks: the certificate of this step.
     statistics: of the pressure over the loaded area; resultant: force, moment and centre of the contactor's nodal forces.
     contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;

@@ -1,4 +1,4 @@
-"""A solution as grids that a viewer knows: cells, points and named arrays, for VTU files and for PyVista alike."""
+"""A solution as grids for viewers: cells, points and named arrays, for VTU files and PyVista."""
 
 from __future__ import annotations
 

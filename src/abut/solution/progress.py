@@ -1,4 +1,4 @@
-"""What is told while solving: iterations, and stages that begin."""
+"""Progress records of a solution: iterations, and stages that begin."""
 
 from __future__ import annotations
 

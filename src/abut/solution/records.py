@@ -1,4 +1,4 @@
-"""What solving yields: iterations, steps and the solution, as frozen records."""
+"""Results: iterations, steps and the solution, as frozen records."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 RESPONSE = 0.5  # nothing between 0 and 1
-REGULARISATION = 1e-9  # limit of the force that holds motions without resistance: none at all but for rounding
+REGULARISATION = 1e-9  # limit of the force that constrains free rigid-body modes: zero but for rounding
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Step:
     displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
-    reaction: (dim,) resultant of all supports, equations and what moves rigid bodies; reactions: the same for each
-    supported surface or node set without the share of equations (points that lie on several count for each of them, those
-    of a rigid body for the whole body); load: (dim,) resultant of all
+    reaction: (dim,) resultant of all supports, equations and prescribed motions of rigid bodies; reactions: the same for
+    each supported surface or node set without the share of equations (points that lie on several count for each of them,
+    those of a rigid body for the whole body); load: (dim,) resultant of all
     loads; rigid: by the name of the body.
     """
 
@@ -76,7 +76,7 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
-    spring: float | None = None  # largest force that holds motions without resistance; None where there are none
+    spring: float | None = None  # largest force that constrains free rigid-body modes; None where there are none
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
     strain: float = (
@@ -104,7 +104,7 @@ class Step:
 
     @property
     def regularisation(self) -> float | None:
-        """Force that holds motions without resistance over the reference force."""
+        """Force that constrains free rigid-body modes, over the reference force."""
         return None if self.spring is None else self.spring / self.reference_force
 
     @property
@@ -123,7 +123,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Saved:
-    """What it takes to go on after a converged step, and to have its results again.
+    """Record of a converged step for a restart.
 
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
     iterations: for the log.
@@ -173,20 +173,20 @@ class Solution:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         worst: dict[tuple[str, str], Check] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
-        response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing gives way")
+        response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
         for step in self.steps:
             balance = Check(
                 "",
                 "model balance",
                 step.balance_error,
                 step.balance_limit,
-                "loads plus reactions, over the forces' size",
+                "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             model = [balance, response, strain]
             if step.regularisation is not None:
-                model.append(Check("", "regularisation", step.regularisation, REGULARISATION,
-                                   "force that holds motions without resistance, over the forces' size"))  # fmt: skip
+                model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
+                                   "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
                 if check.last or key not in worst or _worse(check, worst[key]):

@@ -1,4 +1,4 @@
-"""The state of a problem: what is known at a time, converged or on trial. Nothing else is carried from step to step."""
+"""The state of a problem at a time, converged or on trial. Nothing else is carried from step to step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""ADJUST with a node set, as a distance: what lies closer counts as touching."""
+"""ADJUST with a node set, translated into a distance up to which nodes count as touching."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What holds, binds and pushes single nodes, along the global axes: supports, equations and forces of a deck with its own
-axes (*TRANSFORM), cyclic symmetry and nodes that belong to no element worked in."""
+"""Nodal constraints and forces of a deck along the global axes: supports, equations and forces, with local axes
+(*TRANSFORM), cyclic symmetry and nodes that belong to no element resolved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Everything that is wrong with a deck, gathered so that it is told at once."""
+"""All errors of a deck, collected so that they are reported at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a deck says, as frozen records: node and element numbers are the deck's own, values in its units."""
+"""The contents of a deck as frozen records, with its node and element numbers and its units."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("STEP", "NLGEOM"): "large displacements are not supported; abut's displacements are small",
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
-    ("STATIC", "STABILIZE"): "artificial damping is not supported; hold every body",
+    ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
     ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
     ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",

@@ -1,4 +1,4 @@
-"""The nearest points of a surface: where a point meets it, or that it lies beside it."""
+"""Closest-point projection onto a surface."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contact pairs found by what faces what: which facets, which side is the contactor, the same run when written out."""
+"""Contact detection: bodies whose facets face each other."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.detection.facing import facing, outside
+from abut.detection.opposing_facets import facing, outside
 from abut.errors import InputError
 from abut.job import load_job
 from abut.job.pairs import write_pairs

@@ -1,4 +1,4 @@
-"""Which facets on the outside of the bodies face each other."""
+"""Contact detection: the facets on the boundaries of the bodies that face each other."""
 
 from __future__ import annotations
 
