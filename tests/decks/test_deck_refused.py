@@ -81,14 +81,14 @@ def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
 
 
 def test_what_follows_from_a_missing_file_is_not_told(tmp_path):
-    rest = PAIR + HELD + PUSH.replace("*STEP", "*FRICTION\n.1\n*STEP")
+    rest = PAIR + HELD + PUSH.replace("*STEP", "*CREEP\n.1\n*STEP")
     own = told(tmp_path, "*INCLUDE, INPUT=mesh.inp\n*INCLUDE, INPUT=sets.inp\n" + rest)
     assert [reason.split(": ", 1)[1] for reason in own[:2]] == [
         "included file /mesh.inp does not exist",
         "included file /sets.inp does not exist",
     ]
     assert len(own) == 3
-    assert "*FRICTION: " in own[2]  # and not that sets and surfaces are unknown
+    assert "*CREEP: " in own[2]  # and not that sets and surfaces are unknown
 
 
 def test_unknown_names_are_told_where_all_else_could_be_read(tmp_path):
@@ -116,10 +116,10 @@ def test_no_more_than_a_screen_of_reasons(tmp_path):
 
 
 def test_all_refusals_come_at_once(tmp_path):
-    text = DECK.replace("*STEP", "*FRICTION\n0.1,\n*PLASTIC\n1., 0.\n*STEP, NLGEOM")
+    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*PLASTIC\n1., 0.\n*STEP, NLGEOM")
     with pytest.raises(InputError) as caught:
         load(tmp_path, text)
-    assert all(f"--ignore {name}" in str(caught.value) for name in ("FRICTION", "PLASTIC", "NLGEOM"))
+    assert all(f"--ignore {name}" in str(caught.value) for name in ("CREEP", "PLASTIC", "NLGEOM"))
 
 
 def test_friction_without_effect_needs_no_permission(tmp_path):
@@ -301,14 +301,14 @@ def test_a_file_may_be_named_on_the_second_line_of_a_card(tmp_path):
 
 def test_messages_name_the_file_once_and_each_word_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = DECK.replace("*STEP", "*FRICTION\n0.1,\n*STEP, NLGEOM") + step("*CLOAD", "18, 1, 0.", card="*STATIC, NLGEOM")
+    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*STEP, NLGEOM") + step("*CLOAD", "18, 1, 0.", card="*STATIC, NLGEOM")
     write(tmp_path, text)
     for name in ("deck.inp", "./deck.inp"):
         with pytest.raises(InputError) as caught:
             load_job(Path(name))
         text = str(caught.value)
         assert text.count("deck.inp") == 1
-        assert text.count("--ignore NLGEOM") == text.count("--ignore FRICTION") == 1
+        assert text.count("--ignore NLGEOM") == text.count("--ignore CREEP") == 1
         assert text.count("line ") == 2
     write(tmp_path, DECK.replace("1000., 0.", "1000., 0.7"))
     with pytest.raises(InputError) as caught:

@@ -164,7 +164,7 @@ def _cover(case: _Case) -> Iterator[Check]:
     yield case.check(
         "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
     )
-    total = pair.space.removed + len(pair)
+    total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
     yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
         "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
+from abut.analysis.friction import friction_checks, friction_forces, friction_result
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -31,16 +32,37 @@ from abut.mesh.mesh import Mesh
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult, PressureStatistics, Resultant
+from abut.solution.state import OPEN
 
 
 @dataclass(frozen=True)
 class PairState:
-    """A pair with the pressure, the weighted gap and the status of its multipliers, each (n,)."""
+    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all;
+    pressure, weight int H_k, weighted gap and contact of the multipliers that are pressures (of a tie: all)."""
 
     pair: Pair
+    multipliers: NDArray[np.float64]
+    status: NDArray[np.int8]
+    slips: NDArray[np.float64]
     pressure: NDArray[np.float64]
+    weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     closed: NDArray[np.bool_]
+
+    @classmethod
+    def of(
+        cls,
+        pair: Pair,
+        multipliers: NDArray[np.float64],
+        gap: NDArray[np.float64],
+        status: NDArray[np.int8],
+        slips: NDArray[np.float64] | None,
+    ) -> PairState:
+        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet."""
+        every = slice(None) if pair.tied else pair.normal
+        slips = np.zeros((len(pair), 2)) if slips is None else slips
+        pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
+        return cls(pair, multipliers, status, slips, pressure, weight, gap, status[every] != OPEN)
 
     @cached_property
     def values(self) -> NDArray[np.float64]:
@@ -58,24 +80,31 @@ class PairState:
         """The same of the gap, a length; ties have none."""
         if self.pair.tied:
             return np.zeros_like(self.normal)
-        return np.asarray(self.pair.space.plain @ (self.gap / self.pair.weight))
+        return np.asarray(self.pair.space.plain @ (self.gap / self.weight))
 
     @property
     def penetration(self) -> float:
         """The largest, a length."""
-        return 0.0 if self.pair.tied else max(float((-self.gap / self.pair.weight).max(initial=0.0)), 0.0)
+        return 0.0 if self.pair.tied else max(float((-self.gap / self.weight).max(initial=0.0)), 0.0)
+
+    @property
+    def forces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Nodal forces on all points, on the contactor's side and on the target's, (n_points, dim)."""
+        if self.pair.frictional:
+            return friction_forces(self.pair, self.multipliers)
+        return nodal_forces(self.pair.coupling, self.values, self.pair.contactor.dim)
 
     @property
     def area(self) -> float:
         """Where contact is closed."""
         pair = self.pair
-        return float(pair.coupling.covered.sum() if pair.tied else pair.weight[self.closed].sum())
+        return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
 def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surroundings) -> ContactResult:
     """residual: of the contact law."""
     pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
-    forces, others = nodal_forces(coupling, own.values, pair.contactor.dim)
+    forces, others = own.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
@@ -93,7 +122,7 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         area=own.area,
         max_penetration=own.penetration,
         active=int(own.closed.sum()),
-        multipliers=len(pair),
+        multipliers=len(own.pressure),
         removed=pair.space.removed,
         segments=int(coupling.segments.sum()),
         pressure=nodal,
@@ -103,12 +132,14 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around),
+        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
+        + friction_checks(pair, own.multipliers, own.status, own.slips, around.reference),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
+        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips),
     )
 
 
@@ -124,7 +155,7 @@ def _statistics(
     pair = own.pair
     fields = own.normal, loaded_part(pair, own.pressure, own.closed, own.normal)
     load, loaded = (nodal_parts(pair.coupling, at, field) for field in fields)
-    forces, _ = nodal_forces(pair.coupling, own.values, pair.contactor.dim)
+    forces, _ = own.forces
     ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),

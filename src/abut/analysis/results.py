@@ -17,7 +17,7 @@ from abut.model.offset import offsets
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.linearised import Linearised
-from abut.problem.problem import ContactProblem
+from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, RigidResult, Step
@@ -105,7 +105,7 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     """Of all pairs."""
     system, model, held = end.system, end.problem.model, end.problem.held
     references = _largest_pressures(len(system.pairs), before)
-    largest = [pair.space.transfer @ p for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
+    largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
@@ -113,9 +113,13 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         overlap = overlaps(pair, end.nodal, constant + float(varying @ system.factors))
         around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
-    found = zip(system.pairs, end.pressures, system.split(system.gap(end.state)), system.split(end.state.closed))
+    slips = end.state.history.of(CONTACTS)
+    found = zip(
+        system.pairs, end.pressures, system.split(system.gap(end.state)), system.split(end.state.status),
+        [slips.get(pair.contact.name) for pair in system.pairs],
+    )  # fmt: skip
     return tuple(
-        contact_result(model.mesh, PairState(*own), residual, beside_it) for own, beside_it in zip(found, around)
+        contact_result(model.mesh, PairState.of(*own), residual, beside_it) for own, beside_it in zip(found, around)
     )
 
 

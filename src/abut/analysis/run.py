@@ -17,7 +17,7 @@ from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.stepping import Control, Fixed, march
+from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
@@ -97,15 +97,24 @@ class Run:
         count = len(self.steps) + len(times)
 
         def begins(number: int, time: float) -> None:
-            observe(Phase(f"step {number} of {count}", None, number - 1, count))
+            of_all = max(count, number)
+            observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
             loads = problem.held.free.T @ (self.assembled.loaded.forces @ weights(self.model.histories, time))
             require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
 
         def prepares(what: LinearSolver) -> None:
             observe(Phase(*setting_up(what, problem)))
 
-        control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback)
-        for attempt in march(problem, first, Fixed(times), self.solver, control, len(self.steps) + 1):
+        def halves(attempt: Attempt, time: float) -> None:
+            self.told.note(
+                f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations: it goes to time "
+                f"{time:.6g} first, not to {attempt.state.time:.6g}"
+            )
+
+        friction = any(pair.frictional for pair in problem.pairs)
+        schedule: Schedule = Automatic(times, first.time) if friction else Fixed(times)
+        control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
+        for attempt in march(problem, first, schedule, self.solver, control, len(self.steps) + 1):
             self.clock.mark("solve")
             observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
             self._end(attempt)

@@ -188,6 +188,7 @@ class ContactTable(Table):
         Contact.adjust
     )
     amplitude: Points | None = None
+    friction: Number | Literal["rough"] = 0.0
 
 
 class ProbeTable(Table):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, Solved, finer, settled, solve_set
+from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.smooth_laws import finish_smooth
@@ -42,6 +43,8 @@ def solve_step(
     earlier: iterations of the same step before; aim: "set" where only the active set is wanted, of laws that have one, "this
     set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
+    if any(pair.frictional for pair in solver.system.pairs):
+        return solve_friction(solver, begin, increment, limit, observe, earlier)
     tied = solver.system.tied
     course = Course(solver, tied)
     state = begin

@@ -17,7 +17,7 @@ from abut.io.versions import versions
 from abut.io.vtu import write_vtu
 from abut.model.probe import label
 from abut.output import probes
-from abut.output.contact_rows import OF_CONTACT, contact_summary, more_columns, more_values, number
+from abut.output.contact_rows import OF_CONTACT, OF_FRICTION, contact_summary, more_columns, more_values, number
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
@@ -175,6 +175,8 @@ def _history(solution: Solution) -> str:
         head += ["rigid", *moved, *rotation, *moment]
     head += [name for name in probes.history_columns(solution.steps) if name not in head]
     head += more_columns(dim)
+    if any(c.friction is not None for step in solution.steps for c in step.contacts):
+        head += OF_FRICTION
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()

@@ -254,6 +254,12 @@ class PetscDirect:
 
 def choose(problem: ContactProblem) -> str:
     """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
+    friction = [pair.contact.name for pair in problem.pairs if pair.frictional]
+    if friction:
+        raise InputError(
+            f"PETSc does not know friction, which contact '{friction[0]}' has: run it on one process, with solve.linear "
+            '"direct" or "auto"'
+        )
     coupled = problem.held.coupled
     if wants_factors():
         return "direct"

@@ -35,14 +35,23 @@ class LawRows:
     symmetric: bool = True
 
 
-def at_multipliers(pair: Pair, law: Law, gap: Vector, multipliers: Vector, closed: NDArray[np.bool_]) -> LawRows:
-    """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump.
+def at_multipliers(
+    pair: Pair,
+    law: Law,
+    gap: Vector,
+    multipliers: Vector,
+    closed: NDArray[np.bool_],
+    slipping: NDArray[np.bool_] | None = None,
+) -> LawRows:
+    """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump; closed,
+    slipping: (n,) status, the latter with friction.
 
     Normal laws are divided by minus their derivative by the gap, so that every linear solver meets rows of one kind."""
     where, weight = pair.index, pair.weight
     there = where >= 0
     mean = np.zeros(len(pair)) if not len(pair) else gap / weight
-    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), LawState(_status(closed, where)))
+    state = LawState(_status(closed, where), slipping=None if slipping is None else _status(slipping, where))
+    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), state)
     number = np.broadcast_to(where[:, :, None], (*where.shape, where.shape[1]))
     other = np.broadcast_to(where[:, None, :], number.shape)
     both = (number >= 0) & (other >= 0)

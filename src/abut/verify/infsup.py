@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import full_moments
-from abut.contact.pressure_space import DUAL_P1
+from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.errors import InputError, nearest
 from abut.linear import direct
 from abut.mesh.surface import Surface
@@ -100,6 +100,9 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
     wanted = next(c for c in model.contacts if c.name == (contact or names[0]))
     if wanted.kind == "tied":
         raise InputError(f"inf-sup: contact '{wanted.name}' is tied; the test is for the normal pressure of a contact")
+    if wanted.frictional:  # the pressure alone, in the space that friction takes
+        space = DUAL if wanted.pressure in ("auto", DUAL_P1) else wanted.pressure
+        wanted = replace(wanted, friction=0.0, pressure=space)
     held = supports(model)
     if held.free.shape[1] == 0:
         raise InputError("inf-sup: supports hold every displacement (rigid bodies only); leave some free")
