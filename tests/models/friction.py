@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from patch import POISSON, ROTATION
 
 import abut
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
+from models.patch import POISSON, ROTATION
 
 Array = NDArray[np.float64]
 PRESSURE = 1e-3  # over Young's modulus: far above the rounding of the coordinates

@@ -7,8 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from friction_models import FRICTION, cattaneo, errors, on_a_slope, profile, pushed, sheared
-from patch import CELL_OF, two_blocks
 
 import abut
 from abut.contact.laws import Coulomb, LawState
@@ -18,6 +16,8 @@ from abut.mesh import make
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.stepping import Automatic
 from abut.solution.state import at_rest
+from models.friction import FRICTION, cattaneo, errors, on_a_slope, profile, pushed, sheared
+from models.patch import CELL_OF, two_blocks
 
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")
 FLAT_CELLS, SOLID_CELLS = ((5, 3), (7, 3)), ((2, 3, 2), (3, 2, 2))
