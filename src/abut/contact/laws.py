@@ -89,8 +89,7 @@ class Tied:
 
 @dataclass(frozen=True)
 class Coulomb:
-    """Complementarity in the first component, Coulomb's law in the others, with the status as it is: theory (R3), (R4),
-    and (R5) for the derivatives.
+    """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R3), (R4), (R5).
 
     jump: gap, and slip since the last converged step; traction: pressure, and tangential traction on the contactor.
     stiffness: as of ``Complementarity``; friction: the coefficient, > 0, infinite where nothing slips.

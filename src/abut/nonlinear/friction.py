@@ -37,17 +37,24 @@ Status = NDArray[np.int8]
 
 def friction_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
+    return _laws(system, state, 1.0)
+
+
+def _laws(system: Linearised, state: State, share: float) -> list[LawRows]:
+    """The same with a share of every coefficient of friction."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(pair, _law(pair), gap, multipliers, closed, slipping if pair.frictional else None)
+        at_multipliers(pair, _law(pair, share), gap, multipliers, closed, slipping if pair.frictional else None)
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 
 
-def _law(pair: Pair) -> Tied | Coulomb | Complementarity:
+def _law(pair: Pair, share: float) -> Tied | Coulomb | Complementarity:
     if pair.tied:
         return Tied()
-    return Coulomb(pair.stiffness, pair.contact.coefficient) if pair.frictional else Complementarity(pair.stiffness)
+    if not pair.frictional:
+        return Complementarity(pair.stiffness)
+    return Coulomb(pair.stiffness, pair.contact.coefficient if share else 0.0)
 
 
 def solve_friction(
@@ -60,53 +67,91 @@ def solve_friction(
 ) -> Found:
     """Find the state at the end of a load step, from the state ``begin``; earlier: iterations of the same step before.
 
-    Newton's method takes whole steps, until a status comes back: from then on a line search shortens them.
+    Where Newton's method from the status of ``begin`` fails, it starts once more from the solution without friction.
     Raises SingularModelError where contact and friction cannot hold a body."""
-    system, done = solver.system, list(earlier)
-    search = _Search(solver, increment)
-    state = begin.with_status(_completed(system, begin))
+    search = _Search(solver, increment, list(earlier), observe)
+    first = begin.with_status(_completed(solver.system, begin))
+    found, error = None, None
+    try:
+        found = _newton(search, first, limit)
+    except SingularModelError as reason:
+        error = reason
+    if found is not None and found.converged:
+        return found
+    start = _without_friction(search, first, limit)
+    if start is not None:
+        try:
+            found = _newton(search, start, limit)
+        except SingularModelError as reason:
+            error = error or reason
+    if found is not None:
+        return replace(found, iterations=tuple(search.done))
+    assert error is not None
+    raise error
+
+
+def _newton(search: _Search, first: State, limit: int) -> Found:
+    """Semi-smooth Newton from a state and its status, with whole steps until a status comes back: from then on a line
+    search shortens them."""
+    system, state = search.solver.system, first
     seen: set[bytes] = set()
     before, careful, changed = np.inf, False, np.zeros(len(state.status), dtype=bool)
     for _ in range(limit):
         clock = time.perf_counter()
-        try:
-            following = advance(solver, state, friction_laws(system, state))
-        except SingularModelError:
-            stuck = np.where(state.slipping, CLOSED, state.status)
-            if not state.slipping.any():
-                raise
-            if careful:
-                break
-            careful, state = True, state.with_status(stuck)
-            continue
+        following = advance(search.solver, state, friction_laws(system, state))
         if careful:
             following = search.shortened(state, following)
-        wanted = next_status(system, following, increment)
+        wanted = next_status(system, following, search.increment)
         changed = wanted != state.status
         state = following.with_status(wanted)
-        error = search.error(state)
-        row = report(
-            system, state, increment, len(done) + 1, int(changed.sum()), np.zeros(1), time.perf_counter() - clock
-        )
-        row = replace(row, contact_residual=error)
-        done.append(row)
-        observe(row)
-        left = max(error, row.residual)
+        left = search.report(state, int(changed.sum()), clock)
         if not changed.any() and (left <= TOLERANCE or (left <= ROUNDING and left > 0.5 * before)):
-            return Found(state, tuple(done), True, changed, friction_laws)
+            return Found(state, tuple(search.done), True, changed, friction_laws)
         before = left if not changed.any() else np.inf
         if changed.any():
             careful = careful or wanted.tobytes() in seen
             seen.add(wanted.tobytes())
-    return Found(state, tuple(done), False, changed, friction_laws)
+    return Found(state, tuple(search.done), False, changed, friction_laws)
+
+
+def _without_friction(search: _Search, first: State, limit: int) -> State | None:
+    """The solution of the same step without friction, with the status that friction asks for there; None where there is
+    none, as for bodies that friction alone holds, or where every contact is rough."""
+    system = search.solver.system
+    slippery = system.join([np.full(len(p), p.frictional) for p in system.pairs]).astype(bool)
+    state = first.with_status(np.where(slippery & first.closed, SLIPPING, first.status))
+    for _ in range(limit):
+        clock = time.perf_counter()
+        try:
+            state = advance(search.solver, state, _laws(system, state, 0.0))
+        except SingularModelError:
+            return None
+        wanted = next_status(system, state, search.increment)
+        changed = (wanted != OPEN) != state.closed
+        search.report(state, int(changed.sum()), clock)
+        if not changed.any():
+            return state.with_status(wanted)
+        state = state.with_status(np.where(slippery & (wanted != OPEN), SLIPPING, wanted))
+    return None
 
 
 @dataclass(frozen=True)
 class _Search:
-    """How far states are from a solution."""
+    """What a search tells, and how far states are from a solution. done: rows of the step, which grow."""
 
     solver: Prepared
     increment: Increment
+    done: list[Iteration]
+    observe: Callable[[Iteration], None]
+
+    def report(self, state: State, changed: int, clock: float) -> float:
+        """Add a row to the table; the larger one of what laws and equilibrium have left."""
+        seconds, error = time.perf_counter() - clock, self.error(state)
+        row = report(self.solver.system, state, self.increment, len(self.done) + 1, changed, np.zeros(1), seconds)
+        row = replace(row, contact_residual=error)
+        self.done.append(row)
+        self.observe(row)
+        return max(error, row.residual)
 
     def error(self, state: State) -> float:
         """Of the laws with the status as it is, over the largest pressure."""
@@ -179,7 +224,9 @@ def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small:
         trial = pair.tangential_traction(multipliers - gap / pair.scale)
         size = np.linalg.norm(trial, axis=1)
         excess = size - pair.contact.coefficient * np.maximum(pushed, 0.0)
-        back = np.einsum("kd,kd->k", drag, trial) < 0.0  # slips the way it is pulled: it sticks before it slips back
+        back = (
+            np.einsum("kd,kd->k", drag, trial) < -small * size
+        )  # slips the way it is pulled: it sticks before it slips back
         slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
         result = np.where(closed & slips & (size > small), SLIPPING, result)
     return np.asarray(pair.of_functions(result))
