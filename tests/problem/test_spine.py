@@ -101,7 +101,7 @@ def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch)
     def never(number: int, reason: NotConverged) -> Direct:
         raise reason
 
-    control = Control(50, none, none, none, none, never)
+    control = Control(50, none, none, none, none, never, none)
     attempts = list(march(problem, problem.start(), Halving(), Direct(), control))
     assert [start for start, _ in starts] == [0.0, 0.0, 0.0, 0.25, 0.25, 0.25, 0.4375, 0.4375, 0.71875]
     done = [a for a in attempts if a.converged]

@@ -16,8 +16,8 @@ from abut.diagnosis.examine import check
 from abut.errors import InputError
 from abut.job import load_job
 from abut.materials.material import Evaluated, OwnMaterial
-from decks import BRICKS, PAIR, load
-from friction_models import FRICTION, on_a_slope, pushed
+from models.decks import BRICKS, PAIR, load
+from models.friction import FRICTION, on_a_slope, pushed
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "pushed-block" / "job.toml"
 DECK = BRICKS + PAIR.replace("HARD\n", "HARD\n*FRICTION\n0.25, 1.E4\n")
