@@ -144,6 +144,10 @@ def test_sliding_block_drags_with_its_coefficient() -> None:
     force = solution.steps[2].contacts[0].force  # at the far end of the push
     assert force[0] == pytest.approx(-FRICTION * force[1], rel=1e-9)
     assert solution.steps[2].contacts[0].friction.sticking_area == 0.0
+    home = (
+        solution.steps[3].contacts[0].force
+    )  # its top is back where it began: it has slid back, and is dragged that way
+    assert home[0] == pytest.approx(FRICTION * home[1], rel=1e-9)
 
 
 def test_load_reversal() -> None:
