@@ -31,12 +31,25 @@ namespace {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
 
-Box box_of(const Facet &f) {
+Box box_of(const Hull &hull, int dim) {
   Box box;
-  for (int i = 0; i < f.nodes; ++i)
-    box.add(f.x[i], f.dim);
-  if (quadratic(f.kind))
-    box.inflate(0.15 * box.diagonal(f.dim), f.dim);
+  for (int i = 0; i < hull.size; ++i)
+    box.add(hull.x[i], dim);
+  return box;
+}
+
+// All that lies within reach of a contactor facet along its normals.
+Box swept_box(const Facet &c, double reach) {
+  const Hull hull(c, c.x), normals(c, c.normals);
+  Box box = box_of(hull, c.dim);
+  for (int i = 0; i < hull.size; ++i)
+    for (int side = -1; side <= 1; side += 2) {
+      double far[3];
+      for (int a = 0; a < c.dim; ++a)
+        far[a] = hull.x[i][a] + side * reach * normals.x[i][a];
+      box.add(far, c.dim);
+    }
+  box.inflate(1e-9 * box.diagonal(c.dim), c.dim);
   return box;
 }
 
@@ -259,9 +272,12 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
   out.segments.assign(contactor.facets, 0);
 
   std::vector<Facet> targets(target.facets);
+  std::vector<Hull> hulls(target.facets);
   std::vector<Box> boxes(target.facets);
-  for (std::size_t t = 0; t < target.facets; ++t)
-    targets[t] = target.facet(t), boxes[t] = box_of(targets[t]);
+  for (std::size_t t = 0; t < target.facets; ++t) {
+    targets[t] = target.facet(t);
+    hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], dim);
+  }
   const Tree tree(boxes, dim);
 
   const std::size_t parts = contactor.facets < FEW_FACETS ? 1 : thread_count();
@@ -274,19 +290,9 @@ Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const R
     Carried carried;
     for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
       const Facet c = contactor.facet(f);
-      Box swept = box_of(c);
-      for (int i = 0; i < c.nodes; ++i) {
-        double far[3];
-        for (int side = -1; side <= 1; side += 2) {
-          for (int a = 0; a < dim; ++a)
-            far[a] = c.x[i][a] + side * options.reach * c.normals[i][a];
-          swept.add(far, dim);
-        }
-      }
-      swept.inflate(1e-9 * swept.diagonal(dim), dim);
       const Horizon horizon(c, options.reach);
-      tree.query(swept, found, [&](const Box &box) { return horizon.may_see(box); });
-      std::erase_if(found, [&](int t) { return !horizon.may_see(targets[t]); });
+      tree.query(swept_box(c, options.reach), found, [&](const Box &box) { return horizon.may_see(box); });
+      std::erase_if(found, [&](int t) { return !horizon.may_see(hulls[t]); });
       if (found.empty())
         continue;
       segments.clear(), pieces.clear();
