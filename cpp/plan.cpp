@@ -7,7 +7,7 @@ namespace abut {
 constexpr std::size_t FEW_FACETS = 200; // not worth a thread
 constexpr double STRICT = 1e-12;        // tolerance for affine facets: theory (Q4)
 constexpr double COARSE = 1e-10;        // tolerances from here up: fewer points do for the moments to be met
-constexpr int COARSE_POINTS = 8;
+constexpr int COARSE_POINTS = 6;
 // Gauss points for N_i N_j on affine facets of each type: curved ones do not do with fewer.
 constexpr std::array<int, QUAD9 + 1> AFFINE_POINTS{2, 3, 2, 3, 3, 4, 5};
 

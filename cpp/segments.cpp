@@ -91,19 +91,17 @@ struct Sight3 {
 };
 
 // Moves vertices where two curves cross on to both; false for a polygon without area.
-bool finish(const Over &over, Polygon &polygon, double scale, Point2 *corner, Point2 &middle) {
+bool finish(const Over &over, Polygon &polygon, double scale) {
   if (polygon.size < 3)
     return false;
-  const Polygon chords = polygon;
-  middle = {0, 0};
+  Point2 corner[MAX_CLIP];
   for (int i = 0; i < polygon.size; ++i) {
     Vertex &v = polygon.v[i];
-    const Vertex &before = chords.v[(i + polygon.size - 1) % polygon.size];
+    const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
     const Curve *in = over.curve(before), *out = over.curve(v);
     if (in && out && before.side != v.side && !(in->straight && out->straight))
       polish(*in, *out, v.p);
     corner[i] = v.p;
-    middle = middle + (1.0 / polygon.size) * v.p;
   }
   return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
 }
@@ -121,13 +119,12 @@ void cut_pieces(const Over &over, const Facet &t, Segment own, double reach, std
   for (int i = 0; i < mine.size; ++i)
     subject.push({mine.p[i], own.mine, i});
   own.polygon = clip_convex(subject, theirs.p, theirs.size, own.theirs);
-  Polygon polygon = own.polygon;
-  Point2 corner[MAX_CLIP], middle;
-  if (!finish(over, polygon, scale_of(mine), corner, middle))
+  own.finished = own.polygon;
+  if (!finish(over, own.finished, scale_of(mine)))
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
-  if (!(std::abs(at.look(t, middle)) <= reach))
+  if (!(std::abs(at.look(t, own.finished.middle())) <= reach))
     return;
   double y[3], tangent[2][3], facing[3];
   t.position.at(at.other.xi, y, tangent);
@@ -155,9 +152,9 @@ void find_hidden(const Over &over, const std::vector<Facet> &targets, const std:
         const Piece &other = over.piece(b.theirs);
         const Polygon common = clip_convex(a.polygon, other.p, other.size, b.theirs);
         Point2 corner[MAX_CLIP];
-        middle = {0, 0};
         for (int i = 0; i < common.size; ++i)
-          corner[i] = common.v[i].p, middle = middle + (1.0 / common.size) * corner[i];
+          corner[i] = common.v[i].p;
+        middle = common.middle();
         return common.size > 2 && signed_area(corner, common.size) > TOUCHING * scale_of(over.piece(a.mine));
       },
       [&](const Segment &own, Point2 middle) {
@@ -166,11 +163,8 @@ void find_hidden(const Over &over, const std::vector<Facet> &targets, const std:
       });
 }
 
-void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygon polygon, const Rule &rule,
+void integrate_part(const Over &over, const Facet &t, const Segment &own, const Polygon &polygon, const Rule &rule,
                     Accumulator &sums) {
-  Point2 corner[MAX_CLIP], middle;
-  if (!finish(over, polygon, scale_of(over.piece(own.mine)), corner, middle))
-    return;
   sums.count_segment();
   Sight3 at(over.c, own.xi, own.eta);
   if (sums.wants_sights()) {
@@ -181,9 +175,9 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
       at.find_shapes(t);
       sums.see(at.nc, at.nt, gap, normal);
     };
-    see(middle);
+    see(polygon.middle());
     for (int i = 0; i < polygon.size; ++i)
-      see(corner[i]);
+      see(polygon.v[i].p);
     at.begin(own.xi, own.eta); // integrals are the same with sights and without
   }
   integrate_polygon(
@@ -206,10 +200,10 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
 void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
                       const Rule &rule, Accumulator &sums) {
   if (own.behind.empty()) {
-    integrate_part(over, t, own, own.polygon, rule, sums);
+    integrate_part(over, t, own, own.finished, rule, sums);
     return;
   }
-  const double least = TOUCHING * scale_of(over.piece(own.mine));
+  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
   std::vector<Polygon> left{own.polygon}, next;
   for (int nearer : own.behind) {
     next.clear();
@@ -217,8 +211,9 @@ void integrate_pieces(const Over &over, const Facet &t, const Segment &own, cons
       outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
     left.swap(next);
   }
-  for (const Polygon &part : left)
-    integrate_part(over, t, own, part, rule, sums);
+  for (Polygon &part : left)
+    if (finish(over, part, scale))
+      integrate_part(over, t, own, part, rule, sums);
 }
 
 // What is asked of a target facet: its number, its points' numbers, how often it is divided.
