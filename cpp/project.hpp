@@ -81,7 +81,8 @@ struct Hull {
   double x[MAX_FACET_NODES][3];
 
   Hull() = default;
-  Hull(const Facet &f, const double (*values)[3]) : size(quadratic(f.kind) && !f.triangle() && f.dim == 3 ? 9 : f.nodes) {
+  Hull(const Facet &f, const double (*values)[3])
+      : size(quadratic(f.kind) && !f.triangle() && f.dim == 3 ? 9 : f.nodes) {
     const int corners = CORNERS[f.kind];
     for (int a = 0; a < 3; ++a) {
       double sum = 0, middles = 0;
