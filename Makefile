@@ -14,7 +14,7 @@ demo: .venv/installed-demo
 	$(BIN)/abut run examples/pin-lug/job.toml
 
 test: .venv/installed-test
-	$(BIN)/python -m pytest -n 2 --durations=10
+	ABUT_CPP_TESTS=required $(BIN)/python -m pytest -n 2 --durations=10
 
 exhaustive: .venv/installed-test
 	$(BIN)/python -m pytest -n 2 -m exhaustive --durations=5
@@ -39,7 +39,7 @@ lint: .venv/installed-lint
 	$(BIN)/ruff format --check src tests examples bench docs web
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp
+	$(BIN)/clang-format --dry-run --Werror cpp/*.hpp cpp/*.cpp tests/core/*.hpp tests/core/*.cpp
 
 docs: .venv/installed-docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs build/docs

@@ -25,8 +25,8 @@ from abut.problem.contact_pairs import pairs
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
-from assembly_models import ASSEMBLIES
-from search_models import ball, beam, pin
+from models.assembly import ASSEMBLIES
+from models.search import ball, beam, pin
 
 
 def blocks(cell: str, cells: int) -> abut.Model:

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import abut
 from abut.job import load_job
 from abut.linear import static_condensation
-from search_models import ball, beam, layer, line, pin, solid_beam
+from models.search import ball, beam, layer, line, pin, solid_beam
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 PATHS = ("elimination", "saddle", "multigrid")

@@ -47,9 +47,9 @@ public:
     double wh[MAX_FACET_NODES];
     for (int k = 0; k < functions_; ++k) {
       wh[k] = weight * h[k];
-      out_.gap[9 * f_ + k] += wh[k] * gap, out_.weight[9 * f_ + k] += wh[k];
+      out_.gap[MAX_FACET_NODES * f_ + k] += wh[k] * gap, out_.weight[MAX_FACET_NODES * f_ + k] += wh[k];
     }
-    add_products(functions_, wh, h, functions_, &out_.mass[81 * f_]);
+    add_products(functions_, wh, h, functions_, &out_.mass[PRODUCTS * f_]);
     for (int a = 0; a < (options_.vectorial ? dim_ : 1); ++a) {
       double whn[MAX_FACET_NODES];
       for (int k = 0; k < functions_; ++k)
@@ -117,7 +117,7 @@ private:
     const int width = options_.vectorial ? dim_ : 1;
     for (int k = 0; k < functions_; ++k)
       for (int j = 0; j < count; ++j) {
-        entries.row.push_back(std::int32_t(9 * f_ + k));
+        entries.row.push_back(std::int32_t(MAX_FACET_NODES * f_ + k));
         entries.column.push_back(nodes[j]);
         for (int a = 0; a < width; ++a)
           entries.value.push_back(block[a][MAX_FACET_NODES * k + j]);

@@ -6,8 +6,8 @@
 namespace abut {
 
 static SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes) {
-  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != 9)
-    throw nb::value_error("nodes must be (facets, 9)");
+  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != MAX_FACET_NODES)
+    throw nb::value_error("nodes must be (facets, MAX_FACET_NODES)");
   return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
 }
 
@@ -48,8 +48,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   Coupling c;
   {
     nb::gil_scoped_release release;
-    c = couple(contactor, target, rule_table, order_c.data(), order_t.data(), subdivide_c.data(), subdivide_t.data(),
-               {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding, hidden});
+    c = couple({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
+               rule_table, {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding, hidden});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -59,9 +59,9 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   };
   entries("contactor", c.lists.contactor);
   entries("target", c.lists.target);
-  out["gap"] = to_numpy(std::move(c.gap), {facets, 9});
-  out["weight"] = to_numpy(std::move(c.weight), {facets, 9});
-  out["mass"] = to_numpy(std::move(c.mass), {facets, 9, 9});
+  out["gap"] = to_numpy(std::move(c.gap), {facets, MAX_FACET_NODES});
+  out["weight"] = to_numpy(std::move(c.weight), {facets, MAX_FACET_NODES});
+  out["mass"] = to_numpy(std::move(c.mass), {facets, MAX_FACET_NODES, MAX_FACET_NODES});
   out["covered"] = to_numpy(std::move(c.covered));
   out["segments"] = to_numpy(std::move(c.segments));
   if (keep_points) {
@@ -69,9 +69,9 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
     out["point_weight"] = to_numpy(std::move(c.lists.points.weight));
     out["point_gap"] = to_numpy(std::move(c.lists.points.gap));
     out["point_normal"] = to_numpy(std::move(c.lists.points.normal), {n, dim});
-    out["point_pressure"] = to_numpy(std::move(c.lists.points.pressure), {n, 9});
-    out["point_contactor"] = to_numpy(std::move(c.lists.points.contactor), {n, 9});
-    out["point_target"] = to_numpy(std::move(c.lists.points.target), {n, 9});
+    out["point_pressure"] = to_numpy(std::move(c.lists.points.pressure), {n, MAX_FACET_NODES});
+    out["point_contactor"] = to_numpy(std::move(c.lists.points.contactor), {n, MAX_FACET_NODES});
+    out["point_target"] = to_numpy(std::move(c.lists.points.target), {n, MAX_FACET_NODES});
     out["point_contactor_facet"] = to_numpy(std::move(c.lists.points.contactor_facet));
     out["point_target_facet"] = to_numpy(std::move(c.lists.points.target_facet));
   }
@@ -80,8 +80,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
     const std::size_t n = s.gap.size();
     out["sight_gap"] = to_numpy(std::move(s.gap));
     out["sight_normal"] = to_numpy(std::move(s.normal), {n, dim});
-    out["sight_contactor"] = to_numpy(std::move(s.contactor), {n, 9});
-    out["sight_target"] = to_numpy(std::move(s.target), {n, 9});
+    out["sight_contactor"] = to_numpy(std::move(s.contactor), {n, MAX_FACET_NODES});
+    out["sight_target"] = to_numpy(std::move(s.target), {n, MAX_FACET_NODES});
     out["sight_contactor_facet"] = to_numpy(std::move(s.contactor_facet));
     out["sight_target_facet"] = to_numpy(std::move(s.target_facet));
   }

@@ -58,8 +58,11 @@ constexpr double QUAD_SIGN[8][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1},
 constexpr int TRI_EDGE[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 constexpr int TET_EDGE[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
-template <class T> void simplex_quadratic(int dim, const T *l, T *n, T (*d)[3]) {
+template <class T> void simplex_quadratic(int dim, const T *x, T *n, T (*d)[3]) {
   const int corners = dim + 1;
+  T l[4] = {T(1)};
+  for (int a = 0; a < dim; ++a)
+    l[0] = l[0] - x[a], l[a + 1] = x[a];
   auto dl = [dim](int i, int a) { return i == 0 ? T(-1) : T(i - 1 == a ? 1 : 0); };
   for (int i = 0; i < corners; ++i) {
     n[i] = l[i] * (T(2) * l[i] - T(1));
@@ -150,6 +153,46 @@ template <class T> void wedge15(const T *x, T *n, T (*d)[3]) {
   }
 }
 
+template <class T> void simplex_linear(int dim, const T *x, T *n, T (*d)[3]) {
+  n[0] = T(1);
+  for (int a = 0; a < dim; ++a) {
+    n[0] = n[0] - x[a], n[a + 1] = x[a], d[0][a] = T(-1);
+    for (int b = 0; b < dim; ++b)
+      d[a + 1][b] = T(a == b ? 1 : 0);
+  }
+}
+
+template <class T> void line(const Poly1<T> &p, int nodes, T *n, T (*d)[3]) {
+  for (int i = 0; i < nodes; ++i)
+    n[i] = p.v[i], d[i][0] = p.d[i];
+}
+
+template <class T> void product_quad(const Poly1<T> &p, const Poly1<T> &q, int nodes, T *n, T (*d)[3]) {
+  for (int i = 0; i < nodes; ++i) {
+    const int a = QUAD9_INDEX[i][0], b = QUAD9_INDEX[i][1];
+    n[i] = p.v[a] * q.v[b], d[i][0] = p.d[a] * q.v[b], d[i][1] = p.v[a] * q.d[b];
+  }
+}
+
+template <class T> void product_hex(const Poly1<T> (&p)[3], int nodes, T *n, T (*d)[3]) {
+  for (int i = 0; i < nodes; ++i) {
+    const int *m = HEX27_INDEX[i];
+    n[i] = p[0].v[m[0]] * p[1].v[m[1]] * p[2].v[m[2]];
+    d[i][0] = p[0].d[m[0]] * p[1].v[m[1]] * p[2].v[m[2]];
+    d[i][1] = p[0].v[m[0]] * p[1].d[m[1]] * p[2].v[m[2]];
+    d[i][2] = p[0].v[m[0]] * p[1].v[m[1]] * p[2].d[m[2]];
+  }
+}
+
+template <class T> void wedge6(const T *x, T *n, T (*d)[3]) {
+  const T l[3] = {T(1) - x[0] - x[1], x[0], x[1]};
+  const T dl[3][2] = {{T(-1), T(-1)}, {T(1), T(0)}, {T(0), T(1)}};
+  for (int i = 0; i < 6; ++i) {
+    const T s = T(i < 3 ? -0.5 : 0.5), h = T(0.5) + s * x[2];
+    n[i] = l[i % 3] * h, d[i][0] = dl[i % 3][0] * h, d[i][1] = dl[i % 3][1] * h, d[i][2] = l[i % 3] * s;
+  }
+}
+
 } // namespace detail
 
 // Values n[i] and derivatives d[i][a] of all shape functions of `kind` at the reference point x.
@@ -157,78 +200,35 @@ template <class T> void shape(int kind, const T *x, T *n, T (*d)[3]) {
   using namespace detail;
   switch (kind) {
   case LINE2:
-  case LINE3: {
-    const auto p = kind == LINE2 ? line_linear(x[0]) : line_quadratic(x[0]);
-    for (int i = 0; i < NODES[kind]; ++i)
-      n[i] = p.v[i], d[i][0] = p.d[i];
-    break;
-  }
+    return line(line_linear(x[0]), 2, n, d);
+  case LINE3:
+    return line(line_quadratic(x[0]), 3, n, d);
   case TRI3:
-    n[0] = T(1) - x[0] - x[1], n[1] = x[0], n[2] = x[1];
-    d[0][0] = d[0][1] = T(-1), d[1][0] = d[2][1] = T(1), d[1][1] = d[2][0] = T(0);
-    break;
-  case TRI6: {
-    const T l[3] = {T(1) - x[0] - x[1], x[0], x[1]};
-    simplex_quadratic(2, l, n, d);
-    break;
-  }
+    return simplex_linear(2, x, n, d);
+  case TRI6:
+    return simplex_quadratic(2, x, n, d);
   case TET4:
-    n[0] = T(1) - x[0] - x[1] - x[2];
-    for (int a = 0; a < 3; ++a) {
-      d[0][a] = T(-1), n[a + 1] = x[a];
-      for (int b = 0; b < 3; ++b)
-        d[a + 1][b] = T(a == b ? 1 : 0);
-    }
-    break;
-  case TET10: {
-    const T l[4] = {T(1) - x[0] - x[1] - x[2], x[0], x[1], x[2]};
-    simplex_quadratic(3, l, n, d);
-    break;
-  }
-  case QUAD8:
-    serendipity_quad(x[0], x[1], n, d);
-    break;
-  case HEX20:
-    serendipity_hex(x, n, d);
-    break;
+    return simplex_linear(3, x, n, d);
+  case TET10:
+    return simplex_quadratic(3, x, n, d);
   case QUAD4:
-  case QUAD9: {
-    const auto p = kind == QUAD4 ? line_linear(x[0]) : line_quadratic(x[0]);
-    const auto q = kind == QUAD4 ? line_linear(x[1]) : line_quadratic(x[1]);
-    for (int i = 0; i < NODES[kind]; ++i) {
-      const int a = QUAD9_INDEX[i][0], b = QUAD9_INDEX[i][1];
-      n[i] = p.v[a] * q.v[b], d[i][0] = p.d[a] * q.v[b], d[i][1] = p.v[a] * q.d[b];
-    }
-    break;
-  }
+    return product_quad(line_linear(x[0]), line_linear(x[1]), 4, n, d);
+  case QUAD8:
+    return serendipity_quad(x[0], x[1], n, d);
+  case QUAD9:
+    return product_quad(line_quadratic(x[0]), line_quadratic(x[1]), 9, n, d);
   case HEX8:
-  case HEX27: {
-    Poly1<T> p[3];
-    for (int k = 0; k < 3; ++k)
-      p[k] = kind == HEX8 ? line_linear(x[k]) : line_quadratic(x[k]);
-    for (int i = 0; i < NODES[kind]; ++i) {
-      const int *m = HEX27_INDEX[i];
-      n[i] = p[0].v[m[0]] * p[1].v[m[1]] * p[2].v[m[2]];
-      d[i][0] = p[0].d[m[0]] * p[1].v[m[1]] * p[2].v[m[2]];
-      d[i][1] = p[0].v[m[0]] * p[1].d[m[1]] * p[2].v[m[2]];
-      d[i][2] = p[0].v[m[0]] * p[1].v[m[1]] * p[2].d[m[2]];
-    }
-    break;
-  }
-  case WEDGE6: {
-    const T l[3] = {T(1) - x[0] - x[1], x[0], x[1]};
-    const T dl[3][2] = {{T(-1), T(-1)}, {T(1), T(0)}, {T(0), T(1)}};
-    for (int i = 0; i < 6; ++i) {
-      const T s = T(i < 3 ? -0.5 : 0.5), h = T(0.5) + s * x[2];
-      n[i] = l[i % 3] * h, d[i][0] = dl[i % 3][0] * h, d[i][1] = dl[i % 3][1] * h, d[i][2] = l[i % 3] * s;
-    }
-    break;
-  }
+    return product_hex({line_linear(x[0]), line_linear(x[1]), line_linear(x[2])}, 8, n, d);
+  case HEX20:
+    return serendipity_hex(x, n, d);
+  case HEX27:
+    return product_hex({line_quadratic(x[0]), line_quadratic(x[1]), line_quadratic(x[2])}, 27, n, d);
+  case WEDGE6:
+    return wedge6(x, n, d);
   case WEDGE15:
-    wedge15(x, n, d);
-    break;
+    return wedge15(x, n, d);
   default:
-    break;
+    return;
   }
 }
 

@@ -28,7 +28,7 @@ struct Contactor3 {
     for (int i = 0; i < map.terms; ++i)
       map.c[i][0] = position.c[i][0], map.c[i][1] = position.c[i][1];
     flatten(
-        f, m, false,
+        {f, m, false},
         [&](const double *xi, int) {
           double x[3];
           facet.position.at(xi, x);

@@ -61,16 +61,40 @@ inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
   return curve;
 }
 
-// The pieces of a facet divided m x m, counter-clockwise; to_plane(xi, node) maps reference coordinates to the plane,
-// which are those of a node where m = 1 (-1 for none).
-// `reverse` turns the order (a target seen from the contactor). Back-facing pieces are
-// left out.
-template <class Map> void flatten(const Facet &f, int m, bool reverse, Map to_plane, std::vector<Piece> &out) {
-  const bool triangle = f.triangle(), curved = quadratic(f.kind);
-  auto grid = [&](double i, double j, double *xi) {
+// A quadrilateral that is not convex: cut along the diagonal from its reflex corner.
+inline void halve(const Piece &piece, std::vector<Piece> &out) {
+  int reflex = 0;
+  for (int i = 0; i < 4; ++i)
+    if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0)
+      reflex = i;
+  for (int half = 0; half < 2; ++half) {
+    const int a = reflex, b = (reflex + (half == 0 ? 1 : 2)) % 4, c = (reflex + (half == 0 ? 2 : 3)) % 4;
+    Piece part;
+    part.size = 3;
+    part.p[0] = piece.p[a], part.p[1] = piece.p[b], part.p[2] = piece.p[c];
+    part.curve[0] = half == 0 ? piece.curve[a] : make_curve(piece.p[a], piece.p[b], nullptr);
+    part.curve[1] = piece.curve[b];
+    part.curve[2] = half == 0 ? make_curve(piece.p[c], piece.p[a], nullptr) : piece.curve[c];
+    if (signed_area(part.p, 3) > 0)
+      out.push_back(part);
+  }
+}
+
+// A facet that is divided m x m and flattened; `reverse` turns the order (a target seen from the contactor).
+struct Division {
+  const Facet &facet;
+  int m;
+  bool reverse;
+
+  // Reference coordinates of the grid's points, which lie at whole i, j.
+  void grid(double i, double j, double *xi) const {
+    const bool triangle = facet.triangle();
     xi[0] = triangle ? i / m : -1 + 2 * i / m, xi[1] = triangle ? j / m : -1 + 2 * j / m;
-  };
-  auto add = [&](const double (*corner)[2], int size) {
+  }
+
+  // The piece with these corners on the grid, counter-clockwise; none where it faces back.
+  template <class Map> void add(const double (*corner)[2], int size, Map to_plane, std::vector<Piece> &out) const {
+    const bool curved = quadratic(facet.kind);
     Piece piece;
     piece.size = size;
     Point2 middle[4];
@@ -88,40 +112,31 @@ template <class Map> void flatten(const Facet &f, int m, bool reverse, Map to_pl
       return;
     for (int i = 0; i < size; ++i)
       piece.curve[i] = make_curve(piece.p[i], piece.p[(i + 1) % size], curved ? &middle[i] : nullptr);
-    if (size == 3 || convex(piece.p, 4)) {
+    if (size == 3 || convex(piece.p, 4))
       out.push_back(piece);
-      return;
-    }
-    // A quadrilateral that is not convex in this plane: cut along the diagonal from its reflex corner.
-    int reflex = 0;
-    for (int i = 0; i < 4; ++i)
-      if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0)
-        reflex = i;
-    for (int half = 0; half < 2; ++half) {
-      const int a = reflex, b = (reflex + (half == 0 ? 1 : 2)) % 4, c = (reflex + (half == 0 ? 2 : 3)) % 4;
-      Piece part;
-      part.size = 3;
-      part.p[0] = piece.p[a], part.p[1] = piece.p[b], part.p[2] = piece.p[c];
-      part.curve[0] = half == 0 ? piece.curve[a] : make_curve(piece.p[a], piece.p[b], nullptr);
-      part.curve[1] = piece.curve[b];
-      part.curve[2] = half == 0 ? make_curve(piece.p[c], piece.p[a], nullptr) : piece.curve[c];
-      if (signed_area(part.p, 3) > 0)
-        out.push_back(part);
-    }
-  };
+    else
+      halve(piece, out);
+  }
+};
+
+// The pieces of a divided facet, counter-clockwise; to_plane(xi, node) maps reference coordinates to the plane, which
+// are those of a node where m = 1 (-1 for none).
+template <class Map> void flatten(const Division &division, Map to_plane, std::vector<Piece> &out) {
+  const bool triangle = division.facet.triangle();
+  const int m = division.m;
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < (triangle ? m - i : m); ++j) {
       const double a = i, b = j;
       if (!triangle) {
         const double quad[4][2] = {{a, b}, {a + 1, b}, {a + 1, b + 1}, {a, b + 1}};
-        add(quad, 4);
+        division.add(quad, 4, to_plane, out);
         continue;
       }
       const double up[3][2] = {{a, b}, {a + 1, b}, {a, b + 1}};
-      add(up, 3);
+      division.add(up, 3, to_plane, out);
       if (i + j < m - 1) {
         const double down[3][2] = {{a + 1, b}, {a + 1, b + 1}, {a, b + 1}};
-        add(down, 3);
+        division.add(down, 3, to_plane, out);
       }
     }
 }

@@ -37,7 +37,8 @@ void find_hidden(std::vector<Segment> &segments, const std::int32_t *nodes, Comm
     for (std::size_t j = i + 1; j < segments.size(); ++j) {
       Segment &a = segments[i], &b = segments[j];
       P p;
-      if (a.target == b.target || !common(a, b, p) || adjacent(nodes + 9 * a.target, nodes + 9 * b.target))
+      if (a.target == b.target || !common(a, b, p) ||
+          adjacent(nodes + MAX_FACET_NODES * a.target, nodes + MAX_FACET_NODES * b.target))
         continue;
       if (distance(b, p) < distance(a, p))
         a.behind.push_back(int(j));

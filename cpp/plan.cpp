@@ -14,9 +14,9 @@ constexpr std::array<int, QUAD9 + 1> AFFINE_POINTS{2, 3, 2, 3, 3, 4, 5};
 namespace {
 
 // Largest error of int N_i N_j over the facet with this rule on its own polygons, relative to the area: theory (Q4).
-double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, bool fan, const double (*exact)[9],
-                    double area) {
-  double sum[9][9] = {{0}};
+double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, bool fan,
+                    const double (*exact)[MAX_FACET_NODES], double area) {
+  double sum[MAX_FACET_NODES][MAX_FACET_NODES] = {{0}};
   Spot<2> at;
   f.centre(at.xi);
   for (const Piece &piece : own.pieces) {
@@ -45,8 +45,9 @@ double moment_error(const Facet &f, const Contactor3 &own, const Rule &rule, boo
 }
 
 // The same in 2D, integrating over the chord so that the inverse map is exercised.
-double moment_error_line(const Facet &f, const Rule &rule, const double (*exact)[9], double length, bool axisymmetric) {
-  double sum[9][9] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
+double moment_error_line(const Facet &f, const Rule &rule, const double (*exact)[MAX_FACET_NODES], double length,
+                         bool axisymmetric) {
+  double sum[MAX_FACET_NODES][MAX_FACET_NODES] = {{0}}, chord[2] = {f.x[1][0] - f.x[0][0], f.x[1][1] - f.x[0][1]};
   normalize(chord, 2);
   Spot<3> at;
   f.centre(at.xi);
@@ -89,7 +90,7 @@ int subdivisions_needed(const Facet &f) {
 }
 
 // int N_i N_j over the facet by a rule of many points; returns the area.
-double exact_moments(const Facet &facet, const Rule &fine, bool axisymmetric, double (*exact)[9]) {
+double exact_moments(const Facet &facet, const Rule &fine, bool axisymmetric, double (*exact)[MAX_FACET_NODES]) {
   const bool triangle = facet.triangle(), line = facet.dim == 2;
   double area = 0;
   for (int p = 0; p < fine.n; ++p)
@@ -120,7 +121,7 @@ double exact_moments(const Facet &facet, const Rule &fine, bool axisymmetric, do
 // The fewest points whose own moments meet the tolerance.
 int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const RuleTable &exact_rules, double tolerance,
                   bool axisymmetric) {
-  double exact[9][9] = {{0}};
+  double exact[MAX_FACET_NODES][MAX_FACET_NODES] = {{0}};
   const bool coarse = tolerance >= COARSE;
   const int most = coarse ? COARSE_POINTS : int(exact_rules.count);
   const double area = exact_moments(facet, exact_rules.rule(most), axisymmetric, exact);

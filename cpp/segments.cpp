@@ -15,8 +15,8 @@ Facet SurfaceView::facet(std::size_t f) const {
   out.kind = kinds[f], out.dim = dim, out.nodes = NODES[out.kind];
   for (int i = 0; i < out.nodes; ++i)
     for (int a = 0; a < 3; ++a) {
-      out.x[i][a] = a < dim ? points[std::size_t(nodes[9 * f + i]) * dim + a] : 0;
-      out.normals[i][a] = a < dim && normals ? normals[(9 * f + i) * dim + a] : 0;
+      out.x[i][a] = a < dim ? points[std::size_t(facet_nodes(f)[i]) * dim + a] : 0;
+      out.normals[i][a] = a < dim && normals ? normals[(MAX_FACET_NODES * f + i) * dim + a] : 0;
     }
   out.position.interpolate(out.kind, out.x);
   out.direction.interpolate(out.kind, out.normals);
@@ -228,7 +228,7 @@ void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reac
   const Contactor3 &c = over.c;
   const std::size_t before = over.theirs.size();
   flatten(
-      t, asked.subdivide, true,
+      {t, asked.subdivide, true},
       [&](const double *eta, int node) {
         if (node >= 0 && c.flat)
           return c.plane.flat(t.x[node]);
@@ -255,76 +255,116 @@ void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reac
     }
 }
 
+// What all threads share: both surfaces, the target's facets, their hulls and the tree of their boxes.
+struct Interface {
+  const Planned &contactor, &target;
+  const RuleTable &rules;
+  const Options &options;
+  std::vector<Facet> targets;
+  std::vector<Hull> hulls;
+  Tree tree;
+};
+
+// Cuts contactor facets and integrates, one after another; one for each thread.
+class Cutter {
+public:
+  Cutter(const Interface &both, Coupling &out, Lists &lists)
+      : both_(both), sums_(out, lists, both.options, both.contactor.surface.dim) {}
+
+  void run(std::size_t f) {
+    const SurfaceView &contactor = both_.contactor.surface;
+    const Facet c = contactor.facet(f);
+    find(c);
+    if (found_.empty())
+      return;
+    segments_.clear(), pieces_.clear();
+    sums_.begin(f, c);
+    contactor.dim == 2 ? run_line(f, c) : run_facet(f, c);
+    sums_.end(contactor.facet_nodes(f));
+  }
+
+private:
+  // The target facets that the contactor facet may see within reach.
+  void find(const Facet &c) {
+    const double reach = both_.options.reach;
+    const Horizon horizon(c, reach);
+    both_.tree.query(swept_box(c, reach), found_, [&](const Box &box) { return horizon.may_see(box); });
+    std::erase_if(found_, [&](int t) { return !horizon.may_see(both_.hulls[t]); });
+  }
+
+  void run_line(std::size_t f, const Facet &c) {
+    for (int t : found_)
+      cut_line(c, both_.targets[t], t, both_.options.reach, segments_);
+    if (!both_.options.hidden)
+      find_hidden(c, both_.targets, both_.target.surface.nodes, segments_);
+    each(f, [&](const Facet &t, const Segment &own, const Rule &rule) {
+      integrate_line(c, t, own, segments_, rule, both_.options.axisymmetric, sums_);
+    });
+  }
+
+  void run_facet(std::size_t f, const Facet &c) {
+    const Contactor3 own(c, both_.contactor.subdivisions[f]);
+    const Planned &target = both_.target;
+    const Over over{own, pieces_};
+    carried_.begin();
+    for (int t : found_)
+      cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, both_.options.reach,
+                carried_, segments_);
+    if (!both_.options.hidden)
+      find_hidden(over, both_.targets, target.surface.nodes, segments_);
+    each(f, [&](const Facet &t, const Segment &own, const Rule &rule) {
+      integrate_pieces(over, t, own, segments_, rule, sums_);
+    });
+  }
+
+  // Segments of one target facet follow each other.
+  template <class Integrate> void each(std::size_t f, Integrate integrate) {
+    for (std::size_t i = 0; i < segments_.size();) {
+      const int t = segments_[i].target;
+      sums_.begin_target(t, both_.targets[t].nodes);
+      const Rule rule = both_.rules.rule(std::max(both_.contactor.points[f], both_.target.points[t]));
+      for (; i < segments_.size() && segments_[i].target == t; ++i)
+        integrate(both_.targets[t], segments_[i], rule);
+      sums_.end_target(both_.target.surface.facet_nodes(t));
+    }
+  }
+
+  const Interface &both_;
+  Accumulator sums_;
+  std::vector<int> found_;
+  std::vector<Piece> pieces_;
+  std::vector<Segment> segments_;
+  Carried carried_;
+};
+
+Interface interface(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options) {
+  const SurfaceView &surface = target.surface;
+  std::vector<Facet> targets(surface.facets);
+  std::vector<Hull> hulls(surface.facets);
+  std::vector<Box> boxes(surface.facets);
+  for (std::size_t t = 0; t < surface.facets; ++t) {
+    targets[t] = surface.facet(t);
+    hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
+  }
+  Tree tree(std::move(boxes), surface.dim);
+  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree)};
+}
+
 } // namespace
 
-Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
-                const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,
-                const std::int32_t *subdivide_t, const Options &options) {
-  const int dim = contactor.dim;
+Coupling couple(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options) {
+  const std::size_t facets = contactor.surface.facets;
   Coupling out;
-  out.gap.assign(9 * contactor.facets, 0), out.weight.assign(9 * contactor.facets, 0);
-  out.mass.assign(81 * contactor.facets, 0), out.covered.assign(contactor.facets, 0);
-  out.segments.assign(contactor.facets, 0);
-
-  std::vector<Facet> targets(target.facets);
-  std::vector<Hull> hulls(target.facets);
-  std::vector<Box> boxes(target.facets);
-  for (std::size_t t = 0; t < target.facets; ++t) {
-    targets[t] = target.facet(t);
-    hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], dim);
-  }
-  const Tree tree(boxes, dim);
-
-  const std::size_t parts = contactor.facets < FEW_FACETS ? 1 : thread_count();
+  out.gap.assign(MAX_FACET_NODES * facets, 0), out.weight.assign(MAX_FACET_NODES * facets, 0);
+  out.mass.assign(MAX_FACET_NODES * MAX_FACET_NODES * facets, 0), out.covered.assign(facets, 0);
+  out.segments.assign(facets, 0);
+  const Interface both = interface(contactor, target, rules, options);
+  const std::size_t parts = facets < FEW_FACETS ? 1 : thread_count();
   std::vector<Lists> lists(parts);
   run_parts(parts, [&](std::size_t part) {
-    Accumulator sums(out, lists[part], options, dim);
-    std::vector<int> found;
-    std::vector<Piece> pieces;
-    std::vector<Segment> segments;
-    Carried carried;
-    for (std::size_t f = contactor.facets * part / parts; f < contactor.facets * (part + 1) / parts; ++f) {
-      const Facet c = contactor.facet(f);
-      const Horizon horizon(c, options.reach);
-      tree.query(swept_box(c, options.reach), found, [&](const Box &box) { return horizon.may_see(box); });
-      std::erase_if(found, [&](int t) { return !horizon.may_see(hulls[t]); });
-      if (found.empty())
-        continue;
-      segments.clear(), pieces.clear();
-      sums.begin(f, c);
-      // Segments of one target facet follow each other.
-      auto each = [&](auto integrate) {
-        for (std::size_t i = 0; i < segments.size();) {
-          const int t = segments[i].target;
-          sums.begin_target(t, targets[t].nodes);
-          const Rule rule = rules.rule(std::max(points_c[f], points_t[t]));
-          for (; i < segments.size() && segments[i].target == t; ++i)
-            integrate(targets[t], segments[i], rule);
-          sums.end_target(target.nodes + 9 * t);
-        }
-      };
-      if (dim == 2) {
-        for (int t : found)
-          cut_line(c, targets[t], t, options.reach, segments);
-        if (!options.hidden)
-          find_hidden(c, targets, target.nodes, segments);
-        each([&](const Facet &t, const Segment &own, const Rule &rule) {
-          integrate_line(c, t, own, segments, rule, options.axisymmetric, sums);
-        });
-      } else {
-        const Contactor3 own(c, subdivide_c[f]);
-        const Over over{own, pieces};
-        carried.begin();
-        for (int t : found)
-          cut_facet(over, targets[t], {t, target.nodes + 9 * t, subdivide_t[t]}, options.reach, carried, segments);
-        if (!options.hidden)
-          find_hidden(over, targets, target.nodes, segments);
-        each([&](const Facet &t, const Segment &own, const Rule &rule) {
-          integrate_pieces(over, t, own, segments, rule, sums);
-        });
-      }
-      sums.end(contactor.nodes + 9 * f);
-    }
+    Cutter cutter(both, out, lists[part]);
+    for (std::size_t f = facets * part / parts; f < facets * (part + 1) / parts; ++f)
+      cutter.run(f);
   });
   for (Lists &part : lists) {
     append(out.lists.contactor, part.contactor), append(out.lists.target, part.target);

@@ -11,9 +11,16 @@ struct SurfaceView {
   const double *points;
   std::size_t facets;
   const std::uint8_t *kinds;
-  const std::int32_t *nodes;       // facets x 9
-  const double *normals = nullptr; // facets x 9 x dim, contactor only
+  const std::int32_t *nodes;       // facets x MAX_FACET_NODES
+  const double *normals = nullptr; // facets x MAX_FACET_NODES x dim, contactor only
   Facet facet(std::size_t f) const;
+  const std::int32_t *facet_nodes(std::size_t f) const { return nodes + MAX_FACET_NODES * f; }
+};
+
+// A surface and, for each of its facets, integration points per direction and how often it is divided.
+struct Planned {
+  SurfaceView surface;
+  const std::int32_t *points, *subdivisions;
 };
 
 // Rules with 1..n points: row n-1 of each table holds the rule with n points.
@@ -45,20 +52,22 @@ struct Options {
   bool hidden;       // count also what lies behind something nearer: theory (S12)
 };
 
-// Entries are (row, column, values): row 9 f + k for pressure function k of contactor facet f, column a point number.
+// Entries are (row, column, values): row MAX_FACET_NODES f + k for pressure function k of contactor facet f, column a
+// point number.
 struct Entries {
   std::vector<std::int32_t> row, column;
   std::vector<double> value;
 };
 
 struct IntegrationPoints {
-  std::vector<double> weight, gap, normal, pressure, contactor, target; // n, n, n dim, 9 n, 9 n, 9 n
+  std::vector<double> weight, gap, normal, pressure, contactor,
+      target; // n, n, n dim, MAX_FACET_NODES n, MAX_FACET_NODES n twice
   std::vector<std::int32_t> contactor_facet, target_facet;
 };
 
 // Points of the contactor and what they see: gap, normal from target to contactor, shape functions of both sides.
 struct Sights {
-  std::vector<double> gap, normal, contactor, target; // n, n dim, 9 n, 9 n
+  std::vector<double> gap, normal, contactor, target; // n, n dim, MAX_FACET_NODES n twice
   std::vector<std::int32_t> contactor_facet, target_facet;
 };
 
@@ -70,7 +79,7 @@ struct Lists {
 
 struct Coupling {
   Lists lists;
-  std::vector<double> gap, weight, mass, covered; // 9 f, 9 f, 81 f, f
+  std::vector<double> gap, weight, mass, covered; // MAX_FACET_NODES f, the same, MAX_FACET_NODES^2 f, f
   std::vector<std::int32_t> segments;             // f: how many
 };
 
@@ -80,8 +89,6 @@ struct Coupling {
 void plan(const SurfaceView &surface, const RuleTable &rules, const RuleTable &exact_rules, const double *tolerance,
           bool axisymmetric, std::vector<std::int32_t> &points, std::vector<std::int32_t> &subdivisions);
 
-Coupling couple(const SurfaceView &contactor, const SurfaceView &target, const RuleTable &rules,
-                const std::int32_t *points_c, const std::int32_t *points_t, const std::int32_t *subdivide_c,
-                const std::int32_t *subdivide_t, const Options &options);
+Coupling couple(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options);
 
 } // namespace abut

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace abut {
@@ -40,10 +41,10 @@ struct Box {
 
 class Tree {
 public:
-  Tree(const std::vector<Box> &boxes, int dim) : boxes_(boxes), dim_(dim), order_(boxes.size()) {
+  Tree(std::vector<Box> boxes, int dim) : boxes_(std::move(boxes)), dim_(dim), order_(boxes_.size()) {
     std::iota(order_.begin(), order_.end(), 0);
-    if (!boxes.empty())
-      build(0, int(boxes.size()));
+    if (!boxes_.empty())
+      build(0, int(boxes_.size()));
   }
 
   // The numbers of all boxes that meet `box` and may be what is looked for, in ascending order. may_hold: false for a
@@ -107,7 +108,7 @@ private:
       c[a] = 0.5 * (boxes_[i].low[a] + boxes_[i].high[a]);
   }
 
-  const std::vector<Box> &boxes_;
+  std::vector<Box> boxes_;
   int dim_;
   std::vector<int> order_;
   std::vector<Node> nodes_;

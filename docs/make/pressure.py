@@ -15,7 +15,7 @@ from abut.solution import ContactResult
 from page import DOCS, plots, read_table, save, write_table
 
 sys.path.insert(0, str(DOCS.parent / "tests"))
-import pressure_models as models
+from models import pressure as models
 
 PAGE = DOCS / "verification" / "pressure.md"
 BENCHMARKS = DOCS / "verification" / "benchmarks.md"

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from abut.report import write_report
     from abut.solution import Solution
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {  # of public names that do not come from abut.model
     "solve": "abut.analysis", "write": "abut.output.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.solution",

@@ -74,4 +74,4 @@ _ALL = (
 
 CELLS: dict[str, CellType] = {cell.name: cell for cell in _ALL}
 BY_CODE: tuple[CellType, ...] = _ALL
-MAX_FACET_NODES = 9
+MAX_FACET_NODES = 9  # what is kept for each node or pressure function of a facet comes in rows of as many, padded

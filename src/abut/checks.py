@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from abut.errors import InputError, nearest
+from abut.types import Array
 
 LARGEST = 1e60  # size of a number that no units need; products of several stay within what a computer can hold
 
@@ -45,7 +45,7 @@ def choice(value: str, name: str, allowed: Sequence[str]) -> str:
     return value
 
 
-def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int | None] = ()) -> NDArray[Any]:
+def array(value: object, name: str, *, dtype: Any = np.float64, shape: Sequence[int | None] = ()) -> Array:
     """Return ``value`` as a C-contiguous array of ``dtype``; ``None`` in ``shape`` matches any extent."""
     try:
         result = np.ascontiguousarray(value, dtype=dtype)
@@ -65,7 +65,7 @@ def array(value: Any, name: str, *, dtype: Any = np.float64, shape: Sequence[int
     return result
 
 
-def known(name: Any, known: Iterable[str] | Mapping[str, Any], where: str, what: str) -> None:
+def known(name: object, known: Iterable[str] | Mapping[str, object], where: str, what: str) -> None:
     """Raise InputError for a name that is not among the known ones, with the nearest."""
     if name not in known:
         raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")

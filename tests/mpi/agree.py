@@ -22,7 +22,7 @@ Cells = tuple[tuple[int, ...], tuple[int, ...]]
 
 def patch(lower: str, upper: str, cells: Cells = ((3, 3, 3), (4, 4, 3)), **contact: Any) -> Any:
     """Two blocks in a general position, or in the plane, under pressure."""
-    from patch import model, two_blocks
+    from models.patch import model, two_blocks
 
     return model(two_blocks(lower, upper, cells), **contact)
 
@@ -68,7 +68,7 @@ def alone() -> Any:
 def rigid() -> Any:
     """A rigid tool, held in part by an equation that couples it with a node of the block."""
     import abut
-    from test_rigid import pressed
+    from models.rigid import pressed
 
     model = pressed(x=0.0, y=-0.01)
     near = model.mesh.nodes_of("block.top")[:2]
@@ -86,14 +86,14 @@ def ball() -> Any:
 
 def lifted() -> Any:
     """A beam lifted off its floor, whose active set only interior points find soon."""
-    from search_models import beam
+    from models.search import beam
 
     return beam(50, "quad4")
 
 
 def loose() -> Any:
     """A pin between two lugs, of which contact alone holds two."""
-    from search_models import pin
+    from models.search import pin
 
     return pin(17, 0.05, 0.03)
 
@@ -101,7 +101,7 @@ def loose() -> Any:
 def clevis() -> Any:
     """A pin in eye and fork: one surface in two contacts, one of them with a list of bodies."""
     import abut
-    from test_sides import clevis as model
+    from models.clevis import clevis as model
 
     built = model(abut.Contact("pin.round", "eye", name="eye"), abut.Contact("pin", ["arm1", "arm2"], name="arms"))
     return replace(built, supports=[*built.supports, abut.Support("pin.top", x=0.01, y=0, z=0)])

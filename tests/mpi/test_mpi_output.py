@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from launcher import environment
 from numpy.typing import NDArray
 
 from abut.cli import main
-from test_pieces import names, probe, read, volume
-from test_restart import STEPS, job, stop_in
+from launcher import environment
+from models.pieces import names, probe, read, volume
+from models.steps import STEPS, job, stop_in
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from test_restart import job
+from models.steps import job
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 

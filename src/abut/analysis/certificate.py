@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,73 +33,145 @@ COVERED_TWICE = 1e-3  # share of a facet
 NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after unloading
 
 
-def certificate(pair: Pair, values: NDArray[np.float64], nodal: NDArray[np.float64], penetration: float,
-                residual: float, reference: float = 0.0, overlap: NDArray[np.float64] | None = None,
-                share: NDArray[np.float64] | None = None, beside: float = 0.0,
-                free: NDArray[np.bool_] | None = None,
-                elsewhere: NDArray[np.float64] | None = None) -> tuple[Check, ...]:  # fmt: skip
+@dataclass(frozen=True)
+class Surroundings:
+    """What else a pair's checks are judged by. reference: its largest pressure of the steps before; beside: that of all
+    pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
+    side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load."""
+
+    reference: float = 0.0
+    beside: float = 0.0
+    overlap: NDArray[np.float64] | None = None
+    free: NDArray[np.bool_] | None = None
+    elsewhere: NDArray[np.float64] | None = None
+
+
+def certificate(
+    pair: Pair,
+    values: NDArray[np.float64],
+    nodal: NDArray[np.float64],
+    penetration: float,
+    residual: float,
+    share: NDArray[np.float64] | None = None,
+    around: Surroundings = Surroundings(),
+) -> tuple[Check, ...]:
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
-    nodal: (n_facets, 9) reported pressure at the facets' nodes; penetration: largest, a length;
-    share: the same of the covered share of each node's support, all of it by default;
-    residual: of the contact law, relative to the largest pressure; reference: largest
-    pressure of the steps before; overlap: (n_facets,) largest of each at a
-    point, over its size; beside: largest pressure of all pairs, now and before; free: (dim,) axes along
-    which a side may shift, all by default; elsewhere: (n_facets, 2) shares of each that other contacts cover,
-    and load.
+    nodal: (n_facets, 9) reported pressure at the facets' nodes; share: the same of the covered share of each node's
+    support, all of it by default; penetration: largest, a length; residual: of the contact law, relative to the largest
+    pressure.
     """
-    name = pair.contact.name
-    largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), NOTHING * max(reference, beside), 1e-300)
-    matters = max(largest, LESSER * beside)
-    checks = []
-
-    def add(what: str, value: float, limit: float, meaning: str, last: bool = False) -> None:
-        checks.append(Check(name, what, float(value), limit, meaning, last))
-
-    areas = full_moments(pair.contactor, 0)[:, 0]
-    cover = pair.coupling.covered / areas
-    force, moment = balance(pair, values)
-    add("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
+    case = _Case.of(pair, values, nodal, share, around)
+    checks = [*_balanced(case)]
     if not pair.tied:
-        add("moment balance", moment, BALANCE, "the same of moments, over force times extent")
-        add("penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size")
-        pressed_in = max(pair.compliance * matters / np.pi, FLAT)
-        hidden = (np.zeros(len(areas)) if overlap is None else overlap) / pressed_in
-        add("overlap", hidden.max(initial=0.0), OVERLAP,
-            "largest penetration at a point, over what the largest pressure indents between nodes")  # fmt: skip
-        shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
-        add("faceting", faceting(pair, nodal, CLOSED * largest, shifts) / matters, FACETING,
-            "pressure caused by faceting of curved surfaces, over the largest pressure")  # fmt: skip
-        tension = max(0.0, -float(np.nanmin(nodal, initial=0.0))) / largest
-        add("tension", tension, TENSION, "largest negative pressure over the largest pressure")
-        add("complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure")
-        smooth, _ = split_at_creases(pair.contactor)
-        pressure = at_points(smooth, nodal)
-        support = np.ones(len(pressure)) if share is None else at_points(smooth, share)
-        alternating = oscillation(pair, values, pressure, support, largest) * largest / matters
-        add("oscillation", alternating, OSCILLATION,
-            "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
-        facets = resolution(pair, pressure, support, largest) if largest > LESSER * beside else 0.0
-        add("resolution", facets, RESOLUTION,
-            "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
+        checks += [*_gaps(case, penetration), *_pressure(case, residual)]
     if pair.contact.method == "segment-to-segment":
-        add("facet moments", _moment_error(pair, areas, cover, np.nanmax(nodal, axis=1) > CLOSED * largest), MOMENTS,
-            "integration error of int H over loaded facets that are fully covered, over their area")  # fmt: skip
-    loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
-    others = np.zeros((len(areas), 2)) if elsewhere is None else elsewhere
+        checks.append(
+            case.check("facet moments", _moment_error(pair, case.areas, case.cover, case.loaded), MOMENTS,
+                "integration error of int H over loaded facets that are fully covered, over their area")
+        )  # fmt: skip
+    return (*checks, *_cover(case))
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A pair with its pressure. areas: (n_facets,); cover: (n_facets,) covered share of them; loaded: (n_facets,) bool;
+    hidden: (n_facets,) overlap over what the pressure presses in; largest: pressure of the pair; matters: pressure that
+    errors are compared with."""
+
+    pair: Pair
+    values: NDArray[np.float64]
+    nodal: NDArray[np.float64]
+    share: NDArray[np.float64] | None
+    around: Surroundings
+    areas: NDArray[np.float64]
+    cover: NDArray[np.float64]
+    loaded: NDArray[np.bool_]
+    hidden: NDArray[np.float64]
+    largest: float
+    matters: float
+
+    @classmethod
+    def of(
+        cls,
+        pair: Pair,
+        values: NDArray[np.float64],
+        nodal: NDArray[np.float64],
+        share: NDArray[np.float64] | None,
+        around: Surroundings,
+    ) -> _Case:
+        none = NOTHING * max(around.reference, around.beside)
+        largest = max(float(np.nanmax(np.abs(nodal), initial=0.0)), none, 1e-300)
+        matters = max(largest, LESSER * around.beside)
+        areas = full_moments(pair.contactor, 0)[:, 0]
+        pressed_in = max(pair.compliance * matters / np.pi, FLAT)
+        hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / pressed_in
+        loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
+        cover = pair.coupling.covered / areas
+        return cls(pair, values, nodal, share, around, areas, cover, loaded, hidden, largest, matters)
+
+    def check(self, what: str, value: float, limit: float, meaning: str, last: bool = False) -> Check:
+        return Check(self.pair.contact.name, what, float(value), limit, meaning, last)
+
+
+def _balanced(case: _Case) -> Iterator[Check]:
+    force, moment = balance(case.pair, case.values)
+    yield case.check("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
+    if not case.pair.tied:
+        yield case.check("moment balance", moment, BALANCE, "the same of moments, over force times extent")
+
+
+def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
+    """How far the sides are in each other, and how far facets stand off what they stand for."""
+    pair, free = case.pair, case.around.free
+    yield case.check(
+        "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
+    )
+    yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
+        "largest penetration at a point, over what the largest pressure indents between nodes")  # fmt: skip
+    shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
+    yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
+        "pressure caused by faceting of curved surfaces, over the largest pressure")  # fmt: skip
+
+
+def _pressure(case: _Case, residual: float) -> Iterator[Check]:
+    """What is wrong with the pressure itself, and how many facets carry it."""
+    pair, largest = case.pair, case.largest
+    tension = max(0.0, -float(np.nanmin(case.nodal, initial=0.0))) / largest
+    yield case.check("tension", tension, TENSION, "largest negative pressure over the largest pressure")
+    yield case.check(
+        "complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure"
+    )
+    smooth, _ = split_at_creases(pair.contactor)
+    pressure = at_points(smooth, case.nodal)
+    support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)
+    alternating = oscillation(pair, case.values, pressure, support, largest) * largest / case.matters
+    yield case.check("oscillation", alternating, OSCILLATION,
+        "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
+    counts = largest > LESSER * case.around.beside
+    facets = resolution(pair, pressure, support, largest) if counts else 0.0
+    yield case.check("resolution", facets, RESOLUTION,
+        "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
+
+
+def _cover(case: _Case) -> Iterator[Check]:
+    """How much of the contactor has a target opposite, and how often."""
+    areas, cover, loaded, pair = case.areas, case.cover, case.loaded, case.pair
+    others = np.zeros((len(areas), 2)) if case.around.elsewhere is None else case.around.elsewhere
     covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
     bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
-    add("loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite")
-    total = pair.space.removed + len(pair)
-    add("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
+    yield case.check(
+        "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
+    )
+    total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
+    yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
         "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
-    counts = loaded if pair.tied else loaded | (hidden > OVERLAP)
+    counts = loaded if pair.tied else loaded | (case.hidden > OVERLAP)
     every = (cover + others[:, 1])[counts]
-    add("covered twice", max(float(every.max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
+    yield case.check("covered twice", max(float(every.max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
         "share of a loaded facet with two layers of target opposite, both counted, here or by another contact")  # fmt: skip
-    return tuple(checks)
 
 
 def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:

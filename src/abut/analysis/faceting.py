@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Sights
 from abut.contact.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.errors import InputError
@@ -75,7 +75,7 @@ def misfit(pair: Pair) -> Misfit | None:
         node[space.node] = (space.transfer.T @ moments) / space.weight
     else:  # functions of single facets: the mean under the corner functions of all facets at a node stands for them
         facet, local = np.nonzero(pair.contactor.nodes >= 0)
-        here, row = pair.contactor.nodes[facet, local], 9 * facet + (local if pair.coupling.degree else 0)
+        here, row = pair.contactor.nodes[facet, local], MAX_FACET_NODES * facet + (local if pair.coupling.degree else 0)
         weight = np.bincount(here, pair.coupling.weight[row], len(node))
         known = weight > 0.0
         node[known] = np.bincount(here, moments[row], len(node))[known] / weight[known]
@@ -99,9 +99,9 @@ def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.f
     corners = np.bincount(number, minlength=len(middle)) - 1
     weight = (1.0 - MIDDLE) / np.maximum(corners, 1)[number]
     weight[middle] = np.where(corners > 0, MIDDLE, 1.0)
-    row = (9 * at.facet[:, None].astype(np.int64) + np.arange(9)).ravel()
+    row = (MAX_FACET_NODES * at.facet[:, None].astype(np.int64) + np.arange(MAX_FACET_NODES)).ravel()
     product = (area[number] * weight * value)[:, None] * functions
-    return np.asarray(np.bincount(row, product.ravel(), 9 * len(contactor)), dtype=np.float64)
+    return np.asarray(np.bincount(row, product.ravel(), MAX_FACET_NODES * len(contactor)), dtype=np.float64)
 
 
 def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, split_at_creases
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
@@ -28,8 +28,8 @@ def oscillation(
     worst = _alternating(nodes, pressure, _excluded(nodes, share), largest)
     if not pair.space.continuous:
         facets = Graph.of_facets(surface)
-        total = pair.coupling.weight.reshape(-1, 9).sum(axis=1)
-        load = (pair.coupling.weight * values).reshape(-1, 9).sum(axis=1)
+        total = pair.coupling.weight.reshape(-1, MAX_FACET_NODES).sum(axis=1)
+        load = (pair.coupling.weight * values).reshape(-1, MAX_FACET_NODES).sum(axis=1)
         mean = np.where(total > 0.0, load / np.where(total > 0.0, total, 1.0), 0.0)
         worst = max(
             worst, _alternating(facets, mean, total <= 0.0, largest), _jumps(pair, surface, values, pressure, largest)
@@ -131,7 +131,7 @@ def _jumps(
         local.append(np.tile(np.arange(n), len(facets)))
         node.append(surface.nodes[facets, :n].ravel())
     i, k, at = np.concatenate(facet), np.concatenate(local), np.concatenate(node)
-    own = values.reshape(-1, 9)[i, k]
+    own = values.reshape(-1, MAX_FACET_NODES)[i, k]
     opened = np.bincount(at, own <= CLOSED * largest, minlength=len(pressure))
     inside = (opened == 0)[at]
     return float(np.abs(own - pressure[at])[inside].max(initial=0.0)) / largest

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.faceting import misfit, unseen
 from abut.analysis.oscillation import CLOSED
+from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import facet_sizes, full_moments
 from abut.problem.contact_pairs import Pair
 
@@ -51,7 +52,8 @@ def covered_elsewhere(pairs: Sequence[Pair], pressures: Sequence[NDArray[np.floa
         return result
     loaded = []
     for pair, pressure in zip(pairs, pressures):
-        size = np.abs(pair.space.transfer @ pressure).reshape(-1, 9).max(axis=1)
+        values = pair.transfer @ pressure if pair.tied else pair.space.transfer @ pressure[pair.normal]
+        size = np.abs(values).reshape(-1, MAX_FACET_NODES).max(axis=1)
         share = pair.coupling.covered / np.maximum(full_moments(pair.contactor, 0)[:, 0], 1e-300)
         loaded.append(np.column_stack([share, np.where(size > CLOSED * size.max(initial=0.0), share, 0.0)]))
     for i, own in enumerate(numbers):

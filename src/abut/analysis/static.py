@@ -2,32 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
-from abut.analysis.results import step_result
-from abut.analysis.step_records import check_order, restored, saved_step
-from abut.errors import SingularModelError
-from abut.linear.solver import LinearSolver, NotConverged
+from abut.analysis.run import Run
 from abut.model import Model
-from abut.model.conditions import weights
-from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.stepping import Control, Fixed, march
-from abut.probing import find_places, read
-from abut.problem.assembly import assemble, prescribed
-from abut.problem.clock import Clock
-from abut.problem.restraint import require_balance
-from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution import Observer, OnStep, Saved, Solution
 
 if TYPE_CHECKING:
     from abut.parallel.team import Team
-
-ABSURD = 1e6  # displacement over model size that no units explain
 
 
 def _silent(*_: object) -> None:
@@ -73,92 +56,7 @@ def solve(
     >>> all(check.passed for check in solution.certificate)
     True
     """
-    observe: Observer = observer or _silent
-    keep: OnStep = on_step or _silent
-    notes: list[str] = []
-
-    def note(text: str) -> None:
-        notes.append(text)
-        observe(text)
-
-    clock = Clock()
-    places = find_places(model)
-    for text in (text for place in places for text in place.notes):
-        note(text)
-    if team is None and model.solve.linear == "petsc":
-        from abut.parallel.team import start_team
-
-        team = start_team()
-    held, loaded = prescribed(model)
-    clock.mark("set-up")
-    backend = assembled_bodies(model, observe, note, clock, team)
-    assembled = assemble(model, held, loaded, backend, observe, note, clock)
-    problem = assembled.problem
-    check_order(resume, problem.n_free, int(problem.operator.shape[0]))
-    kind = solver_kind(problem, team)
-    if resume and model.solve.linear in ("auto", "petsc"):
-        kind = resume[-1].linear
-    solver = linear_solver(kind, problem, team)
-    steps: list[Step] = []
-
-    def result(attempt: Attempt) -> Step:
-        step = step_result(assembled, attempt, steps)
-        _check_size(model, step.displacement, note)
-        return replace(step, probes=tuple(read(place, step) for place in places))
-
-    def so_far(complete: bool) -> Solution:
-        return Solution(model, tuple(steps), problem.n_free, solver.name, tuple(notes), dict(clock.timings), complete)
-
-    state = problem.start()
-    if resume:
-        observe(Phase("restoring the steps done before"))
-        for saved in resume:
-            steps.append(result(restored(saved)))
-        state = resume[-1].state
-        clock.mark("results")
-    times = [t for t in model.solve.ends if not resume or t > state.time * (1.0 + 1e-12)]
-    count = len(steps) + len(times)
-
-    def begins(number: int, time: float) -> None:
-        observe(Phase(f"step {number} of {count}", None, number - 1, count))
-        loads = held.free.T @ (loaded.forces @ weights(model.histories, time))
-        require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
-
-    def prepares(what: LinearSolver) -> None:
-        observe(Phase(*setting_up(what, problem)))
-
-    def fallback(number: int, reason: NotConverged) -> LinearSolver:
-        nonlocal solver, kind
-        note(f"step {number}: {reason}: going on with the direct solver")
-        solver, kind = linear_solver("direct", problem, team), "direct"
-        return solver
-
-    control = Control(model.solve.max_iterations, observe, begins, prepares, note, fallback)
-    for attempt in march(problem, state, Fixed(times), solver, control, len(steps) + 1):
-        clock.mark("solve")
-        observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
-        steps.append(result(attempt))
-        clock.mark("results")
-        if attempt.converged:
-            keep(so_far(complete=False), saved_step(attempt, kind))
-            clock.mark("writing")
-        else:
-            note(f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations")
-    if solver.count is not None:
-        note(f"{solver.count.iterations} linear iterations in all")
-    return so_far(complete=True)
-
-
-def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:
-    """Displacements beyond the size of the model mean wrong units, or a matrix that is singular in all but name."""
-    extent = float(np.ptp(model.mesh.points, axis=0).max())
-    largest = float(np.abs(displacement).max(initial=0.0))
-    if not largest < ABSURD * extent:
-        raise SingularModelError(
-            f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}: check the "
-            "units of Young's moduli, loads and mesh, and that supports constrain every body"
-        )
-    if largest > extent:
-        note(
-            f"displacements of {largest:.2g} exceed the model size {extent:.2g}: check units (displacements must be small)"
-        )
+    run = Run.of(model, observer or _silent, on_step or _silent, team, resume)
+    first = run.restore(resume)
+    run.march(first)
+    return run.so_far(complete=True)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, full_moments, node_coordinates, pressure_kind
 from abut.contact.nodal_recovery import Averages
@@ -59,9 +59,9 @@ def loaded_part(
 def nodal_parts(coupling: Coupling, at: Averages | None, field: NDArray[np.float64]) -> NDArray[np.float64]:
     """Integral of a field (9 n_facets,) over the covered part, divided among the nodes of each facet, (n_facets, 9), by the
     corners' functions; with node-to-segment contact (no ``at``) by the tributary areas of nodes."""
-    values = field.reshape(-1, 9)
+    values = field.reshape(-1, MAX_FACET_NODES)
     if at is None:
-        return coupling.weight.reshape(-1, 9) * values
+        return coupling.weight.reshape(-1, MAX_FACET_NODES) * values
     return np.asarray(np.einsum("fik,fk->fi", at.moments, values))
 
 

@@ -4,7 +4,6 @@ thickness in 2D, all round if axisymmetric."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +13,7 @@ from abut.bodies.evaluation import History, evaluate
 from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.materials.elastic import LinearElastic, lame
 from abut.mesh.quadrature import cell_rule
+from abut.types import Operator, Sparse
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,11 @@ class Response:
     None; history: the new one."""
 
     force: Array
-    tangent: Any
+    tangent: Operator
     history: History
 
 
-def stiffness(solids: Solids) -> Any:
+def stiffness(solids: Solids) -> Sparse:
     """Stiffness matrix of all bodies at rest, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; for constant
     materials the tangent everywhere."""
     values = _no_values(solids)
@@ -44,7 +44,7 @@ def internal_force(
 
 def tangent(
     solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED, history: History | None = None
-) -> Any:
+) -> Sparse:
     """Derivative of ``internal_force`` by the displacement, CSR as ``stiffness``."""
     return respond(solids, displacement, temperature, history).tangent
 
@@ -118,7 +118,7 @@ def _no_values(solids: Solids) -> Array:
     return np.zeros(len(solids.pattern[1]) * solids.mesh.dim**2)
 
 
-def _matrix(solids: Solids, values: Array) -> Any:
+def _matrix(solids: Solids, values: Array) -> Sparse:
     indptr, indices = block_pattern(*solids.pattern, solids.mesh.dim)
     if len(values) < 2**31:
         indptr = indptr.astype(np.int32)

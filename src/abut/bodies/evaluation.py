@@ -7,11 +7,10 @@ order, the points of a cell as in the rule.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
-from abut._core import strains
+from abut._core import Cells, strains
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
 from abut.errors import InputError
 from abut.materials.material import Evaluated
@@ -28,7 +27,7 @@ def evaluate(
     displacement: Array | None,
     temperature: TemperatureChange,
     history: History | None,
-) -> Iterator[tuple[Any, Evaluated]]:
+) -> Iterator[tuple[Cells, Evaluated]]:
     """Cells of a group for the compiled core, some after the other, with stress (points, 6), tangent (points, 6, 6) and new
     history at their integration points. displacement None: none; history None: the initial one.
 

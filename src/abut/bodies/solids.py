@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +74,7 @@ class Solids:
                 yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]])
                 used[distinct[i]] += len(rows) * len(cell_rule(block.kind, integration)[1])
 
-    def by_cell(self, group: Group, values: Mapping[str, Any]) -> Array:
+    def by_cell(self, group: Group, values: Mapping[str, tuple[float, ...]]) -> Array:
         """A row for every cell of a group, from those of all bodies."""
         return np.array([values[body] for body in self.materials], dtype=float)[self.body_of[group.cells]]
 
@@ -93,7 +92,7 @@ class Group:
     integration: str
     first: int
 
-    def arrays(self, solids: Solids, rule: Rule) -> Any:
+    def arrays(self, solids: Solids, rule: Rule) -> Cells:
         """These cells with an integration rule, for the compiled core."""
         xi, weights = rule
         shapes, derivatives = shape_functions(CELLS[self.kind].code, np.ascontiguousarray(xi))

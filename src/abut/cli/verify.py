@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from abut.errors import InputError, nearest
+from abut.types import Json
 
 if TYPE_CHECKING:
     from abut.benchmarks import Outcome
@@ -116,7 +117,7 @@ def _print_outcome(outcome: Outcome, width: int) -> None:
     )
 
 
-def _plain(outcome: Outcome) -> dict[str, Any]:
+def _plain(outcome: Outcome) -> Json:
     return {
         "benchmark": outcome.benchmark,
         "quantity": outcome.quantity,

@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, function_count
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 SLIVER = 1e4  # condition of a facet's mass matrix above which it has no well-determined dual basis
 
 
-def block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Any:
+def block_diagonal(contactor: Surface, blocks: dict[str, NDArray[np.float64]]) -> Sparse:
     """Sparse (9 n, 9 n) matrix from one dense block (or one per facet) for each facet type."""
     rows, columns, values = [], [], []
     for kind, facets in by_kind(contactor):
         block = np.broadcast_to(blocks[kind], (len(facets), *blocks[kind].shape[-2:]))
         i, j = np.meshgrid(np.arange(block.shape[1]), np.arange(block.shape[2]), indexing="ij")
-        rows.append((9 * facets[:, None] + i.ravel()).ravel())
-        columns.append((9 * facets[:, None] + j.ravel()).ravel())
+        rows.append((MAX_FACET_NODES * facets[:, None] + i.ravel()).ravel())
+        columns.append((MAX_FACET_NODES * facets[:, None] + j.ravel()).ravel())
         values.append(block.reshape(len(facets), -1).ravel())
-    size = 9 * len(contactor)
+    size = MAX_FACET_NODES * len(contactor)
     matrix = sp.csr_matrix(
         (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size)
     )
@@ -58,7 +57,7 @@ def non_negative_block(kind: str, c: float) -> NDArray[np.float64]:
     return block
 
 
-def non_negative(contactor: Surface) -> Any:
+def non_negative(contactor: Surface) -> Sparse:
     """Sparse (9 n, 9 n): facet-wise nodal values of the non-negative basis of every facet's quadratic functions."""
     kinds = [kind for kind, _ in by_kind(contactor)]
     c = 0.125 if "quad8" in kinds else 0.25  # one value on the whole surface keeps edges between types continuous
@@ -73,7 +72,7 @@ def sound_facets(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.asarray((values[:, 0] > 0.0) & (values[:, -1] < SLIVER * values[:, 0]))
 
 
-def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Any:
+def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None = None) -> Sparse:
     """Sparse (9 n, 9 n): nodal values of the biorthogonal functions phi_k = sum_l A_kl N_l with int phi_k N_l = delta_kl
     int N_l on each covered facet, theory (P4); slivers of facets keep the functions N_l.
 
@@ -83,7 +82,7 @@ def dual(contactor: Surface, coupling: Coupling, plain: NDArray[np.bool_] | None
     for kind, facets in by_kind(contactor):
         n = function_count(kind, 1)
         mass = coupling.mass[facets][:, :n, :n]
-        weight = coupling.weight.reshape(-1, 9)[facets, :n]
+        weight = coupling.weight.reshape(-1, MAX_FACET_NODES)[facets, :n]
         block = np.tile(np.eye(n), (len(facets), 1, 1))
         sound = sound_facets(mass) & ~plain[facets]
         if sound.any():

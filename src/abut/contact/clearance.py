@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import block_diagonal, sound_facets
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, corner_functions, facet_sizes, function_count, nodal_normals
@@ -38,7 +38,7 @@ def partly_adjusted(
     move = _on_to_target(contactor, target, partly, adjust, reach)
     whole = np.zeros(own.contactor_part.shape[1])
     whole[: move.size] = move.ravel()
-    rows = np.repeat(partly, 9)
+    rows = np.repeat(partly, MAX_FACET_NODES)
     result = replace(closed, gap=np.where(rows, own.gap + own.contactor_part @ whole, closed.gap))
     if own.sights is not None:
         at = own.sights
@@ -84,7 +84,7 @@ def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
     if coupling.sights is None or not len(coupling.sights.gap):
         return result
     stepped, low, high = _steps(contactor, coupling)
-    gap, integrals = result.gap.reshape(-1, 9).copy(), coupling.gap.reshape(-1, 9)
+    gap, integrals = result.gap.reshape(-1, MAX_FACET_NODES).copy(), coupling.gap.reshape(-1, MAX_FACET_NODES)
     for kind, facets in by_kind(contactor):
         n, m = CELLS[kind].corners, function_count(kind, coupling.degree)
         own = facets if m > n else facets[stepped[facets]]

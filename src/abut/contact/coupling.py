@@ -1,6 +1,7 @@
 """Coupling of a contact pair: int H_k N_j on contactor and target and the weighted gap, integrated on segments.
 
-The pressure functions here are facet by facet (discontinuous): row 9 f + k is function k of contactor facet f. The
+The pressure functions here are facet by facet (discontinuous): row 9 f + k
+is function k of contactor facet f, 9 being ``abut.cells.MAX_FACET_NODES``. The
 pressure spaces of ``abut.contact.pressure_space`` are combinations of these rows. "The paper" is El-Abbasi and Bathe 2001.
 """
 
@@ -8,18 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import couple_surfaces, plan_facets
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, facet_sizes, is_plane, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance, rule_tables
 from abut.errors import InputError
 from abut.mesh.surface import Surface
+from abut.types import Array, Json, Sparse
 
 CURVED_POINTS = {2: 6, 3: 3}  # by dimension, per direction, where the contactor's normal turns within a facet
 SAME_NORMAL = 1e-9
@@ -41,8 +42,8 @@ class IntegrationPoints:
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     normal: NDArray[np.float64]
-    pressure: Any
-    gap_operator: Any
+    pressure: Sparse
+    gap_operator: Sparse
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,9 @@ class Coupling:
     """
 
     degree: int
-    operator: Any
-    contactor_part: Any
-    target_part: Any
+    operator: Sparse
+    contactor_part: Sparse
+    target_part: Sparse
     gap: NDArray[np.float64]
     weight: NDArray[np.float64]
     mass: NDArray[np.float64]
@@ -105,66 +106,55 @@ def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
     return float(adjust + rounding)
 
 
+@dataclass(frozen=True)
+class CouplingOptions:
+    """How ``couple`` cuts and integrates, and what it keeps.
+
+    rule:   "gauss" or "newton-cotes".
+    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
+            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
+    reach:  largest distance between the surfaces, length; see ``default_reach``.
+    adjust: gaps and overlaps up to this size count as zero, length.
+    hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
+            only, theory (S12).
+    componentwise: without the normal, for one displacement component (ties).
+    keep_points: keep the integration points; keep_sights: keep corners and middles of the segments, which takes a tenth of
+            the time.
+    """
+
+    rule: str = "gauss"
+    points: int | str = "auto"
+    reach: float | None = None
+    adjust: float = 0.0
+    hidden: bool = False
+    componentwise: bool = False
+    keep_points: bool = False
+    keep_sights: bool = False
+
+
 def couple(
     contactor: Surface,
     target: Surface,
     degree: int,
-    *,
-    rule: str = "gauss",
-    points: int | str = "auto",
-    reach: float | None = None,
-    componentwise: bool = False,
-    keep_points: bool = False,
-    sights: bool = False,
-    adjust: float = 0.0,
-    hidden: bool = False,
+    options: CouplingOptions = CouplingOptions(),
     only: NDArray[np.bool_] | None = None,
 ) -> Coupling:
     """Divide the contactor into segments by the target, projected along the contactor's continuous normal, and integrate
     (paper, section 4).
 
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
-    rule:   "gauss" or "newton-cotes".
-    points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
-            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
-    reach:  largest distance between the surfaces, length; see ``default_reach``.
-    componentwise: without the normal, for one displacement component (ties); keep_points: keep the integration points;
-            sights: keep corners and middles of the segments, which takes a tenth of the time.
-    adjust: gaps and overlaps up to this size count as zero, length.
-    hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target only,
-            theory (S12).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.contact.merging``.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
-    if contactor.dim != target.dim:
-        raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
-    if contactor.axisymmetric != target.axisymmetric:
-        raise InputError(f"surfaces '{contactor.name}' and '{target.name}': only one of them is axisymmetric")
-    for surface in (contactor, target):
-        if len(surface) == 0:
-            raise InputError(f"surface '{surface.name}' has no facets")
-    tables = rule_tables(rule)
-    normals = nodal_normals(contactor)
+    _check(contactor, target)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
-    part = contactor if only is None else contactor.part(facets)
-    turning = turning_within(part, normals[facets])
-    order_c, split_c = _plan(part, tables, points, turning)
-    order_t, split_t = _plan(target, tables, points, _turning_of_target(target))
-    if points == "auto":
-        order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
-    raw = couple_surfaces(
-        part.points, part.kinds, part.nodes, np.ascontiguousarray(normals[facets]),
-        target.points, target.kinds, target.nodes, tables, order_c.astype(np.int32), order_t, split_c, split_t,
-        degree, not componentwise, keep_points, sights, contactor.axisymmetric,
-        default_reach(contactor, target) if reach is None else reach,
-        no_gap(contactor, target, adjust), hidden,
-    )  # fmt: skip
+    raw = _cut(contactor, target, degree, facets, options)
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
     offset, n_points = _columns(contactor, target)
-    contactor_part = _matrix(raw["contactor"], 9 * len(contactor), n_points, 0)
-    target_part = _matrix(raw["target"], 9 * len(contactor), n_points, offset)
+    contactor_part = _matrix(raw["contactor"], MAX_FACET_NODES * len(contactor), n_points, 0)
+    target_part = _matrix(raw["target"], MAX_FACET_NODES * len(contactor), n_points, offset)
     return Coupling(
         degree=degree,
         operator=(contactor_part - target_part).tocsr(),
@@ -175,15 +165,59 @@ def couple(
         mass=raw["mass"],
         covered=raw["covered"],
         segments=raw["segments"],
-        points=_points(raw, contactor, target) if keep_points else None,
-        sights=_sights(raw) if sights else None,
+        points=_points(raw, contactor, target) if options.keep_points else None,
+        sights=_sights(raw) if options.keep_sights else None,
     )
 
 
-Couple = Callable[..., Coupling]  # ``couple``, or what has it done by others
+Couple = Callable[[Surface, Surface, int, CouplingOptions], Coupling]  # ``couple``, or what has it done by others
 
 
-def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[str, Any]:
+def _check(contactor: Surface, target: Surface) -> None:
+    if contactor.dim != target.dim:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
+    if contactor.axisymmetric != target.axisymmetric:
+        raise InputError(f"surfaces '{contactor.name}' and '{target.name}': only one of them is axisymmetric")
+    for surface in (contactor, target):
+        if len(surface) == 0:
+            raise InputError(f"surface '{surface.name}' has no facets")
+
+
+def _cut(contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions) -> Json:
+    """What the compiled core makes of some facets of the contactor."""
+    tables = rule_tables(options.rule)
+    normals = nodal_normals(contactor)
+    part = contactor if len(facets) == len(contactor) else contactor.part(facets)
+    turning = turning_within(part, normals[facets])
+    order_c, split_c = _plan(part, tables, options.points, turning)
+    order_t, split_t = _plan(target, tables, options.points, _turning_of_target(target))
+    if options.points == "auto":
+        order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
+    return couple_surfaces(
+        points_c=part.points,
+        kinds_c=part.kinds,
+        nodes_c=part.nodes,
+        normals=np.ascontiguousarray(normals[facets]),
+        points_t=target.points,
+        kinds_t=target.kinds,
+        nodes_t=target.nodes,
+        rules=tables,
+        order_c=order_c.astype(np.int32),
+        order_t=order_t,
+        subdivide_c=split_c,
+        subdivide_t=split_t,
+        degree=degree,
+        vectorial=not options.componentwise,
+        keep_points=options.keep_points,
+        sights=options.keep_sights,
+        axisymmetric=contactor.axisymmetric,
+        reach=default_reach(contactor, target) if options.reach is None else options.reach,
+        rounding=no_gap(contactor, target, options.adjust),
+        hidden=options.hidden,
+    )
+
+
+def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
     """What was integrated on some facets, at its place among all n."""
     result = dict(raw)
     for name in ("gap", "weight", "mass", "covered", "segments"):
@@ -191,7 +225,7 @@ def _among_all(raw: dict[str, Any], facets: NDArray[np.int64], n: int) -> dict[s
         result[name][facets] = raw[name]
     for name in ("contactor", "target"):
         row, column, value = raw[name]
-        result[name] = 9 * facets[row // 9] + row % 9, column, value
+        result[name] = MAX_FACET_NODES * facets[row // MAX_FACET_NODES] + row % MAX_FACET_NODES, column, value
     for name in ("point_contactor_facet", "sight_contactor_facet"):
         if name in raw:
             result[name] = facets[raw[name]].astype(raw[name].dtype)
@@ -232,14 +266,14 @@ def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
     return len(contactor.points), len(contactor.points) + len(target.points)
 
 
-def _matrix(entries: tuple[NDArray[Any], ...], rows: int, n_points: int, offset: int) -> Any:
+def _matrix(entries: tuple[Array, ...], rows: int, n_points: int, offset: int) -> Sparse:
     row, column, value = entries
     width = value.shape[1]
     columns = (width * (offset + column[:, None].astype(np.int64)) + np.arange(width)).ravel()
     return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, width * n_points))
 
 
-def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -> IntegrationPoints:
+def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> IntegrationPoints:
     n, dim = raw["point_normal"].shape
     offset, n_points = _columns(contactor, target)
     operator = sp.csr_matrix((n, dim * n_points))
@@ -254,10 +288,10 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
             (value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape
         )
     facet = raw["point_contactor_facet"].astype(np.int64)
-    columns = 9 * facet[:, None] + np.arange(9)
-    pressure = sp.csr_matrix(
-        (raw["point_pressure"].ravel(), (np.repeat(np.arange(n), 9), columns.ravel())), shape=(n, 9 * len(contactor))
-    )
+    columns = MAX_FACET_NODES * facet[:, None] + np.arange(MAX_FACET_NODES)
+    rows = np.repeat(np.arange(n), MAX_FACET_NODES)
+    size = n, MAX_FACET_NODES * len(contactor)
+    pressure = sp.csr_matrix((raw["point_pressure"].ravel(), (rows, columns.ravel())), shape=size)
     pressure.eliminate_zeros()
     target_facet = raw["point_target_facet"].astype(np.int64)
     return IntegrationPoints(
@@ -265,7 +299,7 @@ def _points(raw: dict[str, NDArray[Any]], contactor: Surface, target: Surface) -
     )
 
 
-def _sights(raw: dict[str, NDArray[Any]]) -> Sights:
+def _sights(raw: dict[str, Array]) -> Sights:
     names = ("contactor_facet", "target_facet", "gap", "normal", "contactor", "target")
     return Sights(*(raw[f"sight_{name}"] for name in names))
 

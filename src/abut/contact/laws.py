@@ -20,10 +20,12 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class LawState:
     """Data of a law besides jump and traction. closed: (n,) bool, the contact status that the search holds; history:
-    (n, k) of the law after the last converged step, None where it has none."""
+    (n, k) of the law after the last converged step, None where it has none; slipping: (n,) bool, of those closed, None
+    without friction."""
 
     closed: NDArray[np.bool_]
     history: Array | None = None
+    slipping: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,44 @@ class Tied:
             by_traction=np.zeros((n, c, c)),
             closed=np.ones(n, dtype=bool),
         )
+
+
+@dataclass(frozen=True)
+class Coulomb:
+    """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R3), (R4), (R5).
+
+    jump: gap, and slip since the last converged step; traction: pressure, and tangential traction on the contactor.
+    stiffness: as of ``Complementarity``; friction: the coefficient, > 0, infinite where nothing slips.
+    The bound is that of the augmented pressure p - c g and the direction that of t - c v, c the stiffness: Alart and
+    Curnier 1991."""
+
+    stiffness: float
+    friction: float
+
+    def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
+        """As in ``Law``, c = 2 or 3."""
+        n, c = jump.shape
+        soft = 1.0 / self.stiffness
+        closed, slips = state.closed, np.zeros(n, dtype=bool) if state.slipping is None else state.slipping
+        residual = np.where(closed[:, None], -jump, -soft * traction)
+        by_jump = np.where(closed[:, None, None], -np.eye(c), 0.0)
+        by_traction = np.where(closed[:, None, None], 0.0, -soft * np.eye(c))
+        own = np.flatnonzero(closed & slips)
+        if len(own):
+            gap, slip, pressure, drag = jump[own, 0], jump[own, 1:], traction[own, 0], traction[own, 1:]
+            pushed = np.maximum(pressure - self.stiffness * gap, 0.0)
+            trial = drag - self.stiffness * slip
+            size = np.maximum(np.linalg.norm(trial, axis=1), 1e-300)
+            along = trial / size[:, None]
+            bound = self.friction * pushed
+            across = np.eye(c - 1) - along[:, :, None] * along[:, None]
+            turn = np.minimum(bound / size, 1.0)[:, None, None] * across
+            residual[own, 1:] = -soft * (drag - bound[:, None] * along)
+            by_jump[own, 1:] = np.concatenate([-self.friction * along[:, :, None], -turn], axis=2)
+            by_traction[own, 1:] = np.concatenate(
+                [soft * self.friction * along[:, :, None], soft * (turn - np.eye(c - 1))], axis=2
+            )
+        return LawResult(residual, by_jump, by_traction, closed)
 
 
 def constraint_function(gap: Array, pressure: Array, epsilon: float) -> tuple[Array, Array, Array]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
+from operator import add
 
 import numpy as np
 import scipy.sparse as sp
 
 from abut.contact.coupling import Coupling, IntegrationPoints, Sights
+from abut.types import Sparse
 
 
 def added(parts: Sequence[Coupling]) -> Coupling:
@@ -16,9 +19,9 @@ def added(parts: Sequence[Coupling]) -> Coupling:
     sights = [part.sights for part in parts if part.sights is not None]
     return Coupling(
         degree=parts[0].degree,
-        operator=sum(part.operator for part in parts).tocsr(),
-        contactor_part=sum(part.contactor_part for part in parts).tocsr(),
-        target_part=sum(part.target_part for part in parts).tocsr(),
+        operator=_sum([part.operator for part in parts]),
+        contactor_part=_sum([part.contactor_part for part in parts]),
+        target_part=_sum([part.target_part for part in parts]),
         gap=np.sum([part.gap for part in parts], axis=0),
         weight=np.sum([part.weight for part in parts], axis=0),
         mass=np.sum([part.mass for part in parts], axis=0),
@@ -27,6 +30,10 @@ def added(parts: Sequence[Coupling]) -> Coupling:
         points=_points(points) if points else None,
         sights=_sights(sights) if sights else None,
     )
+
+
+def _sum(matrices: Sequence[Sparse]) -> Sparse:
+    return reduce(add, matrices).tocsr()
 
 
 def _points(parts: Sequence[IntegrationPoints]) -> IntegrationPoints:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.cells import BY_CODE, CELLS
+from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import (
     by_kind,
@@ -21,6 +20,7 @@ from abut.contact.geometry import (
     split_at_creases,
 )
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 NO_SUPPORT = 1e-9  # covered share of a point's support below which there is nothing to average
 ON_AXIS = 1e-9  # radius over the contactor's largest
@@ -50,7 +50,7 @@ class Averages:
 
     def loads(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """int N_i f of a field given by its coefficients (9 n_facets, ...), at the points, (n_points, ...)."""
-        table = values.reshape(len(self.corners), 9, -1)
+        table = values.reshape(len(self.corners), MAX_FACET_NODES, -1)
         return self._sum(np.matmul(self.moments, table)).reshape(-1, *values.shape[1:])
 
     def of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -156,7 +156,7 @@ def at_facet_nodes(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.
 def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Facet-wise coefficients (9 n_facets,) evaluated at every node of each facet, (n_facets, 9), NaN where padded; in the
     unit of the coefficients."""
-    table = values.reshape(-1, 9)
+    table = values.reshape(-1, MAX_FACET_NODES)
     result = np.full(table.shape, np.nan)
     for kind, facets in by_kind(contactor):
         n = function_count(kind, degree)
@@ -183,7 +183,7 @@ def corner_values(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.f
 
 
 def carry_to_target(
-    contactor: Surface, target: Surface, pairs: Any, values: NDArray[np.float64]
+    contactor: Surface, target: Surface, pairs: Sparse, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Pressure at the target's nodes, (n_target_facets, 9): read off the contactor at the foot of each node; zero where
     no contactor facet lies opposite, NaN where padded.
@@ -193,11 +193,11 @@ def carry_to_target(
     """
     width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
     entries = pairs.tocoo()
-    facet_and_point = np.unique(entries.row // 9 * np.int64(len(target.points)) + entries.col // width)
+    facet_and_point = np.unique(entries.row // MAX_FACET_NODES * np.int64(len(target.points)) + entries.col // width)
     seen = np.stack(np.divmod(facet_and_point, len(target.points)), axis=1)
     best = np.full(len(target.points), np.inf)
     pressure = np.zeros(len(target.points))
-    table = values.reshape(-1, 9)
+    table = values.reshape(-1, MAX_FACET_NODES)
     for code in np.unique(contactor.kinds):
         kind = BY_CODE[code].name
         own = seen[contactor.kinds[seen[:, 0]] == code]

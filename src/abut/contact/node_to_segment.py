@@ -8,20 +8,19 @@ and 5).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import non_negative
 from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.contact.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.contact.pressure_space import PressureSpace, facet_functions
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 INSIDE = 1e-9  # how far outside a facet, in reference coordinates, a foot still counts as on it
 
@@ -39,7 +38,9 @@ def node_to_segment(
     degree = surface_degree(contactor)
     row, node = facet_functions(contactor, degree)
     ids, first, column = np.unique(node, return_index=True, return_inverse=True)
-    gather: Any = sp.csr_matrix((np.ones(len(row)), (row, column.ravel())), shape=(9 * len(contactor), len(ids)))
+    gather: Sparse = sp.csr_matrix(
+        (np.ones(len(row)), (row, column.ravel())), shape=(MAX_FACET_NODES * len(contactor), len(ids))
+    )
     moments = full_moments(contactor, degree).ravel()
     area = gather.T @ moments
     if not area.min() > 1e-9 * area.max():  # corners of tri6 have no area of their own, those of quad8 a negative one
@@ -52,7 +53,7 @@ def node_to_segment(
 
     dim, same = contactor.dim, contactor.points is target.points
     offset = 0 if same else len(contactor.points)
-    shape = (9 * len(contactor), dim * (len(contactor.points) + (0 if same else len(target.points))))
+    shape = (MAX_FACET_NODES * len(contactor), dim * (len(contactor.points) + (0 if same else len(target.points))))
     force = -normal * area[:, None]  # along N, from target to contactor
     own = _rows(row[first][seen], ids[seen, None], np.ones((len(seen), 1)), force[seen], shape)
     nodes = target.nodes[facet[seen]]
@@ -60,11 +61,11 @@ def node_to_segment(
     weight, weighted_gap = np.zeros(shape[0]), np.zeros(shape[0])
     weight[row[first][seen]] = area[seen]
     weighted_gap[row[first][seen]] = (area * gap)[seen]
-    nodes_seen = np.bincount(row // 9, np.isin(node, ids[seen]), minlength=len(contactor))
-    share = nodes_seen / np.bincount(row // 9, minlength=len(contactor))
+    nodes_seen = np.bincount(row // MAX_FACET_NODES, np.isin(node, ids[seen]), minlength=len(contactor))
+    share = nodes_seen / np.bincount(row // MAX_FACET_NODES, minlength=len(contactor))
     coupling = Coupling(
         degree=degree, operator=(own - other).tocsr(), contactor_part=own, target_part=other, gap=weighted_gap,
-        weight=weight, mass=np.zeros((len(contactor), 9, 9)),
+        weight=weight, mass=np.zeros((len(contactor), MAX_FACET_NODES, MAX_FACET_NODES)),
         covered=full_moments(contactor, 0)[:, 0] * share, segments=nodes_seen.astype(np.int32),
     )  # fmt: skip
     transfer, at = gather[:, seen].tocsr(), ids[seen].astype(np.int64)
@@ -75,7 +76,7 @@ def node_to_segment(
 def _rows(
     row: NDArray[np.int64], nodes: NDArray[np.int64], shapes: NDArray[np.float64], force: NDArray[np.float64],
     shape: tuple[int, int],
-) -> Any:  # fmt: skip
+) -> Sparse:  # fmt: skip
     dim = force.shape[1]
     used = nodes >= 0
     k = np.nonzero(used)[0]
@@ -96,7 +97,7 @@ def feet(
     count = np.array([len(n) for n in near])
     who, facet = np.repeat(np.arange(len(points)), count), np.concatenate([*near, []]).astype(np.int64)
     best, distance = np.full(len(points), -1), np.full(len(points), np.inf)
-    shapes, gaps = np.zeros((len(points), 9)), np.zeros(len(points))
+    shapes, gaps = np.zeros((len(points), MAX_FACET_NODES)), np.zeros(len(points))
     for kind, own in by_kind(target):
         pick = np.flatnonzero(np.isin(facet, own))
         values, along, hit = _meet(target, kind, facet[pick], points[who[pick]], normals[who[pick]])

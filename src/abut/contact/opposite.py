@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components, dijkstra
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.mesh.surface import Surface
 
@@ -22,7 +23,7 @@ def by_target(contactor: Surface, target: Surface, coupling: Coupling) -> Surfac
     piece = _pieces(target)
     part = coupling.target_part.tocoo()
     width = coupling.target_part.shape[1] // len(target.points)
-    area = sp.csr_matrix((np.abs(part.data), (part.row // 9, piece[part.col // width])))
+    area = sp.csr_matrix((np.abs(part.data), (part.row // MAX_FACET_NODES, piece[part.col // width])))
     area.resize(len(contactor), int(piece.max()) + 1)
     if (np.asarray(area.sum(axis=0)).ravel() > 0.0).sum() < 2:
         return contactor

@@ -9,17 +9,18 @@ theory (P1).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.bases import dual, non_negative
 from abut.contact.coupling import Coupling, surface_degree
 from abut.contact.geometry import by_kind, full_moments, function_count, split_at_creases
 from abut.errors import InputError
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 NO_SUPPORT = 1e-9  # covered share, theory (P5), of a multiplier's own support below which there is nothing to integrate
 WEAK_SUPPORT = 0.05  # below this share a multiplier follows its neighbour: alone it would be ill-determined
@@ -46,8 +47,8 @@ class PressureSpace:
 
     name: str
     degree: int
-    transfer: Any
-    plain: Any
+    transfer: Sparse
+    plain: Sparse
     weight: NDArray[np.float64]
     node: NDArray[np.int64]
     side: NDArray[np.int64]
@@ -100,9 +101,9 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling, tied: bool
     """
     split, owner = (contactor, np.arange(len(contactor.points))) if tied else split_at_creases(contactor)
     row, side = facet_functions(split, coupling.degree)
-    rows = 9 * len(contactor)
+    rows = MAX_FACET_NODES * len(contactor)
     if name == "P0":
-        ids, column = np.full(len(contactor), -1), row // 9
+        ids, column = np.full(len(contactor), -1), row // MAX_FACET_NODES
     elif name.endswith("discontinuous"):
         ids, column = np.full(len(row), -1), np.arange(len(row))
     else:
@@ -141,15 +142,17 @@ def inner_facets(
     return inner
 
 
-def _within(uses: Any, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _within(uses: Sparse, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets that have multipliers, all of them closed."""
-    some, others = ((uses @ own.astype(float)).reshape(-1, 9).sum(axis=1) > 0.0 for own in (closed, ~closed))
+    some, others = (
+        (uses @ own.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for own in (closed, ~closed)
+    )
     return np.asarray(some & ~others)
 
 
-def _touched(uses: Any, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _touched(uses: Sparse, facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Multipliers with a part on given facets."""
-    return np.asarray(uses.T @ np.repeat(facets, 9).astype(float) > 0.0)
+    return np.asarray(uses.T @ np.repeat(facets, MAX_FACET_NODES).astype(float) > 0.0)
 
 
 def with_plain_facets(
@@ -186,7 +189,7 @@ def reduce(
     pattern = space.plain.copy()
     pattern.data = np.ones_like(pattern.data)
     facets = sp.csr_matrix(
-        (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // 9, np.arange(pattern.shape[0] + 1))
+        (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // MAX_FACET_NODES, np.arange(pattern.shape[0] + 1))
     )
     by_facet = facets.T @ pattern
     neighbours = (by_facet.T @ by_facet).tocsr()
@@ -231,4 +234,4 @@ def facet_functions(contactor: Surface, degree: int) -> tuple[NDArray[np.int64],
         count[facets] = function_count(kind, degree)
     facet = np.repeat(np.arange(len(contactor)), count)
     local = np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count)
-    return 9 * facet + local, contactor.nodes[facet, local].astype(np.int64)
+    return MAX_FACET_NODES * facet + local, contactor.nodes[facet, local].astype(np.int64)

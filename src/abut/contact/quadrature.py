@@ -8,11 +8,12 @@ theory (Q3).
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
+
+from abut.types import Array
 
 MAX_POINTS = 16
 MOMENT_TOLERANCE = 1e-12  # of a plane facet's own int N_i N_j, relative to its area: theory (Q4)
@@ -28,13 +29,13 @@ def moment_tolerance(dim: int, turning: NDArray[np.float64]) -> NDArray[np.float
     return np.clip(curved, MOMENT_TOLERANCE, MOST_TOLERANCE)
 
 
-def _gauss(n: int) -> tuple[NDArray[Any], ...]:
+def _gauss(n: int) -> tuple[Array, ...]:
     x, w = np.polynomial.legendre.leggauss(n)
     y, v = roots_jacobi(n, 0.0, 1.0)  # weight 1 + y
     return 0.5 * (x + 1.0), 0.5 * w, 0.5 * (y + 1.0), 0.25 * v
 
 
-def _newton_cotes(n: int) -> tuple[NDArray[Any], ...]:
+def _newton_cotes(n: int) -> tuple[Array, ...]:
     if n == 1:
         return _gauss(1)
     t = np.linspace(0.0, 1.0, n)

@@ -9,16 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, combinations_with_replacement
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import CREASE, full_moments, side_normals
 from abut.contact.pressure_space import PressureSpace
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 EVEN = 1e-3  # weights that differ by less are equal: those of curved facets of one size
 TWICE = 1e-3  # covered share over 1 from which on two targets lie over each other, not beside each other
@@ -34,7 +35,7 @@ class Functions:
     part: NDArray[np.int64]
     weight: NDArray[np.float64]
     normal: NDArray[np.float64]
-    neighbours: Any
+    neighbours: Sparse
     facet: NDArray[np.int64]
     nodes: NDArray[np.int32]
     covered: NDArray[np.float64]
@@ -44,12 +45,13 @@ def functions(space: PressureSpace, contactor: Surface, coupling: Coupling) -> F
     """Of a space all of whose functions sit at points."""
     _, normals = side_normals(contactor)
     uses = abs(space.plain).tocoo()
-    by_facet = sp.csr_matrix((np.ones(uses.nnz), (uses.row // 9, uses.col)), shape=(len(contactor), len(space)))
+    facet = uses.row // MAX_FACET_NODES
+    by_facet = sp.csr_matrix((np.ones(uses.nnz), (facet, uses.col)), shape=(len(contactor), len(space)))
     number = 8 * contactor.cells + contactor.local  # no cell has more than 8 facets
     share = coupling.covered / np.maximum(full_moments(contactor, 0)[:, 0], 1e-300)
     part = np.zeros(len(space), dtype=np.int64)
     if contactor.parts is not None:
-        part[uses.col] = contactor.parts[uses.row // 9]
+        part[uses.col] = contactor.parts[facet]
     return Functions(
         space.node,
         part,

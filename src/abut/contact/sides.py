@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.contact.coupling import Coupling, couple, default_reach
+from abut.contact.coupling import Coupling, CouplingOptions, couple, default_reach
 from abut.contact.geometry import CREASE, area_vectors, full_moments, straight
 from abut.errors import InputError, nearest
 from abut.mesh.exterior import exterior
@@ -48,7 +47,7 @@ def code(side: Names) -> str:
     return quoted[0] if len(quoted) == 1 else f"[{', '.join(quoted)}]"
 
 
-def normalised(side: Any, where: str) -> str | tuple[str, ...]:
+def normalised(side: object, where: str) -> str | tuple[str, ...]:
     """A name, or several different ones as a tuple. Raises InputError for anything else."""
     if isinstance(side, str):
         return side
@@ -122,7 +121,7 @@ def _met(
     contactor, target = straight(plane.facets(own)), straight(plane.facets(other))
     every = straight(plane.facets(np.concatenate([other, hiding])))
     reach = default_reach(contactor, target) + 2.0 * moved
-    seen = couple(contactor, every, 0, points=1, reach=reach, keep_points=True, sights=True)
+    seen = couple(contactor, every, 0, CouplingOptions(points=1, reach=reach, keep_points=True, keep_sights=True))
     pairs = _facing_pairs(contactor, seen, len(other)) & _not_through(contactor, seen, len(other))
     met = np.zeros(len(own), dtype=bool), np.zeros(len(other), dtype=bool)
     for facet, target_facet in pairs:
@@ -188,7 +187,7 @@ def check_twice(names: Sequence[str], sides: Sequence[Sides]) -> None:
                 continue
             contactor, target = (surface.part(c) for surface, c in zip(sides[first], common))
             reach = default_reach(*sides[first])
-            if couple(contactor, target, 0, points=1, reach=reach).segments.any():
+            if couple(contactor, target, 0, CouplingOptions(points=1, reach=reach)).segments.any():
                 how = ", with its sides swapped" if turned else ""
                 raise InputError(
                     f"contacts[{second}]: '{names[second]}' and '{names[first]}' press the same facets together{how}: the "

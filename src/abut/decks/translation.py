@@ -228,7 +228,8 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
         notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
-    return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=pair.clearance or 0.0)
+    offset = pair.clearance or 0.0
+    return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=offset, friction=pair.friction)
 
 
 def _general(
@@ -244,7 +245,8 @@ def _general(
             "in *CONTACT PAIR",
         )
     notes += [f"general contact: {f.note}" for f in found]
-    return add_surfaces(mesh, found), [f.contact(kind="tied" if general.tied else "contact") for f in found]
+    options = {"kind": "tied"} if general.tied else {"friction": general.friction}
+    return add_surfaces(mesh, found), [f.contact(**options) for f in found]
 
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:

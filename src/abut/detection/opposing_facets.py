@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from abut.contact.coupling import couple, default_reach
+from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
@@ -96,7 +96,7 @@ def seen_by(all_of: Outside, contactor: NDArray[np.int64], target: NDArray[np.in
     body = np.flatnonzero(all_of.body == all_of.body[target[0]])
     own, other = _part(all_of.surface, contactor), _part(all_of.surface, body)
     far = default_reach(own, _part(all_of.surface, target))
-    at = couple(own, other, 0, points=1, reach=far, keep_points=True).points
+    at = couple(own, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
     if at is None:
         return target[:0]
     near = NEAR * (all_of.size[contactor[at.facet]] + all_of.size[body[at.target_facet]])
@@ -137,10 +137,8 @@ def _search(
         one, other = one[_near(all_of, one, other, far)], other[_near(all_of, other, one, far)]
         if not len(one) or not len(other):
             return none
-    coupling = couple(
-        _part(all_of.surface, one), _part(all_of.surface, other), 0, points=1, reach=far, keep_points=True, hidden=True
-    )
-    at = coupling.points
+    options = CouplingOptions(points=1, reach=far, keep_points=True, hidden=True)
+    at = couple(_part(all_of.surface, one), _part(all_of.surface, other), 0, options).points
     if at is None:
         return none
     found = Facing(one[at.facet], other[at.target_facet], at.gap, at.weight)

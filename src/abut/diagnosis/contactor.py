@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.contact.contactor_choice import Choice, Side, choose, much_finer, side
-from abut.contact.coupling import couple, default_reach
-from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
+from abut.contact.coupling import CouplingOptions, couple, default_reach
+from abut.contact.geometry import area_vectors, facet_sizes, full_moments, mean_normals, straight
 from abut.contact.sides import code, words
 from abut.detection.opposing_facets import NEAR
 from abut.diagnosis.finding import Finding
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
+from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 
 CURES = {
@@ -49,7 +51,8 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
     flat = [straight(replace(own, axisymmetric=False)) for own in both]
     contactor, target = flat
     sizes = [facet_sizes(own) for own in flat]
-    at = couple(contactor, target, 0, points=1, reach=default_reach(contactor, target), keep_points=True).points
+    options = CouplingOptions(points=1, reach=default_reach(contactor, target), keep_points=True)
+    at = couple(contactor, target, 0, options).points
     if at is None or not len(at.gap):
         facing, opposite = [np.arange(len(own)) for own in flat], np.inf
     else:
@@ -58,10 +61,19 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
         facing = [np.unique(at.facet[near]), np.unique(at.target_facet[near])]
         opposite = float(at.weight[near].sum())
     one, other = (
-        side(size[f], full_moments(own, 0)[f, 0], mean_normals(own)[f], opposite, modulus)
+        side(size[f], full_moments(own, 0)[f, 0], _normals(own)[f], opposite, modulus)
         for own, size, f, modulus in zip(flat, sizes, facing, moduli)
     )
     return one, other
+
+
+def _normals(surface: Surface) -> NDArray[np.float64]:
+    """One for each facet, (n_facets, dim); of each by itself where one has no area, so that its nodes have no normals."""
+    try:
+        return mean_normals(surface)
+    except InputError:
+        normal = area_vectors(surface).sum(axis=1)
+    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
 
 
 def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:

@@ -116,6 +116,10 @@ def _twice(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _friction(contact: Contact, result: ContactResult, sides: str) -> str:
+    return "more load steps, or raise solve.max_iterations: stick and slip are not final"
+
+
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "force balance": _balance,
     "moment balance": _balance,
@@ -130,4 +134,8 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "loaded area without target": _bare,
     "removed multipliers": _removed,
     "covered twice": _twice,
+    "friction cone": _friction,
+    "slip direction": _friction,
+    "sticking": _friction,
+    "friction work": _friction,
 }

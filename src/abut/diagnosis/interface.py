@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.contact.coupling import couple, default_reach
+from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, nodal_normals
 from abut.contact.sides import listed, words
 from abut.detection import AUTO, FoundContact, find_contacts
@@ -97,7 +97,7 @@ def _gaps(model: Model, pair: Pair) -> list[Finding]:
     contact = pair.contact
     where = f"contact '{contact.name}'"
     reach = default_reach(pair.contactor, pair.target)
-    at = couple(pair.contactor, pair.target, 0, points=2, reach=reach, keep_points=True).points
+    at = couple(pair.contactor, pair.target, 0, CouplingOptions(points=2, reach=reach, keep_points=True)).points
     if at is None or not len(at.gap):
         return []
     gap = at.gap + smallest_offset(contact)
@@ -191,7 +191,7 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
 
 def _covered(contactor: Surface, around: Surface, reach: float, whole: NDArray[np.float64]) -> float:
     """Share of a contactor that lies opposite a surface, but for what it lies deep inside of: that is seen from behind."""
-    at = couple(contactor, around, 0, points=1, reach=reach, keep_points=True).points
+    at = couple(contactor, around, 0, CouplingOptions(points=1, reach=reach, keep_points=True)).points
     if at is None:
         return 0.0
     near = -at.gap <= DEEP * (facet_sizes(contactor)[at.facet] + facet_sizes(around)[at.target_facet])

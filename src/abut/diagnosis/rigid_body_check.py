@@ -36,7 +36,7 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
             Finding(
                 "info",
                 "bodies",
-                f"{len(shown)} rigid-body modes are constrained by contact alone, which carries no tension",
+                f"{len(shown)} rigid-body modes are constrained by contact{_rub(pairs)} alone, which carries no tension",
                 details=tuple(motion.text for motion in shown),
             )
         )
@@ -44,6 +44,10 @@ def motions(model: Model, held: Supports, pairs: Sequence[Pair]) -> tuple[list[F
     if complete:
         findings += _unheld(model, held_by)
     return findings, shown
+
+
+def _rub(pairs: Sequence[Pair]) -> str:
+    return " and friction" if any(pair.frictional for pair in pairs) else ""
 
 
 def _unheld(model: Model, held_by: Restraint) -> list[Finding]:

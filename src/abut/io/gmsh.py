@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.io.raw import RawMesh
+from abut.types import Array
 
 # Gmsh element type -> (abut type, nodes, order of nodes or None where both agree)
 _TYPES: dict[int, tuple[str, int, tuple[int, ...] | None]] = {
@@ -57,7 +58,7 @@ class _Source:
         text, self.at = self.data[self.at : end], end + 1
         return text.decode("utf-8", "replace").strip()
 
-    def array(self, kind: str, count: int) -> NDArray[Any]:
+    def array(self, kind: str, count: int) -> Array:
         """``count`` numbers: "i" int32, "q" size_t, "d" double; in ASCII the next tokens."""
         if count < 0 or count > len(self.data):
             self.fail(f"a count of {count} cannot be right")

@@ -6,7 +6,6 @@ import base64
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from abut.cells import CELLS
 from abut.errors import InputError
 from abut.io.atomic import write_file
 from abut.io.raw import RawMesh
+from abut.types import Array, Foreign
 
 VERTEX = 1  # of VTK: the points of node sets
 VTK_KIND = {VERTEX: "point"} | {cell.vtk: cell.name for cell in CELLS.values()}
@@ -25,9 +25,9 @@ NODES = {"point": 1} | {cell.name: cell.nodes for cell in CELLS.values()}
 def write_vtu(
     path: Path,
     points: NDArray[np.float64],
-    blocks: Sequence[tuple[str, NDArray[Any]]],
-    point_data: Mapping[str, NDArray[Any]],
-    cell_data: Mapping[str, NDArray[Any]] | None = None,
+    blocks: Sequence[tuple[str, Array]],
+    point_data: Mapping[str, Array],
+    cell_data: Mapping[str, Array] | None = None,
     names: Mapping[str, Sequence[str]] | None = None,
     raw: bool = False,
 ) -> None:
@@ -173,7 +173,7 @@ def _decoded(text: bytes) -> bytes:
         return b""
 
 
-def _check_sizes(path: Path, own: bytes, word: Any, count: int, limit: int) -> None:
+def _check_sizes(path: Path, own: bytes, word: Foreign, count: int, limit: int) -> None:
     """Refuse the sizes ``own`` that stand before the data of an array where they cannot be right."""
     words = np.frombuffer(own[: len(own) // word.itemsize * word.itemsize], word)
     if len(words) and words[0] == 0:
@@ -182,7 +182,7 @@ def _check_sizes(path: Path, own: bytes, word: Any, count: int, limit: int) -> N
         raise InputError(f"{path}: not a readable VTU file: the sizes of an array are damaged; write it again")
 
 
-def _load(path: Path) -> Any:
+def _load(path: Path) -> Foreign:
     """The grid in the file, or None where VTK finds fault with it; VTK's own messages are kept quiet."""
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
@@ -201,7 +201,7 @@ def _load(path: Path) -> Any:
     return None if failures or grid is None or grid.GetPoints() is None else grid
 
 
-def _cell_types(grid: Any) -> Any:
+def _cell_types(grid: Foreign) -> Foreign:
     """VTK's code of every cell, as its array: the method has changed its name."""
     from vtkmodules.vtkCommonCore import vtkVersion
 
@@ -210,7 +210,7 @@ def _cell_types(grid: Any) -> Any:
     return grid.GetCellTypes() if new else grid.GetCellTypesArray()
 
 
-def _regions(path: Path, grid: Any) -> tuple[NDArray[np.int64] | None, list[str]]:
+def _regions(path: Path, grid: Foreign) -> tuple[NDArray[np.int64] | None, list[str]]:
     """Region number of every cell, or None, and the names of regions 0, 1, ..."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 

@@ -30,6 +30,7 @@ from abut.model import (
     Temperature,
     Traction,
 )
+from abut.types import Json
 
 KINDS: dict[type, str] = {
     Pressure: "pressure",
@@ -55,14 +56,14 @@ def write_job(path: Path, job: Job) -> list[Path]:
     return [path, mesh]
 
 
-def job_table(model: Model, mesh: str) -> dict[str, Any]:
+def job_table(model: Model, mesh: str) -> Json:
     """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
     materials: dict[Material, str] = {}
     for solid in model.solids:
         if not isinstance(solid.material, LinearElastic):
             raise InputError(f"solid '{solid.body}': job files know linear elastic materials only, not one of your own")
         materials.setdefault(solid.material, f"material-{len(materials) + 1}")
-    table: dict[str, Any] = {"schema": 1, "mesh": {"file": mesh}}
+    table: Json = {"schema": 1, "mesh": {"file": mesh}}
     if model.plane is not None:
         table["model"] = {"plane": model.plane}
     table["materials"] = {n: {"kind": "linear-elastic", **_plain(m)} for m, n in materials.items()}
@@ -77,13 +78,13 @@ def job_table(model: Model, mesh: str) -> dict[str, Any]:
     return table
 
 
-def _load(load: Load) -> dict[str, Any]:
+def _load(load: Load) -> Json:
     if isinstance(load, BodyForce):
         raise InputError("a job file holds no body force; use gravity")
     return {"kind": KINDS[type(load)], **_plain(load)}
 
 
-def _plain(record: Any) -> dict[str, Any]:
+def _plain(record: Any) -> Json:
     """A record as a table, without what has its default."""
     result = {}
     for item in fields(record):
@@ -107,7 +108,7 @@ def _value(value: Any, name: str) -> Any:
     return value if isinstance(value, (str, int, float)) else _plain(value)
 
 
-def toml(table: Mapping[str, Any]) -> str:
+def toml(table: Mapping[str, object]) -> str:
     """Nested tables as TOML: scalars first, then tables, then arrays of tables."""
     lines: list[str] = []
     _tables(table, "", lines)
@@ -129,7 +130,7 @@ def _tables(table: Mapping[str, Any], path: str, lines: list[str]) -> None:
                 lines += ["", f"[[{own}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
 
 
-def _of_tables(value: Any) -> bool:
+def _of_tables(value: object) -> bool:
     return isinstance(value, Sequence) and bool(value) and all(isinstance(item, Mapping) for item in value)
 
 

@@ -5,7 +5,7 @@ A unit stands at the end in square brackets: force, length, mass, time and tempe
 
 from __future__ import annotations
 
-from typing import Any
+from abut.types import Json
 
 ANYWHERE = {  # keys that mean the same in every table
     "on": "name of the surface",
@@ -99,7 +99,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "name": "a name of your choice; left out: CONTACTOR-TARGET",
         "contactor": "surface or body that carries the pressure (slave), or a list; the softer, among equals the finer one",
         "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
-        "kind": "contact without friction, or tied in all directions",
+        "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
         "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
@@ -109,6 +109,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "auto": "contact detection: find the pairs of bodies whose facets face each other",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
+        "friction": 'Coulomb\'s coefficient, or "rough" where nothing slips; left out: none',
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
     "IntegrationTable": {
@@ -140,7 +141,7 @@ def meaning(table: str, key: str) -> str:
     return MEANINGS.get(table, {}).get(key) or ANYWHERE.get(key, "")
 
 
-def describe(schema: dict[str, Any], root: str) -> dict[str, Any]:
+def describe(schema: Json, root: str) -> Json:
     """The JSON Schema with the meaning of every key as its description, in place; ``root``: name of the whole record."""
     for name, table in {root: schema, **schema["$defs"]}.items():
         for key, entry in table.get("properties", {}).items():

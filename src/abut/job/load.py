@@ -36,6 +36,7 @@ from abut.model import (
     Term,
     Traction,
 )
+from abut.types import Json
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -187,7 +188,7 @@ def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:
     return mesh
 
 
-def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: int) -> dict[str, Any]:
+def _refined(arguments: Json, generator: Callable[..., Mesh], times: int) -> Json:
     """Arguments of a generator with ``times`` as many cells along every axis."""
     if times == 1:
         return arguments
@@ -195,7 +196,7 @@ def _refined(arguments: dict[str, Any], generator: Callable[..., Mesh], times: i
     return {**arguments, "cells": cells * times if isinstance(cells, int) else [n * times for n in cells]}
 
 
-def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
+def _explain(error: Json, data: Json) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
     location = [part for part in error["loc"] if part not in LOADS and part not in CHOICES]
     place = ""
@@ -211,7 +212,7 @@ def _explain(error: dict[str, Any], data: dict[str, Any]) -> str:
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"
 
 
-def _suggest(location: list[Any], data: dict[str, Any]) -> str:
+def _suggest(location: list[Any], data: Json) -> str:
     known = _fields(JobFile, location[:-1])
     return nearest(str(location[-1]), known) if known else ""
 

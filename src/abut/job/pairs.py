@@ -6,11 +6,11 @@ import json
 import re
 import sys
 from pathlib import Path
-from typing import Any
 
 from abut.errors import InputError
 from abut.io.atomic import write_text
 from abut.job.load import Job, load_job
+from abut.types import Json
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -82,14 +82,14 @@ def _trailing(piece: str) -> str:
     return "".join(lines)
 
 
-def _entry(job: Job, number: int, table: dict[str, Any]) -> str:
+def _entry(job: Job, number: int, table: Json) -> str:
     contact = job.model.contacts[number]
     keys = {"name": contact.name, "contactor": contact.contactor, "target": contact.target}
     keys |= {key: value for key, value in table.items() if key not in ("auto", *keys)}
     return "[[contacts]]\n" + "".join(f"{key} = {_value(value)}\n" for key, value in keys.items())
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     """A value as TOML; JSON's notation of text, numbers and lists is also TOML's."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key} = {_value(own)}" for key, own in value.items()) + " }"

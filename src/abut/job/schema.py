@@ -11,6 +11,7 @@ from pydantic_core.core_schema import CoreSchema, literal_schema
 from abut.job.key_descriptions import describe
 from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.solve_options import LINEAR, SolveOptions
+from abut.types import Json
 
 
 class Table(BaseModel):
@@ -187,6 +188,7 @@ class ContactTable(Table):
         Contact.adjust
     )
     amplitude: Points | None = None
+    friction: Number | Literal["rough"] = 0.0
 
 
 class ProbeTable(Table):
@@ -229,6 +231,6 @@ class JobFile(Table):
     output: OutputTable = OutputTable()
 
 
-def json_schema() -> dict[str, Any]:
+def json_schema() -> Json:
     """The JSON Schema of a job file, for editors and the reference page, with the meaning of every key."""
     return describe(JobFile.model_json_schema(by_alias=True), JobFile.__name__)

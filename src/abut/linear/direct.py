@@ -7,7 +7,6 @@ import importlib.metadata
 import os
 import weakref
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +14,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
+from abut.types import Foreign, Sparse
 
 POSITIVE_DEFINITE, SYMMETRIC_INDEFINITE, UNSYMMETRIC = 2, -2, 11
 ACCURATE = 1e-10  # relative residual that a sound factorisation stays below
@@ -25,7 +25,7 @@ SETTINGS = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
 
 
 @functools.lru_cache(maxsize=1)
-def _pardiso() -> Any:
+def _pardiso() -> Foreign:
     """pypardiso's module, or None. Its own search for the library walks the whole environment, so name the file."""
     try:
         for file in importlib.metadata.files("mkl") or ():
@@ -45,7 +45,7 @@ def solver_name() -> str:
     return "PARDISO" if _pardiso() is not None else "SuperLU"
 
 
-def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[np.float64]:
+def solve(matrix: Sparse, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[np.float64]:
     """Solve matrix x = rhs; ``matrix`` is CSR with its diagonal stored, for ``symmetric`` only its upper triangle.
 
     Raises SingularModelError where the matrix is singular to working precision.
@@ -74,7 +74,7 @@ def solve(matrix: Any, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[
     return size * x
 
 
-def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def factorized(matrix: Sparse, *, definite: bool = False) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     """Factorise a symmetric matrix (CSR, whole) once; returns the solution for one right-hand side or several.
 
     Raises SingularModelError where the matrix is singular."""
@@ -104,7 +104,7 @@ def factorized(matrix: Any, *, definite: bool = False) -> Callable[[NDArray[np.f
 class Factorization:
     """A symmetric matrix, given by its upper triangle (CSR, diagonal stored), factorised for several right-hand sides."""
 
-    def __init__(self, upper: Any) -> None:
+    def __init__(self, upper: Sparse) -> None:
         self._matrix = upper
         self._solver = None if _pardiso() is None else _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
         if self._solver is None:
@@ -132,7 +132,7 @@ class Factorization:
         return solve(self._matrix, rhs, symmetric=True)
 
 
-def _analyse(solver: Any, matrix: Any, b: NDArray[np.float64]) -> None:
+def _analyse(solver: Foreign, matrix: Sparse, b: NDArray[np.float64]) -> None:
     """PARDISO's symbolic phase. Raises InputError where the factors would not fit into memory."""
     solver.set_phase(11)
     solver._call_pardiso(matrix, b)
@@ -164,7 +164,7 @@ class PartialFactorization:
     schur: (n_kept, n_kept) dense, what is left of the matrix.
     """
 
-    def __init__(self, matrix: Any, kept: NDArray[np.int64]) -> None:
+    def __init__(self, matrix: Sparse, kept: NDArray[np.int64]) -> None:
         self._matrix = matrix
         self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
         # Own settings (1), nested dissection (2), no refinement (8: not possible here), Schur complement (36).
@@ -192,7 +192,7 @@ class PartialFactorization:
         return result
 
 
-def partial_factorization(matrix: Any, kept: NDArray[np.int64]) -> PartialFactorization | None:
+def partial_factorization(matrix: Sparse, kept: NDArray[np.int64]) -> PartialFactorization | None:
     """Eliminate all but the ``kept`` unknowns of a matrix given by its upper triangle (CSR, diagonal stored); what is
     eliminated must be positive definite. None where it is singular, or PARDISO is not installed."""
     module = _pardiso()
@@ -206,11 +206,11 @@ def partial_factorization(matrix: Any, kept: NDArray[np.int64]) -> PartialFactor
     return result if result.sound else None
 
 
-def _residual(matrix: Any, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:
+def _residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:
     """Largest residual over the largest entry of the right-hand side, or componentwise over |A| |x| + |b| where that is
     smaller (a right-hand side at rounding level is met no better)."""
 
-    def product(a: Any, v: NDArray[np.float64]) -> NDArray[np.float64]:
+    def product(a: Sparse, v: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(a @ v + a.T @ v - a.diagonal() * v if symmetric else a @ v)
 
     miss = np.abs(product(matrix, x) - rhs)
@@ -221,7 +221,7 @@ def _residual(matrix: Any, x: NDArray[np.float64], rhs: NDArray[np.float64], sym
     return float(min(plain, (miss / np.maximum(bound, 1e-300)).max()))
 
 
-def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
+def _solve_pardiso(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
     module = _pardiso()
     solver = module.PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
     for key, value in SETTINGS.items():
@@ -237,7 +237,7 @@ def _solve_pardiso(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> ND
     return x
 
 
-def _solve_superlu(matrix: Any, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
+def _solve_superlu(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
     full = matrix + sp.triu(matrix, 1).T if symmetric else matrix
     try:
         return np.asarray(spla.splu(full.tocsc()).solve(rhs))

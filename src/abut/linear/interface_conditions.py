@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, soft_inverse
 from abut.problem.linearised import Rows
+from abut.types import Sparse
 
 ACCURACY, ITERATIONS = 0.1, 30  # of the pressures' preconditioner where rows are no multiples of the operator's
 FAINT = 1e-3  # share of the largest, below which how much a row looks at the gap counts as that
@@ -23,14 +23,14 @@ class Conditions:
 
     lower: (n, n_free), corner: (n, n), sparse; inverse: roughly that of -(lower K^-1 B^T + corner), (n,) -> (n,)."""
 
-    lower: Any
-    corner: Any
+    lower: Sparse
+    corner: Sparse
     columns: NDArray[np.float64]
     rows: NDArray[np.float64]
     inverse: Apply
 
 
-def conditions(law: Rows, operator: Any, pressures: PressureBlock) -> Conditions:
+def conditions(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
     """Of the rows that are not decoupled. operator: (n, n_free) B."""
     own = ~law.decoupled
     corner = sp.csr_matrix(law.by_pressure)[own][:, own]
@@ -45,7 +45,9 @@ def conditions(law: Rows, operator: Any, pressures: PressureBlock) -> Conditions
     return Conditions(-operator[own], corner, sizes, sizes, soft_inverse(pressures.forward, diagonal, soft))
 
 
-def _general(lower: Any, corner: Any, operator: Any, own: NDArray[np.bool_], pressures: PressureBlock) -> Conditions:
+def _general(
+    lower: Sparse, corner: Sparse, operator: Sparse, own: NDArray[np.bool_], pressures: PressureBlock
+) -> Conditions:
     """Rows that look at points, as the constraint function's do: a row is about ``share`` times that of the operator."""
     size = np.asarray(operator.multiply(operator).sum(axis=1)).ravel()
     share = np.asarray(lower.multiply(operator).sum(axis=1)).ravel() / np.where(size > 0.0, size, 1.0)
@@ -55,7 +57,9 @@ def _general(lower: Any, corner: Any, operator: Any, own: NDArray[np.bool_], pre
     return Conditions(lower, corner, columns, columns / looks, _mixed_inverse(share, corner, own, pressures))
 
 
-def _mixed_inverse(share: NDArray[np.float64], corner: Any, own: NDArray[np.bool_], pressures: PressureBlock) -> Apply:
+def _mixed_inverse(
+    share: NDArray[np.float64], corner: Sparse, own: NDArray[np.bool_], pressures: PressureBlock
+) -> Apply:
     """That of -(share S + corner), theory (V22), by Krylov iterations to ``ACCURACY``. Rows that are mostly closed are
     taken for closed, the others for open, one after the other."""
     n, places = len(share), np.flatnonzero(own)

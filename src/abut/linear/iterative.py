@@ -4,7 +4,6 @@ an approximate Schur complement for the pressures, which alone changes with the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from abut.linear.schur_preconditioner import Apply, Predict, PressureBlock, fore
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import Problem
+from abut.types import Sparse
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
@@ -83,7 +83,7 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _rigid(self, operator: Any, own: Conditions) -> Apply:
+    def _rigid(self, operator: Sparse, own: Conditions) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         motions = self.system.motions
         if not motions.shape[1]:
@@ -106,7 +106,7 @@ class Multigrid:
     """As ``abut.linear.solver.LinearSolver``. free: (dim n_points, n_free) change of variables; near_null: (dim n_points, m)
     motions that strain bodies least; points: (n_points, dim)."""
 
-    free: Any
+    free: Sparse
     near_null: NDArray[np.float64]
     points: NDArray[np.float64]
     count: Count

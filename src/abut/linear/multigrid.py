@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +13,7 @@ from abut._core import block_product, padded_blocks
 from abut.errors import InputError
 from abut.linear.multigrid_cycle import Level, Levels, coarse_matrix, inverse, level
 from abut.linear.strength import means, near
+from abut.types import Sparse
 
 COARSEST = 100  # aggregates whose equations are solved directly
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -29,7 +29,7 @@ class Hierarchy:
     summary: str
 
 
-def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], points: NDArray[np.float64]) -> Hierarchy:
+def hierarchy(stiffness: Sparse, free: Sparse, motions: NDArray[np.float64], points: NDArray[np.float64]) -> Hierarchy:
     """Multigrid for ``stiffness`` on the free displacements.
 
     free: (dim n_points, n_free) change of variables, every column at one point; motions: (dim n_points, m) rigid motions,
@@ -80,7 +80,7 @@ def hierarchy(stiffness: Any, free: Any, motions: NDArray[np.float64], points: N
     )
 
 
-def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale: float) -> Any:
+def _padded(stiffness: Sparse, slot: NDArray[np.int64], size: int, dim: int, scale: float) -> Sparse:
     """The stiffness over ``scale`` with its rows and columns at their slots and ones on the diagonal elsewhere, BSR."""
     rows = stiffness if stiffness.has_sorted_indices else stiffness.sorted_indices()
     indptr, indices, blocks = padded_blocks(
@@ -90,7 +90,7 @@ def _padded(stiffness: Any, slot: NDArray[np.int64], size: int, dim: int, scale:
     return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
 
-def slots(free: Any, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def slots(free: Sparse, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Where each free displacement goes among ``dim`` places a point, in ascending order, points without any left out; and
     those points."""
     columns = free.tocsc()

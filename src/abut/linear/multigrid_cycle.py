@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import block_product
+from abut.types import Sparse
 
 SMOOTHED = (0.05, 1.1)  # share of the spectrum's end that smoothing damps; its upper end is an estimate from below
 JACOBI = 4 / 3  # over the largest eigenvalue: damping of the smoothed aggregates (Vanek, Mandel and Brezina 1996)
@@ -33,7 +33,7 @@ class Level:
     matrix: Blocks
     inverse_diagonal: Single
     largest: float
-    smooth: Any
+    smooth: Sparse
     interpolate: Blocks
     restrict: Blocks
     degree: int
@@ -65,7 +65,7 @@ class Levels:
         return np.asarray(first + correction + last)
 
 
-def level(matrix: Any, strong: Any, tentative: Any) -> Level:
+def level(matrix: Sparse, strong: Sparse, tentative: Sparse) -> Level:
     """A level from its matrix and the interpolation of aggregates (both BSR), smoothed by one step of Jacobi's iteration
     with the ``strong`` part of the matrix."""
     blocks, diagonal = _blocks(matrix), matrix.diagonal()
@@ -90,19 +90,19 @@ def _inverted(diagonal: NDArray[np.float64], small: float) -> NDArray[np.float64
     return np.asarray(np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small))
 
 
-def coarse_matrix(matrix: Any, own: Level) -> Any:
+def coarse_matrix(matrix: Sparse, own: Level) -> Sparse:
     """Galerkin's matrix of the next level, BSR."""
     block = own.smooth.blocksize
     image = (matrix @ own.smooth).tobsr(block)
     return (own.smooth.T.tobsr((block[1], block[0])) @ image).tobsr((block[1], block[1]))
 
 
-def inverse(matrix: Any) -> Single:
+def inverse(matrix: Sparse) -> Single:
     """Of the coarsest matrix, which may be singular."""
     return np.linalg.pinv(matrix.toarray(), rcond=SINGULAR, hermitian=True).astype(np.float32)
 
 
-def _blocks(matrix: Any) -> Blocks:
+def _blocks(matrix: Sparse) -> Blocks:
     indptr, indices = (np.ascontiguousarray(a, dtype=np.int32) for a in (matrix.indptr, matrix.indices))
     return indptr, indices, np.ascontiguousarray(matrix.data, dtype=np.float32)
 

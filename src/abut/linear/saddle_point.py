@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +12,7 @@ from abut.linear import direct
 from abut.linear.schur_preconditioner import Predict
 from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.problem.linearised import Linearised, Rows
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -21,9 +21,9 @@ class Saddle:
     size, theory (V2). ``symmetric``: lower is -coupled, and corner diagonal. Pressures that nothing couples are known at
     once: their rows and columns hold nothing but the diagonal."""
 
-    coupled: Any
-    lower: Any
-    corner: Any
+    coupled: Sparse
+    lower: Sparse
+    corner: Sparse
     rhs_u: NDArray[np.float64]
     rhs_p: NDArray[np.float64]
     symmetric: bool
@@ -36,7 +36,7 @@ class Saddle:
         return np.where(self.known, self.fixed, self.scale * q)
 
 
-def saddle(unit: float, operator: Any, rows: Rows, residual: NDArray[np.float64]) -> Saddle:
+def saddle(unit: float, operator: Sparse, rows: Rows, residual: NDArray[np.float64]) -> Saddle:
     """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked; residual:
     K u - B^T p - f."""
     known, fixed = rows.decoupled, rows.fixed
@@ -58,8 +58,8 @@ def saddle(unit: float, operator: Any, rows: Rows, residual: NDArray[np.float64]
 
 
 def newton_step(
-    stiffness: Any,
-    operator: Any,
+    stiffness: Sparse,
+    operator: Sparse,
     rows: Rows,
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
@@ -75,7 +75,7 @@ def newton_step(
     return solution[: len(residual)], s.pressure(solution[len(residual) :])
 
 
-def factorise(stiffness: Any, operator: Any, rows: Rows) -> Solve:
+def factorise(stiffness: Sparse, operator: Sparse, rows: Rows) -> Solve:
     """The same for several right-hand sides (residual of equilibrium, residual of the law) with one factorisation; of
     symmetric rows."""
     unit, n = np.median(stiffness.diagonal()), stiffness.shape[0]
@@ -121,7 +121,7 @@ class SaddlePoint:
         return self.predict(gap, pressure, active, tied)
 
 
-def _whole(stiffness: Any, s: Saddle) -> Any:
+def _whole(stiffness: Sparse, s: Saddle) -> Sparse:
     """The matrix, only its upper triangle where it is symmetric."""
     if s.symmetric:
         upper = sp.triu(stiffness, format="csr")
@@ -129,12 +129,12 @@ def _whole(stiffness: Any, s: Saddle) -> Any:
     return store_diagonal(sp.bmat([[stiffness, -s.coupled.T], [s.lower, s.corner]], format="csr"))
 
 
-def _row_max(matrix: Any, empty: float = 1.0) -> NDArray[np.float64]:
+def _row_max(matrix: Sparse, empty: float = 1.0) -> NDArray[np.float64]:
     size = np.asarray(abs(matrix).max(axis=1).todense()).ravel()
     return np.where(size > 0.0, size, empty)
 
 
-def store_diagonal(matrix: Any) -> Any:
+def store_diagonal(matrix: Sparse) -> Sparse:
     """The same matrix with every diagonal entry stored (PARDISO wants zeros on the diagonal to be present)."""
     n = matrix.shape[0]
     rows = np.repeat(np.arange(n), np.diff(matrix.indptr))

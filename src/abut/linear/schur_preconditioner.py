@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -22,6 +21,7 @@ from abut.contact.geometry import facet_stiffness
 from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
 from abut.problem.contact_pairs import Pair
+from abut.types import Sparse
 
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
@@ -40,9 +40,9 @@ class Interface:
     1 / l^2."""
 
     rows: NDArray[np.int64]
-    full: Any
-    mass: Any
-    coupled: Any
+    full: Sparse
+    mass: Sparse
+    coupled: Sparse
     compliance: float
     lowest: float
 
@@ -102,9 +102,9 @@ class HalfSpaces:
     pressures are multiplied and gaps divided to compare rows."""
 
     rows: NDArray[np.int64]
-    full: Any
-    mass: Any
-    coupled: Any
+    full: Sparse
+    mass: Sparse
+    coupled: Sparse
     compliance: NDArray[np.float64]
     resolvents: Sequence[tuple[NDArray[np.float64], Apply]]
     uncouple: Apply
@@ -187,14 +187,14 @@ class PressureBlock:
         return self.half_spaces.forward(pressure)
 
 
-def pressure_block(pairs: Sequence[Pair], operator: Any, diagonal: NDArray[np.float64]) -> PressureBlock:
+def pressure_block(pairs: Sequence[Pair], operator: Sparse, diagonal: NDArray[np.float64]) -> PressureBlock:
     """operator: (n, n_free) of all pairs; diagonal: (n_free,) of the stiffness."""
     parts, unit = interfaces(pairs), float(np.median(diagonal))
     own = schur_diagonal(parts, operator.shape[0])
     return PressureBlock(parts, own, pressure_scale(operator, unit), unit)
 
 
-def pressure_scale(operator: Any, unit: float) -> float:
+def pressure_scale(operator: Sparse, unit: float) -> float:
     """What pressures are divided by, so that rows of the stiffness and of the operator are of one size; theory (V2)."""
     rows = np.flatnonzero(np.diff(operator.indptr))
     largest = np.maximum.reduceat(np.abs(operator.data), operator.indptr[rows]) if len(rows) else np.zeros(0)
@@ -221,7 +221,7 @@ class Foresight:
     """Contact of half spaces; moved: as in ``foresight``, sparse."""
 
     half_spaces: HalfSpaces
-    moved: Any
+    moved: Sparse
 
     def predict(
         self,
@@ -298,7 +298,7 @@ def _conjugate_gradients(
     return x, residual
 
 
-def _largest(full: Any, mass: Any, lowest: float) -> float:
+def _largest(full: Sparse, mass: Sparse, lowest: float) -> float:
     """An upper bound of the pencil's eigenvalues."""
     rows = np.asarray(abs(mass).sum(axis=1)).ravel()
     return 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -22,6 +21,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Laws, Problem
 from abut.solution.state import State
+from abut.types import Array
 
 LARGEST = 8000  # multipliers and kept displacements together up to which dense matrices are worth their memory
 REFINEMENTS = 2
@@ -57,7 +57,7 @@ class CondensedProblem:
         return self.restrict(self.whole.start())
 
     def linearise(self, before: State, now: State) -> Linearised:
-        """As in ``Problem``; the unknowns of ``before`` and ``now`` do not matter."""
+        """As in ``Problem``; before: in all free displacements; the unknowns of ``now`` do not matter."""
         full = self.whole.linearise(before, now)
         n = len(full.load)
         load = self.factorization.forward(np.concatenate([full.load, np.zeros(len(full.offset))]))
@@ -67,8 +67,8 @@ class CondensedProblem:
         )  # fmt: skip
 
     def accepted(self, before: State, now: State) -> State:
-        """As in ``Problem``: nothing constant has a history."""
-        return now
+        """As in ``Problem``."""
+        return self.whole.accepted(before, now)
 
     def restrict(self, state: State) -> State:
         """As in ``Problem``."""
@@ -81,11 +81,11 @@ class CondensedProblem:
             return self
         return condense(other) or other
 
-    def expand(self, state: State, laws: Laws) -> State:
+    def expand(self, before: State, state: State, laws: Laws) -> State:
         """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
         problem are met anew by refinement."""
-        near = self.linearise(state, state)
-        whole = self.whole.linearise(state, state)
+        near = self.linearise(before, state)
+        whole = self.whole.linearise(before, state)
         solver = dense(near)
         n = len(whole.load)
         inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))
@@ -195,7 +195,7 @@ class Flexibility:
         return du + self.response[:, free] @ solved[:n] + motions @ solved[n:], dp
 
     def _resisted(
-        self, free: NDArray[np.int64], law: Any, push: NDArray[np.float64], force: float
+        self, free: NDArray[np.int64], law: Array, push: NDArray[np.float64], force: float
     ) -> NDArray[np.float64]:
         """A basis of the motions that the rows ``free`` resist, (n, k). push: (n,) forces that they have to balance;
         force: sum of all others, beside which what is left of forces in balance is rounding."""

@@ -7,18 +7,17 @@ Gee, Siefert, Hu, Tuminaro and Sala 2006. Aggregates then coarsen across thin ce
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import strong_part
+from abut.types import Sparse
 
 REACH = 2.5  # times the distance of the nearest point: takes in all of a cube, and half of its edge with nodes at the middle
 
 
-def near(matrix: Any, points: NDArray[np.float64]) -> Any:
+def near(matrix: Sparse, points: NDArray[np.float64]) -> Sparse:
     """The matrix (BSR) without couplings to far points, theory (V12), which are added to the diagonal so that translations
     do no more work than before; the matrix itself where no point is far. points: (n_block_rows, dim)."""
     part = strong_part(
@@ -31,7 +30,7 @@ def near(matrix: Any, points: NDArray[np.float64]) -> Any:
     return sp.bsr_matrix((blocks.reshape(-1, *matrix.blocksize), indices, indptr), shape=matrix.shape)
 
 
-def means(aggregates: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def means(aggregates: Sparse, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where aggregates are. aggregates: (n_points, n_aggregates) of ones."""
     count = np.asarray(aggregates.sum(axis=0)).ravel()
     return np.asarray((aggregates.T @ points) / np.maximum(count, 1)[:, None])

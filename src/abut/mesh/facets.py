@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.types import Array
 
 if TYPE_CHECKING:
     from abut.mesh.mesh import Mesh
 
 
-def row_codes(rows: NDArray[Any]) -> NDArray[np.int64]:
+def row_codes(rows: Array) -> NDArray[np.int64]:
     """A number for each row (n, k) of whole numbers >= -1: equal where the rows are, and in the rows' order. To sort and
     compare these is several times faster than the rows."""
     values = rows.astype(np.int64) + 1

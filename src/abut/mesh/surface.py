@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from abut.types import Array
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Surface:
         """What an integral over facets is multiplied by at points (..., dim): 2 pi r round an axis, else 1."""
         return around(points, self.axisymmetric)
 
-    def part(self, facets: NDArray[Any]) -> Surface:
+    def part(self, facets: Array) -> Surface:
         """Some of its facets: their numbers, or (n_facets,) bool."""
         return replace(
             self,

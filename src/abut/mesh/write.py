@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +12,7 @@ from abut.cells import BY_CODE
 from abut.errors import InputError
 from abut.io.vtu import write_vtu
 from abut.mesh.mesh import Mesh
+from abut.types import Array
 
 
 def write_mesh(path: Path, mesh: Mesh) -> None:
@@ -27,7 +27,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
         raise InputError(
             f"cannot write {path}: two of a body, a surface and a node set are all named '{both[0]}'; rename one"
         )
-    parts: list[tuple[str, NDArray[Any]]] = []
+    parts: list[tuple[str, Array]] = []
     region: list[NDArray[np.int32]] = []
     for name in mesh.bodies:
         parts += [(kind, nodes) for kind, nodes, _ in mesh.cells_of(name)]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.errors import InputError
 from abut.fields import Field
+from abut.types import Json
 
 COMPONENTS = ("x", "y", "z")
 TURNS = ("rx", "ry", "rz")
@@ -65,7 +66,7 @@ def weights(histories: Sequence[History], time: float) -> NDArray[np.float64]:
     return np.array([time if history is None else history(time) for history in histories])
 
 
-def _amplitude(value: Any, where: str) -> None:
+def _amplitude(value: object, where: str) -> None:
     if value is not None and not isinstance(value, Amplitude):
         raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(value).__name__}")
 
@@ -110,7 +111,7 @@ class Support:
 
 def support_along(on: str, component: str, value: float) -> Support:
     """A support of one component by its name."""
-    given: dict[str, Any] = {component: value}
+    given: Json = {component: value}
     return Support(on, **given)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from abut import checks
@@ -15,6 +16,8 @@ PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
+ROUGH = "rough"  # friction that never slips
+AT_NODES = ("auto", "P1", "P2", "dual", "dual-P1")  # pressures that go with friction
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,8 @@ class Contact:
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``).
+    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, or "rough" for surfaces that never
+    slip while they touch; the result then depends on the order of the loads, and on the load steps.
 
     >>> import abut
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
@@ -65,6 +69,7 @@ class Contact:
     offset: float = 0.0
     adjust: float = 0.0
     amplitude: History = None
+    friction: float | str = 0.0
 
     def __post_init__(self) -> None:
         for side in ("contactor", "target"):
@@ -87,6 +92,7 @@ class Contact:
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
             )
+        self._check_friction(where)
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")
         if checks.finite(self.adjust, f"{where}: adjust") < 0.0:
@@ -96,3 +102,32 @@ class Contact:
         both = [name for name in listed(self.contactor) if name in listed(self.target)]
         if both:
             raise InputError(f"{where}: contactor and target are the same surface {words(both)}")
+
+    @property
+    def frictional(self) -> bool:
+        """Whether there is friction."""
+        return self.friction != 0.0
+
+    @property
+    def coefficient(self) -> float:
+        """Of friction; infinite for "rough"."""
+        return math.inf if self.friction == ROUGH else float(self.friction)
+
+    def _check_friction(self, where: str) -> None:
+        if self.friction != ROUGH:
+            if isinstance(self.friction, str):
+                raise InputError(f'{where}: friction: expected a coefficient >= 0 or "rough", got {self.friction!r}')
+            if checks.finite(self.friction, f"{where}: friction") < 0.0:
+                raise InputError(f"{where}: friction: expected a coefficient >= 0, got {self.friction!r}")
+        if not self.frictional:
+            return
+        if self.kind == "tied":
+            raise InputError(f"{where}: friction: a tie holds in all directions; leave friction or kind out")
+        if self.method != METHODS[0] or self.law != LAWS[0]:
+            raise InputError(
+                f"{where}: friction: goes with method segment-to-segment and law complementarity; leave out the others"
+            )
+        if self.pressure not in AT_NODES:
+            raise InputError(
+                f"{where}: friction: needs a pressure at nodes, one of {', '.join(AT_NODES)}, got {self.pressure!r}"
+            )

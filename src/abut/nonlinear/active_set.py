@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, finer, settled, solve_set
+from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, Solved, finer, settled, solve_set
+from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.smooth_laws import finish_smooth
@@ -41,16 +43,14 @@ def solve_step(
     earlier: iterations of the same step before; aim: "set" where only the active set is wanted, of laws that have one, "this
     set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
-    state, system = begin, solver.system
-    tied = system.tied
-    seen: set[bytes] = set()
-    history: list[NDArray[np.bool_]] = []
+    if any(pair.frictional for pair in solver.system.pairs):
+        return solve_friction(solver, begin, increment, limit, observe, earlier)
+    tied = solver.system.tied
+    course = Course(solver, tied)
+    state = begin
+    sets: list[NDArray[np.bool_]] = []
     log = Log(list(earlier), observe, len(earlier) + limit)
-    changes: list[int] = []
-    violations: list[float] = []
-    foresee, doubtful = True, False
-    lawful: NDArray[np.bool_] | None = None  # set that the law asked for, where another one was foreseen
-    finest, before = ROUGH, np.inf
+    before = np.inf
     accuracy = STRIDE if settle else ROUGH
     if state.closed.all() and not settle:
         accuracy = 0.1 * solver.accurate  # closed all over may well be the answer
@@ -63,54 +63,101 @@ def solve_step(
                 raise
             return search(solver, begin, increment, limit, log, tied, aim)
         log.add(solved.row)
-        state, wanted, changed = solved.state, solved.wanted, solved.changed
-        active = state.closed
-        history.append(active)
-        if not changed.any():
+        state = solved.state
+        sets.append(state.closed)
+        if not solved.changed.any():
             if settled(solver, solved, aim, before):
                 if aim == "set":
-                    return Found(state, tuple(log.done), True, changed, active_laws)
+                    return Found(state, tuple(log.done), True, solved.changed, active_laws)
                 return finish_smooth(solver, state, increment, limit, log.done, observe)
             accuracy, before = finer(solver, solved, aim), solved.error
             continue
         before = np.inf
         if aim == "this set":
             break
-        count = int(changed.sum())
-        misled = lawful is not None and count > max(changes[-1], MISLED * active.sum())
-        if misled and lawful is not None:  # back to what the law asked for, and no more foresight
-            seen.add(active.tobytes())
-            state, lawful, foresee, doubtful = state.with_closed(lawful), None, False, True
-            continue
-        changes.append(count)
-        violations.append(float(solved.violation.max()))
-        gap = system.gap(state)
-        rows = len(log.done) - len(earlier)
-        lawful = None
-        if foresee:
-            guess = solver.foresee(gap, state.multipliers, wanted, tied)
-            if guess.tobytes() not in {*seen, active.tobytes()}:
-                told = solver.exact or solved.error <= TOLD
-                lawful, wanted = wanted if told else None, guess
-        accuracy = finest
-        stuck = np.array_equal(system.restraint.complete(system.forces, wanted, gap) | tied, active)
-        seen.add(active.tobytes())
-        repeated = stuck or wanted.tobytes() in seen
-        settling = foresee and count <= SETTLING * active.sum() and rows < SETTLED
-        settling = settling or closing(violations, rows)
-        slow = repeated or (hopeless(changes, rows) and not settling) or (doubtful and count >= HALVED * changes[-2])
-        doubtful = False
-        if slow:
-            _check_balance(solver)
-        if repeated and not stuck and not solver.exact and finest > FINE:
-            accuracy = finest = FINE  # sets may repeat because they were not solved well enough
-            seen.clear()
-        elif slow:
+        following = course.following(solved, len(log.done) - len(earlier), accuracy)
+        if following is None:
             return search(solver, begin, increment, limit, log, tied, aim)
-        state = state.with_closed(wanted)
-    recent = np.stack(history[-6:])
-    cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | changed
-    return Found(state.with_closed(active), tuple(log.done), False, cycling, active_laws)
+        state, accuracy = state.with_closed(following.closed), following.accuracy
+    recent = np.stack(sets[-6:])
+    cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | solved.changed
+    return Found(state.with_closed(sets[-1]), tuple(log.done), False, cycling, active_laws)
+
+
+@dataclass(frozen=True)
+class Following:
+    """The active set (n,) to solve with next, and the reduction of the residual to ask for."""
+
+    closed: NDArray[np.bool_]
+    accuracy: float
+
+
+@dataclass
+class Course:
+    """The active sets of a step so far. seen: those solved with; changes, violations: of each solution, how many multipliers
+    changed and the law's largest violation; lawful: what the law asked for where another set was foreseen; foresee: whether
+    foresight is of use; doubtful: it was just found to be of none; finest: reduction of the residual asked for."""
+
+    solver: Prepared
+    tied: NDArray[np.bool_]
+    seen: set[bytes] = field(default_factory=set)
+    changes: list[int] = field(default_factory=list)
+    violations: list[float] = field(default_factory=list)
+    lawful: NDArray[np.bool_] | None = None
+    foresee: bool = True
+    doubtful: bool = False
+    finest: float = ROUGH
+
+    def following(self, solved: Solved, rows: int, accuracy: float) -> Following | None:
+        """The set to solve with after one that changed; None where interior points are quicker. rows: of the step so far;
+        accuracy: asked of the last solution.
+
+        Raises SingularModelError where no contact that only pushes balances the loads."""
+        active, count = solved.state.closed, int(solved.changed.sum())
+        if self.lawful is not None and count > max(self.changes[-1], MISLED * active.sum()):
+            return self._back(self.lawful, active, accuracy)
+        self.changes.append(count)
+        self.violations.append(float(solved.violation.max()))
+        system, gap = self.solver.system, self.solver.system.gap(solved.state)
+        wanted = self._foreseen(solved, gap)
+        stuck = np.array_equal(system.restraint.complete(system.forces, wanted, gap) | self.tied, active)
+        self.seen.add(active.tobytes())
+        repeated = stuck or wanted.tobytes() in self.seen
+        slow = repeated or self._slow(active, rows)
+        self.doubtful = False
+        if slow:
+            _check_balance(self.solver)
+        if repeated and not stuck and not self.solver.exact and self.finest > FINE:
+            self.finest = FINE  # sets may repeat because they were not solved well enough
+            self.seen.clear()
+        elif slow:
+            return None
+        return Following(wanted, self.finest)
+
+    def _back(self, lawful: NDArray[np.bool_], active: NDArray[np.bool_], accuracy: float) -> Following:
+        """Back to what the law asked for, and no more foresight."""
+        self.seen.add(active.tobytes())
+        self.lawful, self.foresee, self.doubtful = None, False, True
+        return Following(lawful, accuracy)
+
+    def _foreseen(self, solved: Solved, gap: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """The set that the law asks for, or a better guess that has not been seen yet."""
+        self.lawful = None
+        if not self.foresee:
+            return solved.wanted
+        guess = self.solver.foresee(gap, solved.state.multipliers, solved.wanted, self.tied)
+        if guess.tobytes() in {*self.seen, solved.state.closed.tobytes()}:
+            return solved.wanted
+        self.lawful = solved.wanted if self.solver.exact or solved.error <= TOLD else None
+        return guess
+
+    def _slow(self, active: NDArray[np.bool_], rows: int) -> bool:
+        """Whether interior points would be quicker."""
+        count = self.changes[-1]
+        settling = self.foresee and count <= SETTLING * active.sum() and rows < SETTLED
+        if hopeless(self.changes, rows) and not (settling or closing(self.violations, rows)):
+            return True
+        return self.doubtful and count >= HALVED * self.changes[-2]
 
 
 def stalled(changes: Sequence[int]) -> bool:

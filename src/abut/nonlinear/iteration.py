@@ -89,7 +89,9 @@ def report(
     residual = system.unbalanced(state, internal)
     gap = system.split(system.gap(state))
     depth = [
-        float((-g / (pair.weight * pair.size)).max(initial=0.0)) for pair, g in zip(system.pairs, gap) if not pair.tied
+        float((-g / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
+        for pair, g in zip(system.pairs, gap)
+        if not pair.tied
     ]
     return Iteration(
         step=increment.number,

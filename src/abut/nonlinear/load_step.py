@@ -41,7 +41,7 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
     begin = replace(problem.restrict(task.before), time=time)
     none = np.zeros(len(begin.status), dtype=bool)
     search = any(p.space.name == DUAL_P1 and surface_degree(p.contactor) == 2 for p in pairs)
-    smooth = any(p.smooth for p in pairs)
+    smooth = any(p.smooth or p.frictional for p in pairs)
     earlier: tuple[Iteration, ...] = ()
     inner = problem.with_ordinary(begin.closed) if begin.closed.all() and not smooth else problem
     if inner is not problem:
@@ -63,7 +63,7 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
 def _ended(task: Task, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:
     problem: Problem = task.problem
     largest = largest_so_far(prepared.system, found.state, task.increment)
-    state = replace(problem.expand(found.state, found.laws), largest=largest)
+    state = replace(problem.expand(task.before, found.state, found.laws), largest=largest)
     if found.converged:
         state = problem.accepted(task.before, state)
     return Attempt(task.increment.number, state, found.converged, found.iterations, found.cycling, inside)

@@ -14,6 +14,8 @@ from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
 from abut.solution.state import State
 
+NO_TIME = 1e-12  # times that differ by less are the same
+
 
 class Schedule(Protocol):
     """When load steps end."""
@@ -38,11 +40,35 @@ class Fixed:
         return next((time for time in self.times if time > attempt.state.time), None)
 
 
+class Automatic:
+    """Load steps that end at given times and, where one does not converge, in between: half as far, and twice as far again
+    after each that does. smallest: share of the way to the next given time below which it gives up."""
+
+    def __init__(self, times: Sequence[float], begin: float = 0.0, smallest: float = 1.0 / 64.0) -> None:
+        self._times, self._smallest = times, smallest
+        self._begin, self._from, self._share = begin, begin, 1.0
+
+    def next(self, attempt: Attempt | None) -> float | None:
+        """As in ``Schedule``."""
+        if attempt is not None and attempt.converged:
+            self._from, self._share = attempt.state.time, min(2.0 * self._share, 1.0)
+        goal = next((time for time in self._times if time > self._from * (1.0 + NO_TIME)), None)
+        if goal is None:
+            return None
+        whole = goal - max((time for time in self._times if time < goal), default=self._begin)
+        if attempt is not None and not attempt.converged:
+            self._share = 0.5 * (attempt.state.time - self._from) / whole
+        if self._share < self._smallest:
+            return None
+        reached = self._from + self._share * whole
+        return goal if reached > goal * (1.0 - NO_TIME) else reached
+
+
 @dataclass(frozen=True)
 class Control:
     """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
     prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
-    fails."""
+    fails; halves: called with an attempt that failed and the end of the next one."""
 
     limit: int
     observe: Callable[[Iteration], None]
@@ -50,6 +76,7 @@ class Control:
     prepares: Callable[[LinearSolver], None]
     prepared: Callable[[str], None]
     fallback: Callable[[int, NotConverged], LinearSolver]
+    halves: Callable[[Attempt, float], None]
 
 
 def march(
@@ -57,11 +84,12 @@ def march(
 ) -> Iterator[Attempt]:
     """Load step after load step, from the state ``first``; number: of the next one.
 
-    Each attempt starts from the last converged state: the state of a failed one is dropped, and a solver that fails is
-    replaced by another one, which begins the step again."""
+    Each attempt starts from the last converged state: the state of a failed one is dropped, and yielded only where no other
+    follows it; a solver that fails is replaced by another one, which begins the step again."""
     before, attempt = first, None
     own, prepared = None, None
-    while (time := schedule.next(attempt)) is not None:
+    time = schedule.next(attempt)
+    while time is not None:
         told = False
         while True:
             if own is None or prepared is None:
@@ -78,6 +106,10 @@ def march(
                 break
             except NotConverged as reason:
                 solver, own, prepared = control.fallback(number, reason), None, None
-        yield attempt
+        time = schedule.next(attempt)
+        if attempt.converged or time is None:
+            yield attempt
+        else:
+            control.halves(attempt, time)
         if attempt.converged:
             before, number = attempt.state, number + 1

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.solution import ContactResult
+from abut.solution import ContactResult, FrictionResult
+from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
+OF_FRICTION = ("sticking_area", "slipping_area", "friction_work")  # the very last, where a contact has friction
 
 
-def contact_summary(contact: ContactResult) -> dict[str, Any]:
+def contact_summary(contact: ContactResult) -> Json:
     """The entry of a contact in summary.json; None where a number does not exist."""
     pressure = contact.statistics
     return {
@@ -36,6 +37,20 @@ def contact_summary(contact: ContactResult) -> dict[str, Any]:
         "centre_of_pressure": vector(contact.resultant.centre),
         "moment": vector(contact.resultant.moment),
         "target_forces": {body: vector(force) for body, force in contact.body_forces.items()},
+        **({} if contact.friction is None else {"friction": _friction(contact.friction)}),
+    }
+
+
+def _friction(friction: FrictionResult) -> Json:
+    sizes = {name: np.linalg.norm(getattr(friction, name), axis=2) for name in ("traction", "slip", "total_slip")}
+    return {
+        "coefficient": number(friction.coefficient) if math.isfinite(friction.coefficient) else "rough",
+        "sticking_area": friction.sticking_area,
+        "slipping_area": friction.slipping_area,
+        "max_traction": float(np.nanmax(sizes["traction"], initial=0.0)),
+        "max_slip": float(np.nanmax(sizes["slip"][friction.status > 0], initial=0.0)),
+        "max_total_slip": float(np.nanmax(sizes["total_slip"], initial=0.0)),
+        "work": friction.work,
     }
 
 
@@ -67,4 +82,8 @@ def more_values(contact: ContactResult) -> dict[str, float]:
     """Their values by name, nan where there is no number: readers of the columns before them take it for one."""
     s, r = contact.statistics, contact.resultant
     values = (*s.place, s.partly_covered, s.mean, s.percentile_95, s.area, *r.centre, *r.moment)
-    return dict(zip(more_columns(contact.contactor.dim), map(float, values)))
+    result = dict(zip(more_columns(contact.contactor.dim), map(float, values)))
+    if contact.friction is not None:
+        own = contact.friction
+        result |= dict(zip(OF_FRICTION, (own.sticking_area, own.slipping_area, own.work)))
+    return result

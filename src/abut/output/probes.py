@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from abut.model.probe import label
 from abut.probing.table import columns, peaks
 from abut.solution import ProbeResult, Step
+from abut.types import Json
 
 
 def table_name(probe: str) -> str:
@@ -35,9 +35,9 @@ def table(steps: Sequence[Step], number: int) -> str:
     return text.getvalue()
 
 
-def _place(result: ProbeResult) -> dict[str, Any]:
+def _place(result: ProbeResult) -> Json:
     """Columns that say which point it is."""
-    own: dict[str, Any] = {"point": np.arange(1, len(result.points) + 1)}
+    own: Json = {"point": np.arange(1, len(result.points) + 1)}
     if result.nodes is not None:
         own["node"] = result.nodes
     if result.distance is not None:
@@ -45,7 +45,7 @@ def _place(result: ProbeResult) -> dict[str, Any]:
     return own | dict(zip("xyz", result.points.T))
 
 
-def summary(step: Step) -> list[dict[str, Any]]:
+def summary(step: Step) -> list[Json]:
     """Each probe in a few numbers: of one point its values, of several the values farthest from zero; None where none."""
     return [
         {"name": result.name, "file": table_name(result.name), "points": len(result.points), **peaks(result)}
@@ -59,6 +59,6 @@ def history_columns(steps: Sequence[Step]) -> list[str]:
     return ["probe", *names] if names else []
 
 
-def history_rows(step: Step) -> list[dict[str, Any]]:
+def history_rows(step: Step) -> list[Json]:
     """A row of history.csv for each probe, in the same few numbers as in summary.json."""
     return [{"probe": result.name, **peaks(result)} for result in step.probes]

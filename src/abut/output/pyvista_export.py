@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,12 +13,13 @@ from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.solution import Solution, Step
 from abut.solution.grids import CONTACTOR, TARGET, Grid, contact_grid, largest_pressure, point_fields, vectors
+from abut.types import Foreign
 
 FIELDS = {"pressure": "pressure", "gap": "gap", "von Mises": "von_mises", "displacement": "displacement"}
 ON_CONTACTS = ("pressure", "gap")
 
 
-def to_pyvista(solution: Solution, step: int = -1) -> Any:
+def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
     """A ``pyvista.MultiBlock`` with the blocks ``bodies`` (one grid for each body) and ``contacts`` (for each contact the
     grids ``contactor`` and ``target``); quadratic cells stay quadratic.
 
@@ -60,7 +60,7 @@ def to_pyvista(solution: Solution, step: int = -1) -> Any:
 
 def plot(
     solution: Solution, what: str = "pressure", step: int = -1, scale: float = 1.0, path: str | Path | None = None
-) -> Any:
+) -> Foreign:
     """Show a solution in a window, or write it to the picture file ``path`` without one; returns the plotter.
 
     what: "pressure" or "gap" (on the contactors, bodies as ghosts), "von Mises" or "displacement" (on the bodies).
@@ -100,7 +100,7 @@ def plot(
     return plotter
 
 
-def _screenshot(plotter: Any, path: Path) -> None:
+def _screenshot(plotter: Foreign, path: Path) -> None:
     try:
         plotter.screenshot(path)
     except (OSError, ValueError) as error:
@@ -109,7 +109,7 @@ def _screenshot(plotter: Any, path: Path) -> None:
         ) from None
 
 
-def _pyvista() -> Any:
+def _pyvista() -> Foreign:
     try:
         import pyvista
     except ImportError:
@@ -138,7 +138,7 @@ def _body(mesh: Mesh, name: str, step: Step) -> Grid:
     )
 
 
-def _grid(pyvista: Any, grid: Grid) -> Any:
+def _grid(pyvista: Foreign, grid: Grid) -> Foreign:
     result = pyvista.UnstructuredGrid(
         np.concatenate([np.insert(nodes, 0, nodes.shape[1], axis=1).ravel() for _, nodes in grid.blocks]),
         np.concatenate([np.full(len(nodes), CELLS[kind].vtk, np.uint8) for kind, nodes in grid.blocks]),
@@ -151,7 +151,7 @@ def _grid(pyvista: Any, grid: Grid) -> Any:
     return result
 
 
-def _deformed(grid: Any, scale: float) -> Any:
+def _deformed(grid: Foreign, scale: float) -> Foreign:
     """The grid as a surface of flat pieces, moved by its displacement."""
     surface = grid.extract_surface(nonlinear_subdivision=2, algorithm="dataset_surface")
     surface = surface if surface.n_cells else grid.copy()
@@ -159,7 +159,7 @@ def _deformed(grid: Any, scale: float) -> Any:
     return surface
 
 
-def _largest(data: Any, what: str, step: Step) -> float:
+def _largest(data: Foreign, what: str, step: Step) -> float:
     """The upper end of the colours; of pressures that of nodes which the target covers well enough."""
     if what == "pressure":
         return largest_pressure([step])

@@ -8,7 +8,6 @@ import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -34,7 +33,7 @@ def description(model: Model) -> dict[str, str]:
     return dict(leaf for name in fields for leaf in _leaves(getattr(model, name), name))
 
 
-def _leaves(value: Any, name: str) -> Iterator[tuple[str, str]]:
+def _leaves(value: object, name: str) -> Iterator[tuple[str, str]]:
     if isinstance(value, np.ndarray):
         digest = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()[:32]
         yield name, f"{value.dtype} {value.shape} {digest}"

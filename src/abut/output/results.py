@@ -7,7 +7,6 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,11 +17,12 @@ from abut.io.versions import versions
 from abut.io.vtu import write_vtu
 from abut.model.probe import label
 from abut.output import probes
-from abut.output.contact_rows import OF_CONTACT, contact_summary, more_columns, more_values, number
+from abut.output.contact_rows import OF_CONTACT, OF_FRICTION, contact_summary, more_columns, more_values, number
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
 from abut.solution.grids import contact_grid
+from abut.types import Json
 
 
 def write(
@@ -84,7 +84,7 @@ def write_index(folder: Path, solution: Solution) -> None:
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
 
 
-def summary(solution: Solution) -> dict[str, Any]:
+def summary(solution: Solution) -> Json:
     """What summary.json holds: plain numbers, lists and text; None where a number does not exist."""
     return {
         "schema": 1,
@@ -133,7 +133,7 @@ def _contact_file(contact: str, step: Step) -> str:
     return f"contact_{label(contact)}_{step.number:04d}.vtu"
 
 
-def _step_summary(step: Step) -> dict[str, Any]:
+def _step_summary(step: Step) -> Json:
     last = step.iterations[-1]
     return {
         "step": step.number,
@@ -175,6 +175,8 @@ def _history(solution: Solution) -> str:
         head += ["rigid", *moved, *rotation, *moment]
     head += [name for name in probes.history_columns(solution.steps) if name not in head]
     head += more_columns(dim)
+    if any(c.friction is not None for step in solution.steps for c in step.contacts):
+        head += OF_FRICTION
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.bodies.stress import averaged
-from abut.contact.coupling import Coupling
+from abut.contact.coupling import Coupling, CouplingOptions
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -45,9 +44,9 @@ class DistributedBodies:
         self.team.each(part.assemble, own=own)
         return self
 
-    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+    def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """Every facet of the contactor by the process that has its cell."""
-        return couple(self.team, self.owner[contactor.cells], contactor, target, degree, **options)
+        return couple(self.team, self.owner[contactor.cells], contactor, target, degree, options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``abut.problem.backend.Backend``."""

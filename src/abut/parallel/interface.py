@@ -4,34 +4,36 @@ contactor is cut and integrated by the process that has its cell."""
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.coupling import Coupling, default_reach, no_gap
+from abut.contact.coupling import Coupling, CouplingOptions, default_reach, no_gap
 from abut.contact.coupling import couple as couple_here
 from abut.contact.merging import added
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
+from abut.types import Sparse
 
 
 def couple(
-    team: Team, owner: NDArray[np.int64], contactor: Surface, target: Surface, degree: int, **options: Any
+    team: Team, owner: NDArray[np.int64], contactor: Surface, target: Surface, degree: int, options: CouplingOptions
 ) -> Coupling:
-    """As ``abut.contact.coupling.couple``, whose options it takes; owner: (n_facets,) process of each facet of the
+    """As ``abut.contact.coupling.couple``; owner: (n_facets,) process of each facet of the
     contactor. Surfaces lie over one array of points."""
     points = np.union1d(contactor.node_ids, target.node_ids)
     shared = contactor.points[points]
     small = [_over(surface, points, shared) for surface in (contactor, target)]
-    if options.get("reach") is None:
-        options["reach"] = default_reach(contactor, target)
-    options["adjust"] = no_gap(contactor, target, options.get("adjust", 0.0))  # rounding of all coordinates counts
+    options = replace(
+        options,
+        reach=default_reach(contactor, target) if options.reach is None else options.reach,
+        adjust=no_gap(contactor, target, options.adjust),  # rounding of all coordinates counts
+    )
     own = [(owner == rank,) for rank in range(team.size)]
     whole = added(team.each(_couple, *small, degree, options, own=own))
     n, at = len(contactor.points), whole.points
-    width = 1 if options.get("componentwise") else contactor.dim
+    width = 1 if options.componentwise else contactor.dim
     operator, contactor_part, target_part = (
         _among_all(matrix, points, width, n) for matrix in (whole.operator, whole.contactor_part, whole.target_part)
     )
@@ -48,7 +50,7 @@ def _over(surface: Surface, points: NDArray[np.int64], coordinates: NDArray[np.f
     return replace(surface, points=coordinates, nodes=nodes)
 
 
-def _among_all(matrix: Any, points: NDArray[np.int64], width: int, n_points: int) -> Any:
+def _among_all(matrix: Sparse, points: NDArray[np.int64], width: int, n_points: int) -> Sparse:
     """A matrix with ``width`` columns for each of some points, as one with columns for all points."""
     place = (width * points[:, None] + np.arange(width)).ravel()
     rows = matrix.tocsr()
@@ -56,6 +58,6 @@ def _among_all(matrix: Any, points: NDArray[np.int64], width: int, n_points: int
 
 
 def _couple(
-    store: Store, contactor: Surface, target: Surface, degree: int, options: dict[str, Any], own: NDArray[np.bool_]
+    store: Store, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, own: NDArray[np.bool_]
 ) -> Coupling:
-    return couple_here(contactor, target, degree, only=own, **options)
+    return couple_here(contactor, target, degree, options, own)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.parallel.team import Store
+from abut.types import Array, Foreign, Sparse
 
 Vector = NDArray[np.float64]
 STIFFNESS = "stiffness_"  # prefix of PETSc's options for the displacements alone
@@ -48,9 +48,9 @@ class Conditions:
     """What stands beside the stiffness, on process 0: coupled, lower (n, n_places), corner (n, n) and right-hand side as in
     ``abut.linear.saddle_point.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,)."""
 
-    coupled: Any
-    lower: Any
-    corner: Any
+    coupled: Foreign
+    lower: Foreign
+    corner: Foreign
     rhs: Vector
     inverse: Callable[[Vector], Vector] | None = None
 
@@ -142,7 +142,7 @@ def drop_factors(store: Store) -> None:
         store.pop("factors")[0].destroy()
 
 
-def _factors(matrix: Any, n: int, symmetric: bool, own: Conditions) -> tuple[Any, Any]:
+def _factors(matrix: Foreign, n: int, symmetric: bool, own: Conditions) -> tuple[Foreign, Foreign]:
     """PETSc's solver, and the matrix that it factorises at its first solution."""
     from petsc4py import PETSc
 
@@ -180,13 +180,15 @@ class Blocks:
     """Preconditioner of theory (V11): the interface's own operator for the pressures, then multigrid for the
     displacements; for MINRES, which wants it symmetric, each by itself."""
 
-    def __init__(self, stiffness: Any, lower: Any, loose: Vector, small: Vector, inverse: Any, apart: bool) -> None:
+    def __init__(
+        self, stiffness: Foreign, lower: Foreign, loose: Vector, small: Vector, inverse: Foreign, apart: bool
+    ) -> None:
         self.stiffness, self.lower, self.loose, self.small = stiffness, lower, loose, small
         self.inverse, self.apart = inverse, apart
         self.residual, self.answer = stiffness.getOperators()[0].createVecs()
         self.pressure = lower.createVecLeft()
 
-    def apply(self, _: Any, x: Any, y: Any) -> None:
+    def apply(self, _: Foreign, x: Foreign, y: Foreign) -> None:
         """y = P x, for PETSc."""
         n = self.residual.getLocalSize()
         into, out = x.array_r, np.empty(len(x.array_r))
@@ -206,7 +208,7 @@ class Blocks:
         y.array[:] = out
 
 
-def _solve(solver: Any, operator: Any, share: Vector, rhs: Vector) -> Answer:
+def _solve(solver: Foreign, operator: Foreign, share: Vector, rhs: Vector) -> Answer:
     x, b = operator.createVecs()
     b.array[:] = np.concatenate([share, rhs])
     solver.solve(b, x)
@@ -222,7 +224,7 @@ def _solve(solver: Any, operator: Any, share: Vector, rhs: Vector) -> Answer:
     )  # fmt: skip
 
 
-def _ran_out(preconditioner: Any) -> bool:
+def _ran_out(preconditioner: Foreign) -> bool:
     """Whether a factorisation by MUMPS ran out of memory."""
     if preconditioner.getType() not in FACTORS or preconditioner.getFactorSolverType() != "mumps":
         return False
@@ -239,7 +241,7 @@ def _unless_given(prefix: str, options: Mapping[str, str]) -> None:
             database[prefix + name] = value
 
 
-def _rows(matrix: Any, n: int, rows: Any) -> Any:
+def _rows(matrix: Foreign, n: int, rows: Sparse | None) -> Foreign:
     """A matrix (n, n_places) with all of its rows on process 0, which has them as CSR."""
     from petsc4py import PETSc
 
@@ -247,7 +249,7 @@ def _rows(matrix: Any, n: int, rows: Any) -> Any:
     return PETSc.Mat().createAIJ(((_own(matrix.comm, n), n), columns), csr=_csr(rows), comm=matrix.comm)
 
 
-def _square(comm: Any, n: int, rows: Any) -> Any:
+def _square(comm: Foreign, n: int, rows: Sparse | None) -> Foreign:
     """A matrix (n, n) that is all on process 0."""
     from petsc4py import PETSc
 
@@ -255,11 +257,11 @@ def _square(comm: Any, n: int, rows: Any) -> Any:
     return PETSc.Mat().createAIJ(((own, n), (own, n)), csr=_csr(rows), comm=comm)
 
 
-def _own(comm: Any, n: int) -> int:
+def _own(comm: Foreign, n: int) -> int:
     return 0 if comm.rank else n
 
 
-def _csr(rows: Any) -> tuple[NDArray[Any], NDArray[Any], Vector]:
+def _csr(rows: Sparse | None) -> tuple[Array, Array, Vector]:
     from petsc4py import PETSc
 
     ints = PETSc.IntType

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -41,6 +40,7 @@ from abut.parallel.partition import Layout
 from abut.parallel.team import Team
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
+from abut.types import Sparse
 
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
@@ -254,6 +254,12 @@ class PetscDirect:
 
 def choose(problem: ContactProblem) -> str:
     """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
+    friction = [pair.contact.name for pair in problem.pairs if pair.frictional]
+    if friction:
+        raise InputError(
+            f"PETSc does not know friction, which contact '{friction[0]}' has: run it on one process, with solve.linear "
+            '"direct" or "auto"'
+        )
     coupled = problem.held.coupled
     if wants_factors():
         return "direct"
@@ -281,7 +287,7 @@ def wants_iterations() -> bool:
     return not wants_factors() and any(options.hasName(name) for name in ("pc_type", "ksp_type", "stiffness_pc_type"))
 
 
-def spread(rows: Any, layout: Layout) -> Any:
+def spread(rows: Sparse, layout: Layout) -> Sparse:
     """Rows (n, n_free) with the columns at their places, (n, n_places)."""
     entries = rows.tocoo()
     shape = rows.shape[0], int(layout.starts[-1])

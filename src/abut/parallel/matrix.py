@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +14,7 @@ from abut._core import padded_blocks
 from abut.parallel.partition import Layout
 from abut.parallel.team import Store, Team
 from abut.problem.constraints import Supports
+from abut.types import Foreign, Sparse
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Distributed:
     def __matmul__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.layout.values(self.team.each(_product, own=self.layout.shares(values)))
 
-    def __add__(self, springs: Any) -> Distributed:
+    def __add__(self, springs: Sparse) -> Distributed:
         """With a diagonal matrix added; the matrix itself changes."""
         self.team.each(_stiffen, own=self.layout.shares(springs.diagonal()))
         return self
@@ -52,7 +52,7 @@ class Distributed:
             self.team.each(_release)
 
 
-def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np.int64], free: Any) -> None:
+def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np.int64], free: Sparse) -> None:
     """Build and keep PETSc's matrix of the stiffness on the free displacements.
 
     starts, block: as in ``Layout``; free: (dim n_points, k) change of variables of this part's points, on those k free
@@ -75,7 +75,7 @@ def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np
     store["matrix"] = matrix
 
 
-def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> tuple[NDArray[np.int64], Any]:
+def _blocks(stiffness: Sparse, slot: NDArray[np.int64], free: Sparse, block: int) -> tuple[NDArray[np.int64], Sparse]:
     """Numbers of the blocks that the places belong to, and the stiffness in whole blocks, BSR, ones on the diagonal where
     there is no free displacement."""
     reduced = Supports(free, np.zeros((0, 0))).reduce(stiffness)
@@ -94,8 +94,8 @@ def _blocks(stiffness: Any, slot: NDArray[np.int64], free: Any, block: int) -> t
 
 
 def _own_rows(
-    store: Store, slot: NDArray[np.int64], free: Any, block: int, starts: NDArray[np.int64], comm: Any
-) -> Any:
+    store: Store, slot: NDArray[np.int64], free: Sparse, block: int, starts: NDArray[np.int64], comm: Foreign
+) -> Sparse:
     """The rows of this process, columns numbered as in the whole, BSR: what it has itself and what others have of them.
 
     starts: first block of each process."""
@@ -109,14 +109,14 @@ def _own_rows(
     return own + sum(received[1:], received[0]) if received else own
 
 
-def _with_diagonal(rows: Any, first: int) -> Any:
+def _with_diagonal(rows: Sparse, first: int) -> Sparse:
     """Rows from ``first`` on of a matrix with all diagonal entries stored: a free rigid body has no stiffness of its own."""
     entries, n = rows.tocoo(), np.arange(rows.shape[0])
     row, column = np.concatenate([entries.row, n]), np.concatenate([entries.col, first + n])
     return sp.csr_matrix((np.concatenate([entries.data, np.zeros(len(n))]), (row, column)), shape=rows.shape)
 
 
-def _rows_of(process: int, matrix: Any, blocks: NDArray[np.int64], starts: NDArray[np.int64]) -> Any:
+def _rows_of(process: int, matrix: Sparse, blocks: NDArray[np.int64], starts: NDArray[np.int64]) -> Sparse:
     """Those of a part's rows that belong to a process, at their places among all of its rows, BSR."""
     first, last = starts[process : process + 2]
     begin, end = np.searchsorted(blocks, (first, last))  # what ascends in a part ascends in the whole
@@ -132,17 +132,17 @@ def _rows_of(process: int, matrix: Any, blocks: NDArray[np.int64], starts: NDArr
     return result
 
 
-def _local(matrix: Any) -> NDArray[np.float64]:
+def _local(matrix: Foreign) -> NDArray[np.float64]:
     """This process's share of the diagonal."""
     return np.array(matrix.getDiagonal().array)
 
 
-def _largest(matrix: Any, block: int) -> NDArray[np.float64]:
+def _largest(matrix: Sparse, block: int) -> NDArray[np.float64]:
     """The largest diagonal entry of each block, for all of its rows."""
     return np.repeat(_local(matrix).reshape(-1, block).max(axis=1), block)
 
 
-def _set_diagonal(matrix: Any, values: NDArray[np.float64]) -> None:
+def _set_diagonal(matrix: Foreign, values: NDArray[np.float64]) -> None:
     diagonal = matrix.createVecLeft()
     diagonal.array[:] = values
     matrix.setDiagonal(diagonal)

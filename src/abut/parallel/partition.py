@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,6 +16,7 @@ from abut.mesh.exterior import facets_of, numbered
 from abut.mesh.facets import row_codes
 from abut.mesh.mesh import Mesh
 from abut.parallel.team import Store, Team
+from abut.types import Sparse
 
 FEW = 10  # cells a process below which they are dealt out in their order: a partitioner would leave processes empty
 PARTITIONERS = ("ptscotch", "parmetis")
@@ -68,7 +68,7 @@ def owners(mesh: Mesh, team: Team) -> NDArray[np.int64]:
     return np.concatenate(team.each(_partition, mesh.n_cells, own=rows)).astype(np.int64)
 
 
-def cell_graph(mesh: Mesh) -> Any:
+def cell_graph(mesh: Mesh) -> Sparse:
     """Cells that share a facet, (n_cells, n_cells) CSR."""
     corners, row = facets_of(numbered(mesh))
     code = row_codes(np.sort(corners, axis=1))
@@ -141,7 +141,7 @@ def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int, points: NDArray[np.i
     return result
 
 
-def layout(free: Any, owner: NDArray[np.int64], dim: int, size: int, coupled: bool) -> Layout:
+def layout(free: Sparse, owner: NDArray[np.int64], dim: int, size: int, coupled: bool) -> Layout:
     """Places for the columns of ``free`` (dim n_points, n_free), each with the process (``owner``) of its point. Points are
     filled up to ``dim`` places, unless columns are ``coupled``: those go with their first point, one place each."""
     columns = free.tocsc()

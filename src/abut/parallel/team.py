@@ -12,7 +12,9 @@ import traceback
 from collections.abc import Callable, Sequence
 from typing import Any
 
-Store = dict[str, Any]  # what a process keeps between calls
+from abut.types import Foreign
+
+Store = dict[str, Foreign]  # what a process keeps between calls
 
 
 class Team:

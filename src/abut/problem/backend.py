@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 from abut.bodies.assemble import stiffness
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import nodal_stress
-from abut.contact.coupling import Coupling, couple
+from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports
+from abut.types import Operator, Sparse
 
 
 class Backend(Protocol):
     """The bodies of a model, assembled."""
 
-    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+    def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """Cut and integrate the interface of a contact pair, as ``abut.contact.coupling.couple``."""
         ...
 
@@ -29,7 +30,7 @@ class Backend(Protocol):
         """Nodal forces of stresses under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
         ...
 
-    def reduce(self, held: Supports) -> Any:
+    def reduce(self, held: Supports) -> Operator:
         """The stiffness on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
         ...
 
@@ -46,17 +47,17 @@ class Serial:
     """All of it in this process. matrix: stiffness over all points, (dim n_points, dim n_points) CSR."""
 
     model: Model
-    matrix: Any
+    matrix: Sparse
 
-    def couple(self, contactor: Surface, target: Surface, degree: int, **options: Any) -> Coupling:
+    def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
-        return couple(contactor, target, degree, **options)
+        return couple(contactor, target, degree, options)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, held: Supports) -> Any:
+    def reduce(self, held: Supports) -> Sparse:
         """As in ``Backend``, CSR."""
         return held.reduce(self.matrix)
 

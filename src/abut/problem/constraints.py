@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,6 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import eliminate
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+from abut.types import Array, Sparse
 
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
 ON_AXIS = 1e-9  # radius over the model's size that counts as none
@@ -34,10 +34,10 @@ class Links:
     coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
     (m, dim n_points) coefficients on all displacements of those that are equations."""
 
-    outer: Any
-    matrix: Any
+    outer: Sparse
+    matrix: Sparse
     pivots: NDArray[np.int64]
-    equations: Any
+    equations: Sparse
 
     def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
         """The share of equations in the forces (dim n_points,) that hold the points."""
@@ -53,7 +53,7 @@ class Supports:
     ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
     at any time; bodies: the rigid ones; links: where there are equations."""
 
-    free: Any
+    free: Sparse
     prescribed: NDArray[np.float64]
     largest: float = 0.0
     orthonormal: bool = True
@@ -80,7 +80,7 @@ class Supports:
         near = replace(self, free=free[:, np.unique(free.indices)])
         return np.asarray(own - near.free @ near.coordinates(own))
 
-    def reduce(self, matrix: Any) -> Any:
+    def reduce(self, matrix: Sparse) -> Sparse:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
         picks = self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all()
         if picks and matrix.nnz < 2**31:
@@ -133,11 +133,11 @@ def supports(model: Model) -> Supports:
 
 def _together(
     model: Model,
-    free: Any,
+    free: Sparse,
     prescribed: NDArray[np.float64],
-    conditions: tuple[NDArray[Any], ...],
+    conditions: tuple[Array, ...],
     bodies: Sequence[RigidBody],
-) -> tuple[Any, NDArray[np.float64], Links]:
+) -> tuple[Sparse, NDArray[np.float64], Links]:
     """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12)."""
     n_dofs, n_own = free.shape
     free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
@@ -170,7 +170,7 @@ def _together(
     return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links
 
 
-def equations(model: Model) -> tuple[Any, NDArray[np.float64]]:
+def equations(model: Model) -> tuple[Sparse, NDArray[np.float64]]:
     """Coefficients (n_equations, dim n_points) sparse and values (n_equations, n_histories) of a model's equations."""
     histories, dim = model.histories, model.dim
     values = np.zeros((len(model.equations), len(histories)))
@@ -185,7 +185,7 @@ def equations(model: Model) -> tuple[Any, NDArray[np.float64]]:
     return sp.csr_matrix((coefficient, (row.astype(np.int64), column.astype(np.int64))), shape=shape), values
 
 
-def _without_rounding(rows: Any, size: NDArray[np.float64]) -> Any:
+def _without_rounding(rows: Sparse, size: NDArray[np.float64]) -> Sparse:
     """Without entries that are nothing beside the size of their row before supports were put in."""
     entries = rows.tocoo()
     keep = np.abs(entries.data) > ROUNDING * size[entries.row]
@@ -197,8 +197,8 @@ def _name(model: Model, origin: int) -> str:
 
 
 def _node_by_node(
-    model: Model, conditions: tuple[NDArray[Any], ...], bodies: Sequence[RigidBody]
-) -> tuple[Any, NDArray[np.float64]]:
+    model: Model, conditions: tuple[Array, ...], bodies: Sequence[RigidBody]
+) -> tuple[Sparse, NDArray[np.float64]]:
     """Supports at the points that belong to no rigid body: columns left free, and prescribed displacements."""
     mesh, dim = model.mesh, model.dim
     node, direction, value, origin = conditions
@@ -251,7 +251,7 @@ def _plain(node: NDArray[np.int64], direction: NDArray[np.float64]) -> NDArray[n
     return ~np.isin(node, node[odd])
 
 
-def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tuple[Array, Array]:
     """Basis (dim, n_free) of the directions left free, and the displacement of the held ones (dim, n_histories)."""
     axis = np.abs(matrix).argmax(axis=1)
     if np.array_equal(np.abs(matrix), np.eye(matrix.shape[1])[axis]):  # along the axes: keep zeros and ones exact
@@ -263,13 +263,13 @@ def _solve_node(matrix: NDArray[np.float64], target: NDArray[np.float64]) -> tup
     return vt[rank:].T, np.linalg.lstsq(matrix, target, rcond=SAME_DIRECTION)[0]
 
 
-def _conditions(model: Model) -> tuple[NDArray[Any], ...]:
+def _conditions(model: Model) -> tuple[Array, ...]:
     """Every held direction: node, unit vector, value by history (n, n_histories), number of its support."""
     dim, histories = model.dim, model.histories
-    nodes: list[NDArray[Any]] = [np.empty(0, np.int64)]
-    directions: list[NDArray[Any]] = [np.empty((0, dim))]
-    values: list[NDArray[Any]] = [np.empty((0, len(histories)))]
-    origins: list[NDArray[Any]] = [np.empty(0, np.int64)]
+    nodes: list[Array] = [np.empty(0, np.int64)]
+    directions: list[Array] = [np.empty((0, dim))]
+    values: list[Array] = [np.empty((0, len(histories)))]
+    origins: list[Array] = [np.empty(0, np.int64)]
     for i, support in enumerate(model.supports):
         for where, vector, value in _directions(model.mesh, support, dim):
             nodes.append(where)
@@ -292,7 +292,7 @@ def points_on_axis(mesh: Mesh) -> NDArray[np.int64]:
     return np.flatnonzero(mesh.points[:, 0] <= ON_AXIS * np.ptp(mesh.points, axis=0).max())
 
 
-def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[NDArray[Any], ...]]:
+def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[Array, ...]]:
     """Nodes (n,), unit vectors (n, dim) or (dim,), values (n,)."""
     if support.normal is None:
         where = mesh.nodes_of(support.on)

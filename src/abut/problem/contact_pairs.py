@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.clearance import of_corners, partly_adjusted
-from abut.contact.coupling import Couple, Coupling, couple, default_reach, surface_degree
+from abut.contact.coupling import Couple, Coupling, CouplingOptions, couple, default_reach, surface_degree
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.node_to_segment import node_to_segment
 from abut.contact.opposite import by_target
@@ -29,14 +28,17 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
+from abut.contact.tangential import slip_operators
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
+from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
 from abut.problem.tied_rows import tied_rows
+from abut.types import Array, Sparse
 
 SQUARE = (
     0.9  # share of what is square to the contactor's rim held by supports: a plane of symmetry, up to 18 degrees off
@@ -54,11 +56,11 @@ class PairPoints:
     """The integration points of a pair: test (n_points, n) pressure functions; weight, gap, stiffness (n_points,);
     operator (n_points, n_free) change of the gap by the free displacements; prescribed (n_points, n_histories)."""
 
-    test: Any
+    test: Sparse
     weight: NDArray[np.float64]
     stiffness: NDArray[np.float64]  # of the constraint function, pressure per length
     gap: NDArray[np.float64]
-    operator: Any
+    operator: Sparse
     prescribed: NDArray[np.float64]
 
 
@@ -71,7 +73,8 @@ class Pair:
     pressure, weight h / E.
     size: typical facet length; stiffness: E / size, pressure per length. index: (n_functions, c) the multiplier of each
     function of ``space`` and component, -1 where there is none; components: the space of each component's multipliers, in
-    turn. Ties have all components (c = dim), along the axes, and a gap of zero; else c = 1, along the contactor's normal.
+    turn. Ties have all components (c = dim), along the axes, and a gap of zero; else c = 1, along the contactor's normal,
+    and with friction c = dim, the normal first and the tangents after it, whose jump is the slip since the last step.
     """
 
     contact: Contact
@@ -79,8 +82,8 @@ class Pair:
     target: Surface
     coupling: Coupling
     space: PressureSpace
-    rows: Any  # (n, dim n_points): operator on all displacements
-    operator: Any
+    rows: Sparse  # (n, dim n_points): operator on all displacements
+    operator: Sparse
     prescribed: NDArray[np.float64]
     gap: NDArray[np.float64]
     scale: NDArray[np.float64]
@@ -93,10 +96,42 @@ class Pair:
     interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
     planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
+    slip: Slip | None = None  # with friction
 
     @property
     def tied(self) -> bool:
         return self.contact.kind == "tied"
+
+    @property
+    def frictional(self) -> bool:
+        return self.slip is not None
+
+    @property
+    def normal(self) -> slice:
+        """The multipliers that are pressures, of a pair that is not tied."""
+        return slice(0, len(self.space))
+
+    @property
+    def tangential(self) -> slice:
+        """The multipliers that friction adds, of a pair that is not tied."""
+        return slice(len(self.space), len(self))
+
+    def of_functions(self, values: Array) -> Array:
+        """Values (n_functions,) for every multiplier of each function, (n,)."""
+        if self.index.shape[1] == 1:
+            return values
+        result = np.zeros(len(self), dtype=values.dtype)
+        there = self.index >= 0
+        result[self.index[there]] = np.broadcast_to(values[:, None], self.index.shape)[there]
+        return result
+
+    def tangential_traction(self, multipliers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Vectors (n_functions, dim) along the tangents, of values (n,) of all multipliers; zero without friction."""
+        result = np.zeros((len(self.space), self.contactor.dim))
+        if self.slip is None:
+            return result
+        along = np.where(self.index[:, 1:] >= 0, multipliers[np.maximum(self.index[:, 1:], 0)], 0.0)
+        return np.asarray(np.einsum("kb,kbd->kd", along, self.slip.tangents))
 
     @property
     def weight(self) -> NDArray[np.float64]:
@@ -104,7 +139,7 @@ class Pair:
         return self.scale * self.stiffness
 
     @property
-    def transfer(self) -> Any:
+    def transfer(self) -> Sparse:
         """(9 n_facets, n) sparse, multipliers -> facet-wise nodal values of whichever component each one is."""
         return (
             self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
@@ -161,7 +196,7 @@ def _shared(own: Pair) -> Functions | None:
     return functions(own.space, own.contactor, own.coupling)
 
 
-def _repeats(operator: Any) -> bool:
+def _repeats(operator: Sparse) -> bool:
     """Whether rows depend on each other. Not looked for where they are too many for a dense matrix."""
     if not 0 < operator.shape[0] <= FEW:
         return False
@@ -199,15 +234,33 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     constant, varying = offsets(model, contact)
     border = rim(contactor)
     beyond = goes_on(contactor, border, target, reach)
-    return Pair(
+    own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
         components=(space,), compliance=scales.compliance,
-        points=_points(coupling, space, held, scales.young / sizes, constant, varying),
+        points=None if contact.frictional else _points(coupling, space, held, scales.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=_planes(contactor, border, beyond, held),
+    )  # fmt: skip
+    if not contact.frictional:
+        return own_pair
+    assert coupling.points is not None
+    slim = replace(own_pair, coupling=replace(coupling, points=None))
+    return _with_friction(slim, slip_operators(coupling.points), held)
+
+
+def _with_friction(own: Pair, operators: tuple[Sparse, ...], held: Supports) -> Pair:
+    """A pair that has pressures alone, with the multipliers of friction beside them."""
+    made = friction_rows(own.contactor, own.space, own.rows, operators, held)
+    more = made.rows.shape[0] - len(own.space)
+    prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
+    weight = np.concatenate([space.weight for space in made.components])
+    return replace(
+        own, rows=made.rows, operator=(made.rows @ held.free).tocsr(), prescribed=prescribed,
+        gap=np.concatenate([own.gap, np.zeros(more)]), scale=weight / own.stiffness, index=made.index,
+        components=made.components, slip=made.slip, points=None,
     )  # fmt: skip
 
 
@@ -251,12 +304,13 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
     points, at = own.points, own.coupling.points
     if points is not None and at is not None:
         points = replace(points, test=(at.pressure @ space.transfer).tocsr())
-    return replace(
+    changed = replace(
         own, space=space, components=(space,), index=np.arange(len(space))[:, None], rows=rows,
         operator=(rows @ held.free).tocsr(), points=points,
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
+    return changed if own.slip is None else _with_friction(changed, own.slip.operators, held)
 
 
 def _couple(
@@ -266,18 +320,24 @@ def _couple(
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
-        seen = couple(contactor, target, 0, points=1, reach=reach, sights=True, adjust=contact.adjust)
+        seen = couple(
+            contactor, target, 0, CouplingOptions(points=1, reach=reach, keep_sights=True, adjust=contact.adjust)
+        )
         coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
         name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
+        if contact.frictional and name == DUAL_P1:
+            name = DUAL  # the law of friction looks at pressure and traction node by node
         of_dual = name in (DUAL, DUAL_P1)
-        cut = partial(
-            couple, contactor, target, surface_degree(contactor) if of_dual else degree,
-            rule=contact.integration.rule, points=contact.integration.points, componentwise=tied,
-            keep_points=contact.law == LAWS[1] and not tied, sights=not tied, reach=reach,
+        degree = surface_degree(contactor) if of_dual else degree
+        options = CouplingOptions(
+            rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
+            keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_sights=not tied,
         )  # fmt: skip
-        coupling = partly_adjusted(contactor, target, cut(adjust=contact.adjust), contact.adjust, reach, cut)
+        closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
+        without = partial(couple, contactor, target, degree, options)
+        coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without)
         coupling = of_corners(contactor, coupling) if of_dual else coupling
         contactor = contactor if tied else by_target(contactor, target, coupling)
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None

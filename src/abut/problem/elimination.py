@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
+from abut.types import Sparse
 
 DEPENDENT = 1e-8  # coefficients over the constraint's own from which on it says something new
 ROUNDING = 1e-13  # coefficients over the largest that are what subtractions left
@@ -35,13 +35,13 @@ class Eliminated:
     """free (n, n_free) sparse and prescribed (n, n_histories): y = free @ z + prescribed for any z. independent: numbers of
     the constraints that say something new; pivots: the unknown that each of them is solved for."""
 
-    free: Any
+    free: Sparse
     prescribed: NDArray[np.float64]
     independent: NDArray[np.int64]
     pivots: NDArray[np.int64]
 
 
-def eliminate(rows: Any, values: NDArray[np.float64], names: Sequence[str]) -> Eliminated:
+def eliminate(rows: Sparse, values: NDArray[np.float64], names: Sequence[str]) -> Eliminated:
     """Solve rows @ y = values by Gaussian elimination, one unknown for each constraint that says something new.
 
     rows: (m, n) sparse; values: (m, n_histories); names: of each constraint, for errors.
@@ -94,7 +94,7 @@ def _substitute(
     return row, value, tuple(through), size
 
 
-def _assemble(solved: dict[int, Expression], n: int, n_histories: int) -> tuple[Any, NDArray[np.float64]]:
+def _assemble(solved: dict[int, Expression], n: int, n_histories: int) -> tuple[Sparse, NDArray[np.float64]]:
     """Back substitution: the last one solved for holds free unknowns only."""
     final: dict[int, tuple[dict[int, float], NDArray[np.float64]]] = {}
     none = np.zeros(n_histories)

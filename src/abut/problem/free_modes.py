@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -15,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from abut.errors import SingularModelError
 from abut.problem.constraints import Supports
 from abut.problem.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
+from abut.types import Array, Sparse
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
 TOGETHER = 1e-6  # share of a body's motion in a free one from which on it takes part
@@ -38,7 +38,7 @@ class Regularisation:
     def __len__(self) -> int:
         return len(self.columns)
 
-    def added_to(self, matrix: Any) -> Any:
+    def added_to(self, matrix: Sparse) -> Sparse:
         """The stiffness on the free displacements, (n_free, n_free) CSR, with the springs."""
         if not len(self):
             return matrix
@@ -64,7 +64,7 @@ def regularise(
     rigid: RigidModes,
     resistances: Sequence[NDArray[np.float64]],
     held: Supports,
-    stiffness: Any,
+    stiffness: Sparse,
     loads: Sequence[NDArray[np.float64]],
 ) -> Regularisation:
     """Hold the rigid motions that nothing resists, where that takes no force.
@@ -96,7 +96,7 @@ def regularise(
 
 
 def _springs(
-    rigid: RigidModes, motions: NDArray[np.float64], held: Supports, stiffness: Any, notes: tuple[str, ...]
+    rigid: RigidModes, motions: NDArray[np.float64], held: Supports, stiffness: Sparse, notes: tuple[str, ...]
 ) -> Regularisation:
     m = motions.shape[1]
     if not m:
@@ -116,7 +116,7 @@ def _springs(
     )
 
 
-def _independent(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[NDArray[Any], NDArray[np.float64]]]:
+def _independent(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[Array, NDArray[np.float64]]]:
     """Free motions (n_modes, m) sorted by the groups of bodies that move together: group numbers and motions of each."""
     n = len(rigid.groups)
     share = (motions @ motions.T).reshape(n, rigid.per_group, n, rigid.per_group)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +10,7 @@ from abut.contact.geometry import CREASE, side_normals
 from abut.contact.pressure_space import PressureSpace, reduce
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
+from abut.types import Sparse
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
 SAME_DIRECTION = 0.3  # sine of the angle between normals at a crease below which their sides have one pressure
@@ -66,6 +65,6 @@ def _repeated(
     return result
 
 
-def row_norms(matrix: Any) -> NDArray[np.float64]:
+def row_norms(matrix: Sparse) -> NDArray[np.float64]:
     """Euclidean norms of the rows of a sparse matrix, (n,)."""
     return np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())

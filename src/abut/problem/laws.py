@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Law, LawResult, LawState
 from abut.problem.contact_pairs import Pair, PairPoints
+from abut.types import Sparse
 
 Vector = NDArray[np.float64]
 FAINT = 1e-12  # of a jump over what its traction gives way: a row that hardly sees it holds the traction alone
@@ -28,21 +28,30 @@ class LawRows:
 
     residual: Vector
     closed: NDArray[np.bool_]
-    by_gap: Any
-    by_pressure: Any
+    by_gap: Sparse
+    by_pressure: Sparse
     at_points: bool
     decoupled: NDArray[np.bool_]
     symmetric: bool = True
 
 
-def at_multipliers(pair: Pair, law: Law, gap: Vector, multipliers: Vector, closed: NDArray[np.bool_]) -> LawRows:
-    """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump.
+def at_multipliers(
+    pair: Pair,
+    law: Law,
+    gap: Vector,
+    multipliers: Vector,
+    closed: NDArray[np.bool_],
+    slipping: NDArray[np.bool_] | None = None,
+) -> LawRows:
+    """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump; closed,
+    slipping: (n,) status, the latter with friction.
 
     Normal laws are divided by minus their derivative by the gap, so that every linear solver meets rows of one kind."""
     where, weight = pair.index, pair.weight
     there = where >= 0
     mean = np.zeros(len(pair)) if not len(pair) else gap / weight
-    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), LawState(_status(closed, where)))
+    state = LawState(_status(closed, where), slipping=None if slipping is None else _status(slipping, where))
+    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), state)
     number = np.broadcast_to(where[:, :, None], (*where.shape, where.shape[1]))
     other = np.broadcast_to(where[:, None, :], number.shape)
     both = (number >= 0) & (other >= 0)
@@ -115,8 +124,8 @@ def _matrix(
 
 
 def _normalised(
-    by_gap: Any, by_pressure: Any, residual: Vector, weight: Vector, stiffness: float
-) -> tuple[Any, Any, Vector]:
+    by_gap: Sparse, by_pressure: Sparse, residual: Vector, weight: Vector, stiffness: float
+) -> tuple[Sparse, Sparse, Vector]:
     """Rows of a normal law divided by minus their derivative by the gap; those that hardly look at it do not at all."""
     slope, give = by_gap.diagonal(), by_pressure.diagonal()
     sees = np.abs(slope) > FAINT * np.abs(give) * stiffness

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +13,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.restraint import Restraint
 from abut.solution.state import State
+from abut.types import Array, Operator
 
 Vector = NDArray[np.float64]
 
@@ -26,8 +26,8 @@ class Rows:
     """
 
     residual: Vector
-    by_displacement: Any
-    by_pressure: Any
+    by_displacement: Operator
+    by_pressure: Operator
     decoupled: NDArray[np.bool_]
     symmetric: bool
 
@@ -51,10 +51,10 @@ class Linearised:
 
     time: float
     factors: Vector
-    stiffness: Any
+    stiffness: Operator
     load: Vector
     pairs: Sequence[Pair]
-    operator: Any
+    operator: Operator
     offset: Vector
     motions: NDArray[np.float64]
     restraint: Restraint
@@ -66,11 +66,11 @@ class Linearised:
         """Number of multipliers."""
         return int(self.operator.shape[0])
 
-    def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+    def split(self, values: Array) -> list[Array]:
         """Values of all multipliers, pair by pair."""
         return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
 
-    def join(self, values: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    def join(self, values: Sequence[Array]) -> Array:
         return np.concatenate(values) if len(values) else np.zeros(0)
 
     @property

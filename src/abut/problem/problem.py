@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,8 +20,10 @@ from abut.problem.linearised import Linearised
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Motion, Share, Term
 from abut.solution.state import State, at_rest
+from abut.types import Operator, Sparse
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
+CONTACTS = "contacts"  # whose history is the slip
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
 
@@ -44,8 +46,8 @@ class Problem(Protocol):
         """The converged state ``now`` with the history that it leaves."""
         ...
 
-    def expand(self, state: State, laws: Laws) -> State:
-        """A solution in all free displacements; laws: the ones it meets."""
+    def expand(self, before: State, state: State, laws: Laws) -> State:
+        """A solution in all free displacements, which follows the converged ``before``; laws: the ones it meets."""
         ...
 
     def restrict(self, state: State) -> State:
@@ -72,10 +74,10 @@ class ContactProblem:
     terms: Sequence[Term]
     held: Supports
     pairs: Sequence[Pair]
-    operator: Any
+    operator: Operator
     restraint: Restraint
     springs: Regularisation
-    stiffness: Any
+    stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
 
@@ -95,12 +97,14 @@ class ContactProblem:
         first, closed = 0, np.zeros(len(offset), dtype=bool)
         for pair in self.pairs:
             own = slice(first, first := first + len(pair))
-            closed[own] = pair.tied | (offset[own] <= TOUCHING * pair.size * pair.weight)
+            touching = offset[own] <= TOUCHING * pair.size * pair.weight
+            closed[own] = pair.of_functions(touching[pair.normal]) if pair.frictional else pair.tied | touching
         return rest.with_closed(closed)
 
     def linearise(self, before: State, now: State) -> Linearised:
         """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
         have no rounding."""
+        slipped = self._slipped(before)
         if self.constant:
             before, now = (replace(state, unknowns=np.zeros(self.n_free)) for state in (before, now))
         at, shares = now.unknowns, self._shares(before, now)
@@ -113,21 +117,22 @@ class ContactProblem:
             load = stiffness @ at - force - self.springs.forces(at)
         factors = weights(self.model.histories, now.time)
         return Linearised(
-            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors), self.motions,
+            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
             self.restraint, load, self.unit or unit_of(stiffness),
         )  # fmt: skip
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
-        if self.constant:
-            return now
-        shares = self._shares(before, now)
         history = before.history
-        for term, share in zip(self.terms, shares):
+        if any(pair.frictional for pair in self.pairs):
+            history = history.with_term(CONTACTS, self._slips(before, now))
+        if self.constant:
+            return now if history is before.history else replace(now, history=history)
+        for term, share in zip(self.terms, self._shares(before, now)):
             history = history.with_term(term.name, share.history)
         return replace(now, history=history)
 
-    def expand(self, state: State, laws: Laws) -> State:
+    def expand(self, before: State, state: State, laws: Laws) -> State:
         """As in ``Problem``: nothing has been condensed."""
         return state
 
@@ -148,10 +153,40 @@ class ContactProblem:
         prescribed = self.held.prescribed @ weights(self.model.histories, state.time)
         return np.asarray(self.held.free @ state.unknowns + prescribed)
 
-    def _offset(self, factors: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``."""
+    def _offset(self, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()) -> NDArray[np.float64]:
+        """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``; slipped: what to
+        leave out of the slip, as from ``_slipped``."""
         own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
+        for pair, gap, before in zip(self.pairs, own, slipped):
+            if pair.frictional:
+                gap[pair.tangential] -= before
         return np.concatenate(own) if own else np.zeros(0)
+
+    def _slipped(self, before: State) -> list[NDArray[np.float64]]:
+        """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, theory (R2);
+        empty
+        without friction."""
+        if not any(pair.frictional for pair in self.pairs):
+            return []
+        factors = weights(self.model.histories, before.time)
+        return [
+            (pair.operator @ before.unknowns + pair.prescribed @ factors)[pair.tangential]
+            if pair.frictional
+            else np.zeros(0)
+            for pair in self.pairs
+        ]
+
+    def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
+        """Slip of each pair with friction by name, (n, 2): in the step that ends ``now``, and in all steps in contact."""
+        system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
+        result = {}
+        for pair, gap, closed in zip(self.pairs, system.split(system.gap(now)), system.split(now.closed)):
+            if pair.frictional:
+                step = gap / pair.weight
+                step[pair.normal] = 0.0
+                total = earlier.get(pair.contact.name, np.zeros((len(pair), 2)))[:, 1]
+                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0)])
+        return result
 
     def _shares(self, before: State, now: State) -> list[Share]:
         """Of every term."""
@@ -162,12 +197,12 @@ class ContactProblem:
         ]
 
 
-def stacked(pairs: Sequence[Pair], n_free: int) -> Any:
+def stacked(pairs: Sequence[Pair], n_free: int) -> Sparse:
     """The operators of all pairs, (n, n_free)."""
     return sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
 
 
-def unit_of(stiffness: Any) -> float:
+def unit_of(stiffness: Sparse) -> float:
     """Size of a stiffness' entries."""
     diagonal = stiffness.diagonal()
     return float(np.median(diagonal)) if len(diagonal) else 1.0

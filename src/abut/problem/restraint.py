@@ -25,6 +25,7 @@ from abut.problem.rigid_modes import (
 
 UNBALANCED = 1e-9  # force that no contact balances, over the sum of all, from which on it moves a body
 SLIGHT = 1e-9  # change of a gap over the motion that is rounding
+EDGES = 16  # of the pyramid round a cone of friction
 NOTHING = 1e-10  # share of a row that works on a rigid motion below which it is rounding
 
 
@@ -62,8 +63,8 @@ class Restraint:
         for p, g, own in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
             if p.tied or not len(p):
                 continue
-            clearance = g / (p.scale * p.stiffness * p.size)  # over the facet size
-            own |= clearance <= clearance.min() + 0.01
+            clearance = (g / (p.scale * p.stiffness * p.size))[p.normal]  # over the facet size
+            own |= p.of_functions(clearance <= clearance.min() + 0.01)
         return result if self._holds(result) else np.ones_like(active)
 
     def unbalanced(self, force: NDArray[np.float64]) -> str:
@@ -90,7 +91,8 @@ class Restraint:
         stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
         opens = np.zeros(plain.shape[1])
         for pair in self.pairs:
-            moved = np.asarray(pair.operator @ moves) / np.asarray(abs(pair.operator).sum(axis=1)).ravel()[:, None]
+            operator = pair.operator if pair.tied else pair.operator[pair.normal]
+            moved = np.asarray(operator @ moves) / np.asarray(abs(operator).sum(axis=1)).ravel()[:, None]
             stays &= (np.abs(moved) < SLIGHT).all(axis=0) if pair.tied else (moved > -SLIGHT).all(axis=0)
             opens += np.where(moved > SLIGHT, moved, 0.0).sum(axis=0)
         for force in forces:
@@ -174,6 +176,8 @@ def _drives(work: NDArray[np.float64], size: float) -> bool:
 def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
     """What a pressure of each multiplier of a pair, or of those ``active``, does on the motions, (rows, m), each of unit
     length; those of ties both ways, and none of those that do nothing but rounding."""
+    if pair.frictional:
+        return _pushes_and_drags(pair, moves, active)
     operator = pair.operator
     if active is not None:
         operator = operator[active]
@@ -184,6 +188,25 @@ def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | 
     keep = length > NOTHING * np.asarray(abs(operator).sum(axis=1)).ravel()
     moved = moved[keep] / length[keep, None]
     return np.concatenate([moved, -moved]) if pair.tied else moved
+
+
+def _pushes_and_drags(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None) -> NDArray[np.float64]:
+    """The same with friction: the edges of each multiplier's cone, theory (R6), or of a pyramid round it in 3D."""
+    moved = np.asarray(pair.operator @ moves) / pair.weight[:, None]
+    there = np.ones(len(pair.space), dtype=bool) if active is None else active[pair.normal]
+    along = [np.where(at[:, None] >= 0, moved[at], 0.0)[there] for at in pair.index.T]
+    push, drags = along[0], along[1:]
+    steep = pair.contact.coefficient
+    if len(drags) == 1:
+        sides = [drags[0], -drags[0]]
+    else:
+        angles = 2.0 * np.pi * np.arange(EDGES) / EDGES
+        sides = [(np.cos(a) * drags[0] + np.sin(a) * drags[1]) / np.cos(np.pi / EDGES) for a in angles]
+    edges = [push, *sides] if np.isinf(steep) else [push, *(push + steep * side for side in sides)]
+    rows = np.concatenate(edges)
+    length = np.linalg.norm(rows, axis=1)
+    keep = length > NOTHING
+    return np.asarray(rows[keep] / length[keep, None])
 
 
 def require_held(restraint: Restraint, loads: Sequence[NDArray[np.float64]]) -> None:
@@ -200,9 +223,13 @@ def require_balance(restraint: Restraint, force: NDArray[np.float64], when: str 
     motion = restraint.unbalanced(force)
     if motion:
         raise SingularModelError(
-            f"{motion}: the loads pull it off its contact{when}, which carries no tension; constrain it by a support or "
-            "reverse the load"
+            f"{motion}: the loads pull it off its contact{when}, which carries no tension{_rub(restraint)}; "
+            "constrain it by a support or reverse the load"
         )
+
+
+def _rub(restraint: Restraint) -> str:
+    return " and friction only up to its coefficient" if any(pair.frictional for pair in restraint.pairs) else ""
 
 
 def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]]) -> None:

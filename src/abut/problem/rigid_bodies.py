@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +12,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model
 from abut.model.conditions import Rigid
 from abut.problem.rigid_modes import motions
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class RigidBody:
         """Displacement of points (n, dim) by the unknowns, (n, dim, n_unknowns)."""
         return motions((points - self.centre) / self.size, self.axisymmetric)
 
-    def columns(self, n_dofs: int) -> Any:
+    def columns(self, n_dofs: int) -> Sparse:
         """Displacement of all points of the mesh by the unknowns, (dim n_points, n_unknowns) sparse."""
         values = self.moved(self.points)
         dim, count = values.shape[1:]

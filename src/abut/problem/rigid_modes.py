@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.mesh.mesh import Mesh
+from abut.types import Sparse
 
 if TYPE_CHECKING:
     from abut.problem.constraints import Supports
@@ -87,7 +88,7 @@ def resistance_of_supports(rigid: RigidModes, held: Supports) -> NDArray[np.floa
     return np.asarray(taken.T @ taken / max(1.0, float(held.free.shape[0] - held.free.shape[1])))
 
 
-def resistance_of_rows(rigid: RigidModes, rows: Any) -> NDArray[np.float64]:
+def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:
     """Gram matrix of constraint rows, each scaled to a unit displacement."""
     if rows.shape[0] == 0:
         return np.zeros((rigid.modes.shape[1],) * 2)

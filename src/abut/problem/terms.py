@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,7 @@ class Share:
     tangent: ``Backend`` that reduces to the free displacements, None for none; history: as in ``Motion``, new."""
 
     force: Vector
-    tangent: Any = None
+    tangent: Backend | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +13,7 @@ from abut.contact.pressure_space import PressureSpace, only, reduce
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,8 @@ class TiedRows:
 
     components: tuple[PressureSpace, ...]
     index: NDArray[np.int64]
-    rows: Any
-    free: Any
+    rows: Sparse
+    free: Sparse
     weight: NDArray[np.float64]
 
 

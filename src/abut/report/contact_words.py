@@ -56,6 +56,12 @@ def lines(contact: ContactResult) -> list[str]:
         )
     if math.isfinite(s.partly_covered):
         result.append(f"where nodes are less than half covered up to {number(s.partly_covered)}, which counts nowhere")
+    if contact.friction is not None:
+        own = contact.friction
+        result.append(
+            f"sticks on {number(own.sticking_area)} and slips on {number(own.slipping_area)} of the area, "
+            f"friction takes {number(own.work)} of work in the step"
+        )
     if np.isfinite(contact.resultant.centre).all():
         result.append(f"centre of pressure {centre(contact)}, moment about the origin {moment(contact)}")
     if some := on_bodies(contact):

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from abut.model import Model
+from abut.types import Json
 
-Table = dict[str, Any]  # title, head (names of columns), rows (lists of text)
+Table = Json  # title, head (names of columns), rows (lists of text)
 
 _GROUPS = (
     ("Supports", "supports"),
@@ -46,7 +47,7 @@ def _bodies(model: Model) -> Table:
     return {"title": "Bodies", "head": ["body", "cells", "material"], "rows": rows}
 
 
-def _subject(record: Any) -> str:
+def _subject(record: object) -> str:
     value = next((getattr(record, name) for name in _SUBJECT if hasattr(record, name)), None)
     return "everywhere" if value is None else _value(value)
 
@@ -63,11 +64,11 @@ def _details(record: Any, *without: str) -> str:
     return ", ".join(parts)
 
 
-def _same(value: Any, default: Any) -> bool:
+def _same(value: object, default: object) -> bool:
     return default is not MISSING and type(value) is type(default) and bool(value == default)
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     if isinstance(value, float | np.floating):
         return f"{float(value):.6g}"
     if isinstance(value, str | int):

@@ -7,10 +7,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from abut.probing.table import peaks
 from abut.solution import Solution, Step
+from abut.types import Json
 
 PROFILE = "contact.profile"
 
@@ -22,7 +22,7 @@ class Origin:
 
     title: str = "abut"
     text: str = ""
-    expected: Mapping[str, Any] = field(default_factory=dict)
+    expected: Mapping[str, object] = field(default_factory=dict)
 
 
 def read_origin(path: Path, text: str) -> Origin:
@@ -49,7 +49,7 @@ def quantities(step: Step) -> dict[str, float]:
     return known
 
 
-def comparison(solution: Solution, expected: Mapping[str, Any]) -> list[dict[str, Any]]:
+def comparison(solution: Solution, expected: Mapping[str, object]) -> list[Json]:
     """Rows quantity, value, expected (words), deviation (relative, or None), passed, source; what cannot be read is left
     out: the file may be somebody else's."""
     known, rows = quantities(solution.steps[-1]), []
@@ -83,7 +83,7 @@ def comparison(solution: Solution, expected: Mapping[str, Any]) -> list[dict[str
     return rows
 
 
-def ellipse(expected: Mapping[str, Any]) -> tuple[float, float, tuple[float, ...]] | None:
+def ellipse(expected: Mapping[str, object]) -> tuple[float, float, tuple[float, ...]] | None:
     """Peak, half width and centre of the elliptic pressure (Hertz) that theory gives along a line, if it does."""
     wanted = expected.get(PROFILE)
     if not isinstance(wanted, dict):
@@ -96,6 +96,6 @@ def ellipse(expected: Mapping[str, Any]) -> tuple[float, float, tuple[float, ...
     return peak, half, tuple(float(c) for c in centre)
 
 
-def _number(table: Mapping[str, Any], key: str) -> float | None:
+def _number(table: Mapping[str, object], key: str) -> float | None:
     value = table.get(key)
     return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else None

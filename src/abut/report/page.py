@@ -8,7 +8,6 @@ import time
 from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
 from abut.solution import Solution
+from abut.types import Json
 
 SCRIPTS = ("plots.js", "parts.js", "view.js", "report.js")
 STYLES = ("libraries.css", "report.css")
@@ -253,7 +253,7 @@ def _plain(values: Iterable[float] | NDArray[np.float64]) -> list[float | None]:
     return [float(f"{value:.7g}") if math.isfinite(value) else None for value in values]
 
 
-def _convergence(solution: Solution) -> dict[str, Any]:
+def _convergence(solution: Solution) -> Json:
     rows = [row for step in solution.steps for row in step.iterations]
     return {
         "step": [row.step for row in rows],
@@ -264,7 +264,7 @@ def _convergence(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _history(solution: Solution) -> dict[str, Any]:
+def _history(solution: Solution) -> Json:
     names = [contact.name for contact in solution.contacts]
     each = [[step.contacts[i] for step in solution.steps] for i in range(len(names))]
     return {
@@ -281,7 +281,7 @@ def _history(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _charts(solution: Solution) -> list[dict[str, Any]]:
+def _charts(solution: Solution) -> list[Json]:
     return [
         {
             "title": chart.title,
@@ -299,7 +299,7 @@ def _opening(line: Line) -> NDArray[np.float64]:
     return line.gap if some else np.full_like(line.gap, np.nan)
 
 
-def _lines(solution: Solution, origin: Origin) -> list[dict[str, Any]]:
+def _lines(solution: Solution, origin: Origin) -> list[Json]:
     theory = ellipse(origin.expected)
     result = []
     for index, contact in enumerate(solution.contacts):

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from abut.mesh.mesh import Mesh
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import largest_pressure, point_fields, vectors
+from abut.types import Array, Json
 
 BUDGET = 9_000_000  # bytes of arrays; a third more as text
 FINE = 30_000  # points on all contact surfaces together, above which they are divided more coarsely
@@ -24,7 +24,7 @@ FIXED = 36  # bytes of a point in all: coordinates, triangles, edges
 class Scene:
     """``data``: what the page's script reads; ``reduced``: what was left out to keep the file small, in words."""
 
-    data: dict[str, Any]
+    data: Json
     reduced: tuple[str, ...]
 
 
@@ -70,14 +70,14 @@ def scene(solution: Solution, budget: int = BUDGET) -> Scene:
     return Scene(data, tuple(reduced))
 
 
-def pack(values: NDArray[Any]) -> dict[str, str]:
+def pack(values: Array) -> dict[str, str]:
     """An array as text: 32-bit floats or unsigned integers, little-endian, base64."""
     real = np.issubdtype(values.dtype, np.floating)
     array = np.ascontiguousarray(values, dtype="<f4" if real else "<u4")
     return {"type": "f4" if real else "u4", "data": base64.b64encode(array.tobytes()).decode("ascii")}
 
 
-def _body(mesh: Mesh, name: str, own: Skin) -> dict[str, Any]:
+def _body(mesh: Mesh, name: str, own: Skin) -> Json:
     return {
         "name": name,
         "points": pack(vectors(mesh.points[own.nodes])),
@@ -87,7 +87,7 @@ def _body(mesh: Mesh, name: str, own: Skin) -> dict[str, Any]:
     }
 
 
-def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> dict[str, Any]:
+def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
     surface: Any = getattr(contact, role)
     body = next((i for i, cells in enumerate(mesh.bodies.values()) if np.isin(surface.cells[:1], cells).any()), 0)
     return {
@@ -102,7 +102,7 @@ def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> dict[str
     }
 
 
-def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> dict[str, Any]:
+def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> Json:
     fields = point_fields(step)
     stress, moved = fields["von_mises"], fields["displacement"]
     bodies = [{"displacement": pack(moved[s.nodes]), "von Mises": pack(stress[s.nodes])} for s in skins]

@@ -64,6 +64,26 @@ class Resultant:
 
 
 @dataclass(frozen=True)
+class FrictionResult:
+    """Friction of one contact pair at the end of a step.
+
+    coefficient: infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets' own nodes,
+    tangential force per area; slip, total_slip: the same, length, of the contactor over the target, in this step and in all
+    steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 stuck, 2 slipping, of a node without a multiplier the
+    highest of its facet; sticking_area, slipping_area: as ``ContactResult.area``; work: that friction takes in this step.
+    """
+
+    coefficient: float
+    traction: NDArray[np.float64]
+    slip: NDArray[np.float64]
+    total_slip: NDArray[np.float64]
+    status: NDArray[np.int32]
+    sticking_area: float
+    slipping_area: float
+    work: float
+
+
+@dataclass(frozen=True)
 class ContactResult:
     """One contact pair at the end of a step.
 
@@ -77,7 +97,7 @@ class ContactResult:
     covered_share: covered area over the contactor's area; checks: the certificate of this step.
     statistics: of the pressure over the loaded area; resultant: force, moment and centre of the contactor's nodal forces.
     contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;
-    body_forces: body of the target -> (dim,) its part of their resultant.
+    body_forces: body of the target -> (dim,) its part of their resultant; friction: where there is any.
     For tied pairs ``pressure`` is the normal part of the tie traction (compression positive), the forces are all of it.
     """
 
@@ -105,3 +125,4 @@ class ContactResult:
     contactor_forces: NDArray[np.float64]
     target_forces: NDArray[np.float64]
     body_forces: Mapping[str, NDArray[np.float64]]
+    friction: FrictionResult | None = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,8 @@ from abut.materials.invariants import von_mises
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.solution import ContactResult, Step
+from abut.solution.contacts import FrictionResult
+from abut.types import Array
 
 NOT_COVERED, OPEN, CLOSED = 0, 1, 2
 CONTACTOR, TARGET = 0, 1
@@ -26,9 +27,9 @@ class Grid:
     """points (n, 2 or 3); blocks of cells (kind, connectivity); arrays over points and over cells (in their order)."""
 
     points: NDArray[np.float64]
-    blocks: tuple[tuple[str, NDArray[Any]], ...]
-    point_data: dict[str, NDArray[Any]]
-    cell_data: dict[str, NDArray[Any]]
+    blocks: tuple[tuple[str, Array], ...]
+    point_data: dict[str, Array]
+    cell_data: dict[str, Array]
 
 
 def field_grid(mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> Grid:
@@ -51,7 +52,7 @@ def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -
 
 def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:
     """Facets of a contact's sides with pressure, multiplier, gap, displacement, contact_force, node at points; status, side
-    and unsettled at cells.
+    and unsettled at cells; with friction also traction, slip, total_slip and friction_status at points (zero on the target).
 
     Each facet has points of its own, so that the multiplier may jump between facets. contact_force (n, 3) is the force at
     the mesh's point ``node``, which all points of that number repeat: over the nodes of a side, each taken once, it adds up
@@ -88,7 +89,7 @@ def vectors(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _side(
     step: Step, contact: ContactResult, side: int
-) -> list[tuple[str, NDArray[np.float64], dict[str, NDArray[Any]], dict[str, NDArray[Any]]]]:
+) -> list[tuple[str, NDArray[np.float64], dict[str, Array], dict[str, Array]]]:
     """The facets of one side by type: kind, points, arrays over points, arrays over cells."""
     surface: Surface = contact.contactor if side == CONTACTOR else contact.target
     pressure = contact.pressure if side == CONTACTOR else contact.target_pressure
@@ -114,8 +115,22 @@ def _side(
             "contact_force": forces[np.searchsorted(ids, nodes)],
             "node": nodes.astype(np.int32),
         }
+        if contact.friction is not None:
+            values |= _friction(contact.friction, own, kind.nodes, side)
         cells = {
             "status": status[own], "side": np.full(len(own), side, dtype=np.int32), "unsettled": unsettled[own],
         }  # fmt: skip
         result.append((kind.name, surface.points[nodes], values, cells))
+    return result
+
+
+def _friction(friction: FrictionResult, facets: NDArray[np.int64], n_nodes: int, side: int) -> dict[str, Array]:
+    """Tangential traction and slips (n, 3), and status (0 open, 1 stuck, 2 slipping), at the nodes of facets."""
+    result: dict[str, Array] = {}
+    for name in ("traction", "slip", "total_slip"):
+        values = getattr(friction, name)
+        here = values[facets, :n_nodes] if side == CONTACTOR else np.zeros((len(facets), n_nodes, values.shape[2]))
+        result[name] = vectors(np.nan_to_num(here).reshape(-1, values.shape[2]))
+    status = friction.status[facets, :n_nodes] if side == CONTACTOR else np.zeros((len(facets), n_nodes), np.int32)
+    result["friction_status"] = status.ravel().astype(np.int32)
     return result

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
-OPEN, CLOSED = np.int8(0), np.int8(1)  # status of a multiplier
+OPEN, CLOSED, SLIPPING = np.int8(0), np.int8(1), np.int8(2)  # status of a multiplier; closed with friction: stuck
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,8 @@ class State:
     """A state of a problem, converged or on trial; what a restart needs.
 
     time: in (0, 1]; unknowns: (n_free,) free displacements; multipliers: (n,) of all contact pairs, pair by pair (pressure,
-    force per area, or the components of a tie's traction); status: (n,) int8, ``OPEN`` or ``CLOSED``; history: of bodies
+    force per area, or the components of a tie's traction); status: (n,) int8, ``OPEN``, ``CLOSED``
+    or, with friction, ``SLIPPING``; history: of bodies
     and contacts; largest: over all converged states up to this one.
     """
 
@@ -57,9 +58,18 @@ class State:
         """(n,) multipliers in contact: the active set."""
         return self.status != OPEN
 
+    @property
+    def slipping(self) -> NDArray[np.bool_]:
+        """(n,) multipliers in contact that slip."""
+        return self.status == SLIPPING
+
     def with_closed(self, closed: NDArray[np.bool_]) -> State:
         """The same with another active set, (n,) bool."""
-        return replace(self, status=np.where(closed, CLOSED, OPEN))
+        return self.with_status(np.where(closed, CLOSED, OPEN))
+
+    def with_status(self, status: NDArray[np.int8]) -> State:
+        """The same with another status of every multiplier, (n,)."""
+        return replace(self, status=status)
 
 
 def at_rest(n_free: int, n_multipliers: int) -> State:

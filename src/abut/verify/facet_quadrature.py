@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
-from abut.cells import CELLS
-from abut.contact.coupling import couple, default_reach
+from abut.cells import CELLS, MAX_FACET_NODES
+from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import by_kind, facet_measure, full_moments, nodal_normals
 from abut.contact.node_to_segment import feet
 from abut.mesh.quadrature import gauss_rule
@@ -49,9 +49,9 @@ def facet_forces(contactor: Surface, target: Surface, points: int) -> NDArray[np
 
 def segment_forces(contactor: Surface, target: Surface) -> NDArray[np.float64]:
     """The same forces integrated on segments, as abut's contact does."""
-    coupling = couple(contactor, target, 0, componentwise=True)
+    coupling = couple(contactor, target, 0, CouplingOptions(componentwise=True))
     own = coupling.target_part[:, -len(target.points) :]
-    return np.asarray(own.T @ np.ones(9 * len(contactor)))
+    return np.asarray(own.T @ np.ones(MAX_FACET_NODES * len(contactor)))
 
 
 def force_error(force: NDArray[np.float64], target: Surface) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -12,15 +11,17 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import full_moments
-from abut.contact.pressure_space import DUAL_P1
+from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.errors import InputError, nearest
 from abut.linear import direct
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
+from abut.types import Sparse
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space
 
@@ -31,6 +32,7 @@ FALLING = 0.2  # beta ~ h^p with p above this falls with the mesh
 WEAK = 0.23  # half of what the weakest stable pair has
 STABLE_PAIRS = "stable pairs have 0.46 to 1.25"
 
+Norm = Callable[[NDArray[np.float64]], NDArray[np.float64]]  # squared, as its matrix times the pressures
 Closed = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # of points (n, dim)
 
 
@@ -98,6 +100,9 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
     wanted = next(c for c in model.contacts if c.name == (contact or names[0]))
     if wanted.kind == "tied":
         raise InputError(f"inf-sup: contact '{wanted.name}' is tied; the test is for the normal pressure of a contact")
+    if wanted.frictional:  # the pressure alone, in the space that friction takes
+        space = DUAL if wanted.pressure in ("auto", DUAL_P1) else wanted.pressure
+        wanted = replace(wanted, friction=0.0, pressure=space)
     held = supports(model)
     if held.free.shape[1] == 0:
         raise InputError("inf-sup: supports hold every displacement (rigid bodies only); leave some free")
@@ -136,7 +141,9 @@ def _measured(own: Pair) -> str:
     name = own.space.name
     if name != DUAL_P1:
         return name
-    kept = abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, 9).max(axis=1) == 0.0
+    kept = (
+        abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, MAX_FACET_NODES).max(axis=1) == 0.0
+    )
     plain = int((kept & (own.coupling.segments > 0)).sum())
     if not plain:
         return f"{name}, dual functions everywhere"
@@ -152,7 +159,7 @@ def _root(values: NDArray[np.float64]) -> float:
     return float(np.sqrt(max(values.min(), 0.0)))
 
 
-def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Any, Any]:
+def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Sparse, Norm]:
     """T as h M (sparse) and as the trace norm (a function), block by block for both passes of a two-pass method."""
     masses, norms, starts = [], [], np.cumsum([0, *(len(p) for p in own)])
     for p in own:
@@ -173,7 +180,9 @@ def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Any, Any]:
     return sp.block_diag(masses, format="csr"), trace
 
 
-def _all_values(full: Any, operator: Any, mesh: Any, trace: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _all_values(
+    full: Sparse, operator: Sparse, mesh: Sparse, trace: Norm
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     solved = direct.factorized(full, definite=True)(operator.T.toarray())
     compliance = operator @ solved
     compliance = 0.5 * (compliance + compliance.T)
@@ -183,7 +192,7 @@ def _all_values(full: Any, operator: Any, mesh: Any, trace: Any) -> tuple[NDArra
 
 
 def _smallest_values(
-    full: Any, operator: Any, mesh: Any, trace: Any, count: int = 2
+    full: Sparse, operator: Sparse, mesh: Sparse, trace: Norm, count: int = 2
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Lanczos on the inverse: one factorisation of [S, -B^T; B, shift T_h] serves both norms."""
     n, m = full.shape[0], operator.shape[0]

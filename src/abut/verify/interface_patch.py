@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut.analysis.certificate import BALANCE, balance
 from abut.bodies.assemble import stiffness
 from abut.bodies.loads import stress_load
+from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import couple, surface_degree
 from abut.contact.geometry import nodal_normals
 from abut.contact.nodal_recovery import facet_node_values
@@ -72,7 +73,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
         raise InputError(
             f"verify: contact '{contact.name}' is {contact.method}, whose pressure is not unique; take another method"
         )
-    contact = replace(contact, kind="contact", law="complementarity", offset=0.0)
+    contact = replace(contact, kind="contact", law="complementarity", offset=0.0, friction=0.0)
     sides = model.sides(contact)
     normal = _plane_normal(model.mesh.axisymmetric, sides)
     bodies = Model(
@@ -83,7 +84,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
     )
     if normal is None:
         own = pair(bodies, contact, supports(bodies), sides=sides)
-        force, moment = balance(own, np.ones(9 * len(own.contactor)))
+        force, moment = balance(own, np.ones(MAX_FACET_NODES * len(own.contactor)))
         return InterfacePatch(contact.name, False, None, None, force, moment)
     stress = -np.outer(normal, normal)
     exact = model.mesh.points @ _strain(stress, model.plane)
@@ -163,7 +164,7 @@ def _load(mesh: Mesh, contactor: Surface, target: Surface, stress: NDArray[np.fl
     (number,) = number_keys(keys)
     boundary = mesh.facets(rows[np.bincount(number)[number] == 1])
     back = couple(target, contactor, surface_degree(target))
-    ones = np.ones(9 * len(target))
+    ones = np.ones(MAX_FACET_NODES * len(target))
     carried = back.contactor_part.T @ ones - back.target_part.T @ ones
     return np.asarray(stress_load(boundary, stress) - carried)
 

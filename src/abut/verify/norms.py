@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,10 +17,11 @@ from abut.mesh.integrals import chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import product_rule
 from abut.mesh.surface import Surface, around
+from abut.types import Sparse
 from abut.verify.trace import TraceSpace
 
 
-def h1_matrix(mesh: Mesh, length: float = 1.0) -> Any:
+def h1_matrix(mesh: Mesh, length: float = 1.0) -> Sparse:
     """int u v / length^2 + grad u . grad v of scalar functions over all cells, (n_points, n_points) CSR."""
     n = len(mesh.points)
     total = sp.csr_matrix((n, n))
@@ -44,7 +44,7 @@ class TraceNorm:
     surface: the norm of H^-1/2, dual to the trace space between L2 and H1. The power is a sum of resolvents (Hale, Higham
     and Trefethen 2008, method 3), so that nothing dense is needed."""
 
-    moments: Any  # C (n_trace, n), sparse
+    moments: Sparse  # C (n_trace, n), sparse
     solves: tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], ...]
     weights: NDArray[np.float64]
 
@@ -54,7 +54,7 @@ class TraceNorm:
         return np.asarray(self.moments.T @ sum(w * solve(c) for w, solve in zip(self.weights, self.solves)))
 
 
-def trace_norm(space: TraceSpace, transfer: Any, length: float = 1.0, accuracy: float = 1e-5) -> TraceNorm:
+def trace_norm(space: TraceSpace, transfer: Sparse, length: float = 1.0, accuracy: float = 1e-5) -> TraceNorm:
     """The H^-1/2 norm of pressures ``transfer @ q`` (facet-wise nodal values) on the contactor, squared to ``accuracy``;
     ``length``: that of the space."""
     largest = _largest(space.full, space.mass)
@@ -63,7 +63,7 @@ def trace_norm(space: TraceSpace, transfer: Any, length: float = 1.0, accuracy: 
     return TraceNorm((space.moments @ transfer).tocsr(), solves, weights)
 
 
-def _largest(full: Any, mass: Any) -> float:
+def _largest(full: Sparse, mass: Sparse) -> float:
     """An upper bound of the eigenvalues of (full, mass): row sums over the lumped mass, with the consistent mass no
     smaller than a tenth of it on quadratic facets."""
     lumped = np.asarray(abs(mass).sum(axis=1)).ravel()

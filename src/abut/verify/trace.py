@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,10 +12,11 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from abut._core import shape_functions
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, facet_measure, facet_sizes, function_count, node_coordinates, pressure_kind
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
+from abut.types import Array, Sparse
 
 SAME = 1e-7  # distance over the smallest facet size below which two nodes are one
 
@@ -26,9 +26,9 @@ class TraceSpace:
     """mass, full: (n, n) int v w and int v w / length^2 + grad v . grad w along the surface; moments: (n, 9 n_facets)
     int v H_k; pressure_mass: (n_facets, 9, 9) int H_k H_l over whole facets."""
 
-    mass: Any
-    full: Any
-    moments: Any
+    mass: Sparse
+    full: Sparse
+    moments: Sparse
     pressure_mass: NDArray[np.float64]
 
 
@@ -48,8 +48,8 @@ def trace_space(
     """
     points: list[NDArray[np.float64]] = []
     nodes: list[NDArray[np.int64]] = []
-    entries: list[tuple[NDArray[Any], ...]] = []
-    pressure_mass = np.zeros((len(surface), 9, 9))
+    entries: list[tuple[Array, ...]] = []
+    pressure_mass = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
     first = 0
     for kind, facets in by_kind(surface):
         facets = facets[share[facets] > 0.0]
@@ -69,15 +69,15 @@ def trace_space(
             entries.append((facets, part.mass, part.full, part.moments @ cut))
             first += len(facets) * count
     merged, n = _merge(np.concatenate(points), SAME * facet_sizes(surface).min())
-    mass: Any = sp.csr_matrix((n, n))
-    full: Any = sp.csr_matrix((n, n))
-    moments: Any = sp.csr_matrix((n, 9 * len(surface)))
+    mass: Sparse = sp.csr_matrix((n, n))
+    full: Sparse = sp.csr_matrix((n, n))
+    moments: Sparse = sp.csr_matrix((n, MAX_FACET_NODES * len(surface)))
     for local, (facets, m, f, c) in zip(nodes, entries):
         own = merged[local]
         rows, columns = np.repeat(own, own.shape[1], axis=1).ravel(), np.tile(own, (1, own.shape[1])).ravel()
         mass = mass + sp.csr_matrix((m.ravel(), (rows, columns)), shape=(n, n))
         full = full + sp.csr_matrix((f.ravel(), (rows, columns)), shape=(n, n))
-        functions = 9 * facets[:, None] + np.arange(c.shape[2])
+        functions = MAX_FACET_NODES * facets[:, None] + np.arange(c.shape[2])
         rows = np.repeat(own, c.shape[2], axis=1).ravel()
         columns = np.tile(functions, (1, own.shape[1])).ravel()
         moments = moments + sp.csr_matrix((c.ravel(), (rows, columns)), shape=moments.shape)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from abut.decks.cards.cards import Card, Line, as_float, key, of
 from abut.decks.cards.mesh_cards import MeshCards
@@ -10,12 +11,21 @@ from abut.decks.cards.reasons import Reasons
 from abut.decks.cards.record import GeneralContact, Numbers, Pair
 from abut.errors import nearest
 
+
+@dataclass(frozen=True)
+class Interaction:
+    """What surfaces do to each other. overclosure: HARD, LINEAR, ...; friction: coefficient."""
+
+    overclosure: str = "HARD"
+    friction: float = 0.0
+
+
 OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
 
 
 def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pair, ...]:
     """Contact pairs and ties in the order of the deck."""
-    overclosures = _overclosures(cards, reasons)
+    interactions = _interactions(cards, reasons)
     clearances: dict[tuple[str, str], Card] = {}
     for card in of(cards, "CLEARANCE"):
         with reasons.gathered():
@@ -28,20 +38,20 @@ def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pai
                     name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
                     result.append(Pair(name, slave, master, True, "TIED", "all", None, line.place))
             elif card.key == "CONTACTPAIR":
-                result += _contact_pairs(card, mesh, overclosures, clearances)
+                result += _contact_pairs(card, mesh, interactions, clearances)
     for (slave, master), card in clearances.items():
         reasons.add(card.unknown(f"no *CONTACT PAIR of slave {slave} and master {master}"))
     return tuple(result)
 
 
 def _contact_pairs(
-    card: Card, mesh: MeshCards, overclosures: Mapping[str, str], clearances: dict[tuple[str, str], Card]
+    card: Card, mesh: MeshCards, interactions: Mapping[str, Interaction], clearances: dict[tuple[str, str], Card]
 ) -> list[Pair]:
     """The pairs of one card; takes what belongs to them from ``clearances``."""
     interaction, result = card.need("INTERACTION"), []
-    if interaction.upper() not in overclosures:
-        raise card.unknown(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, overclosures)}")
-    overclosure = overclosures[interaction.upper()]
+    if interaction.upper() not in interactions:
+        raise card.unknown(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, interactions)}")
+    own = interactions[interaction.upper()]
     for line, slave, master in sides(card, mesh):
         given = clearances.pop((slave.upper(), master.upper()), None)
         clearance = None
@@ -49,39 +59,40 @@ def _contact_pairs(
             clearance = as_float(given.need("VALUE"))
             if clearance is None:
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
-        tied, name = overclosure == "TIED", f"{slave}-{master}"
-        result.append(Pair(name, slave, master, tied, overclosure, _adjust(card, mesh), clearance, line.place))
+        tied, name = own.overclosure == "TIED", f"{slave}-{master}"
+        adjust, friction = _adjust(card, mesh), 0.0 if tied else own.friction
+        result.append(Pair(name, slave, master, tied, own.overclosure, adjust, clearance, line.place, friction))
     return result
 
 
 def general_contact(cards: Sequence[Card], reasons: Reasons) -> GeneralContact | None:
     """Contact of everything outside, if the deck asks for it, with the interaction given to all of it."""
-    overclosures = _overclosures(cards, reasons)
+    interactions = _interactions(cards, reasons)
     found: GeneralContact | None = None
     with reasons.gathered():
-        found = _general_contact(cards, overclosures)
+        found = _general_contact(cards, interactions)
     return found
 
 
-def _general_contact(cards: Sequence[Card], overclosures: Mapping[str, str]) -> GeneralContact | None:
+def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interaction]) -> GeneralContact | None:
     found: Card | None = None
     for card in of(cards, "CONTACT INCLUSIONS"):
         if not card.has("ALL EXTERIOR"):
             raise card.error("only ALL EXTERIOR is supported; name single surfaces in *CONTACT PAIR")
         found = card
-    overclosure = "HARD"
+    own = Interaction()
     for card in of(cards, "CONTACT PROPERTY ASSIGNMENT"):
         for line in card.lines:
             if line.text(0) or line.text(1):
                 raise line.error("an interaction for single surfaces is not supported; name them in *CONTACT PAIR")
             name = line.text(2)
-            if name.upper() not in overclosures:
-                raise line.unknown(f"no *SURFACE INTERACTION named {name!r}{nearest(name, overclosures)}")
-            overclosure = overclosures[name.upper()]
+            if name.upper() not in interactions:
+                raise line.unknown(f"no *SURFACE INTERACTION named {name!r}{nearest(name, interactions)}")
+            own = interactions[name.upper()]
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
-    return None if found is None else GeneralContact(overclosure, found.place)
+    return None if found is None else GeneralContact(own.overclosure, found.place, own.friction)
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
@@ -112,20 +123,43 @@ def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
     return mesh.node_sets.sets[text.upper()]
 
 
-def _overclosures(cards: Sequence[Card], reasons: Reasons) -> dict[str, str]:
-    """How pressure follows overclosure, by interaction."""
-    result: dict[str, str] = {}
+def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interaction]:
+    """Interactions by name."""
+    result: dict[str, Interaction] = {}
     current = ""
     for card in cards:
         with reasons.gathered(defines=True):
             if card.key == "SURFACEINTERACTION":
                 current = card.need("NAME").upper()
-                result[current] = "HARD"
+                result[current] = Interaction()
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
                 overclosure = key(card.get("PRESSURE-OVERCLOSURE", "HARD") or "HARD")
                 if overclosure not in OVERCLOSURES:
                     raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
-                result[current] = overclosure
+                result[current] = replace(result[current], overclosure=overclosure)
+            elif card.key == "FRICTION":
+                if not current:
+                    raise card.error("it must follow a *SURFACE INTERACTION")
+                result[current] = replace(result[current], friction=_coefficient(card))
     return result
+
+
+def _coefficient(card: Card) -> float:
+    card.first("coefficient of friction")
+    if len(card.lines) > 1:
+        raise card.error("a coefficient that depends on anything is not supported; give one")
+    value = as_float(card.lines[0].text(0))
+    if value is None or value < 0.0:
+        raise card.error(f"expected a coefficient >= 0, got {card.lines[0].text(0)!r}")
+    return value
+
+
+def stick_slopes(cards: Sequence[Card]) -> list[str]:
+    """A note for each card with a stick slope, which abut's friction does without."""
+    return [
+        f"{card.place}: *FRICTION: the stick slope is left out: points stick exactly"
+        for card in cards
+        if card.key == "FRICTION" and card.lines and card.lines[0].text(1)
+    ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.cells import CELLS
+from abut.cells import CELLS, MAX_FACET_NODES
 from abut.decks.cards.elements import FACES
 from abut.decks.cards.reasons import DeckError
 from abut.decks.cards.record import Block, Deck, Faces, Numbers
@@ -31,7 +31,7 @@ def free_faces(deck: Deck) -> FreeFaces:
     for block in deck.blocks:
         for local, (kind, own) in enumerate(CELLS[block.type.kind].facets):
             count = CELLS[kind].corners
-            padded = np.full((len(block.ids), 9), -1, np.int64)
+            padded = np.full((len(block.ids), MAX_FACET_NODES), -1, np.int64)
             padded[:, : len(own)] = block.nodes[:, own]
             key = np.full((len(block.ids), 4), -1, np.int64)
             key[:, :count] = np.sort(padded[:, :count], axis=1)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from abut.decks.cards.cards import Card, as_float, key, read_cards
-from abut.decks.cards.contact_cards import general_contact, pairs
+from abut.decks.cards.contact_cards import general_contact, pairs, stick_slopes
 from abut.decks.cards.mesh_cards import MeshCards, mesh_cards
 from abut.decks.cards.model_cards import (
     cyclic_symmetry,
@@ -32,6 +32,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     notes: list[str] = []
     reasons = Reasons()
     sifted = sift(_without_void_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
+    notes += stick_slopes(sifted.cards)
     if not sifted.plain:
         reasons.tell()
     cards = sifted.cards

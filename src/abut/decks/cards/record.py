@@ -63,7 +63,7 @@ class Section:
 @dataclass(frozen=True)
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
-    clearance: the gap given for all of the surface, None for the one of the mesh."""
+    clearance: the gap given for all of the surface, None for the one of the mesh; friction: coefficient."""
 
     name: str
     slave: str
@@ -73,14 +73,16 @@ class Pair:
     adjust: float | str | Numbers
     clearance: float | None
     place: Place
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)
 class GeneralContact:
-    """Contact of all exterior surfaces; overclosure as for a pair."""
+    """Contact of all exterior surfaces; overclosure and friction as for a pair."""
 
     overclosure: str
     place: Place
+    friction: float = 0.0
 
     @property
     def tied(self) -> bool:

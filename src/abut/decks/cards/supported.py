@@ -31,6 +31,7 @@ READ: dict[str, tuple[str, ...]] = {
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
     "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR"),
     "SURFACE INTERACTION": ("NAME",),
+    "FRICTION": (),
     "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE"),
     "CONTACT": (),
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
@@ -85,7 +86,7 @@ REFUSED: dict[str, str] = {
     "BEAM SECTION": "beams are not supported; model the part with solid elements",
     "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
-    "CHANGE FRICTION": "friction is not supported; contact is frictionless or tied",
+    "CHANGE FRICTION": "friction that changes between steps is not supported; make a deck for each state",
     "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
     "CHANGE SURFACE BEHAVIOR": "contact that changes between steps is not supported; make a deck for each state",
     "CHANGE SOLID SECTION": "materials that change between steps are not supported; make a deck for each state",
@@ -104,7 +105,6 @@ REFUSED: dict[str, str] = {
     "ELGEN": f"generated elements are not read{_WRITE}",
     "ELCOPY": f"generated elements are not read{_WRITE}",
     "FILM": "heat films belong to heat transfer, which abut does not solve",
-    "FRICTION": "friction is not supported; contact is frictionless, or tied (PRESSURE-OVERCLOSURE=TIED)",
     "GAP": "gap elements are not supported; use *CONTACT PAIR",
     "HYPERELASTIC": f"rubber elasticity is not supported{_MATERIAL}",
     "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
@@ -150,6 +150,7 @@ NEEDED = {  # leaving these out would leave no deck
     *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
 }
 
+LEFT_OUT = {"FRICTION"}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
@@ -198,7 +199,7 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
         elif card.key in _QUIET:
             quiet[card.title] = None
-        elif card.key in _READ:
+        elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
             _parameters(card, asked, ignored, found)
             code = key(card.get("TYPE") or "")
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
@@ -275,7 +276,7 @@ def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> No
     parameters |= {parameter for _, parameter in _PARAMETERS}
     for name in ignore:
         own = key(name.lstrip("*"))
-        if own in _READ and own not in parameters:
+        if own in _READ and own not in parameters | LEFT_OUT:
             raise InputError(f"--ignore {name}: abut reads *{name.upper()}, which cannot be left out")
-        if own not in _REFUSED.keys() | present | parameters | _QUIET:
-            raise InputError(f"--ignore {name}: no such card{nearest(name.upper(), [*REFUSED, 'NLGEOM'])}")
+        if own not in _REFUSED.keys() | present | parameters | _QUIET | LEFT_OUT:
+            raise InputError(f"--ignore {name}: no such card{nearest(name.upper(), [*REFUSED, *LEFT_OUT, 'NLGEOM'])}")

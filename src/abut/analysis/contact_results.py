@@ -1,0 +1,181 @@
+"""What a user reads of one contact pair at the end of a step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.analysis.certificate import NOTHING, Surroundings, certificate
+from abut.analysis.friction import friction_checks, friction_forces, friction_result
+from abut.analysis.statistics import (
+    forces_on_bodies,
+    loaded_part,
+    nodal_forces,
+    nodal_parts,
+    pressure_statistics,
+    resultant,
+)
+from abut.contact.geometry import full_moments, nodal_normals
+from abut.contact.nodal_recovery import (
+    Averages,
+    at_facet_nodes,
+    averages,
+    carry_to_target,
+    corner_values,
+    facet_node_values,
+)
+from abut.contact.symmetry_planes import evened
+from abut.mesh.mesh import Mesh
+from abut.model import METHODS
+from abut.problem.contact_pairs import Pair
+from abut.solution import ContactResult, PressureStatistics, Resultant
+from abut.solution.state import OPEN
+
+
+@dataclass(frozen=True)
+class PairState:
+    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all;
+    pressure, weight int H_k, weighted gap and contact of the multipliers that are pressures (of a tie: all)."""
+
+    pair: Pair
+    multipliers: NDArray[np.float64]
+    status: NDArray[np.int8]
+    slips: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    closed: NDArray[np.bool_]
+
+    @classmethod
+    def of(
+        cls,
+        pair: Pair,
+        multipliers: NDArray[np.float64],
+        gap: NDArray[np.float64],
+        status: NDArray[np.int8],
+        slips: NDArray[np.float64] | None,
+    ) -> PairState:
+        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet."""
+        every = slice(None) if pair.tied else pair.normal
+        slips = np.zeros((len(pair), 2)) if slips is None else slips
+        pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
+        return cls(pair, multipliers, status, slips, pressure, weight, gap, status[every] != OPEN)
+
+    @cached_property
+    def values(self) -> NDArray[np.float64]:
+        """Facet-wise coefficients of the pressure, (9 n_facets,), or of a tie's traction, (9 n_facets, dim)."""
+        pair = self.pair
+        return pair.traction(self.pressure) if pair.tied else np.asarray(pair.space.transfer @ self.pressure)
+
+    @cached_property
+    def normal(self) -> NDArray[np.float64]:
+        """The same of the pressure, compression positive, (9 n_facets,)."""
+        return _compression(self.pair, self.values) if self.pair.tied else self.values
+
+    @property
+    def gaps(self) -> NDArray[np.float64]:
+        """The same of the gap, a length; ties have none."""
+        if self.pair.tied:
+            return np.zeros_like(self.normal)
+        return np.asarray(self.pair.space.plain @ (self.gap / self.weight))
+
+    @property
+    def penetration(self) -> float:
+        """The largest, a length."""
+        return 0.0 if self.pair.tied else max(float((-self.gap / self.weight).max(initial=0.0)), 0.0)
+
+    @property
+    def forces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Nodal forces on all points, on the contactor's side and on the target's, (n_points, dim)."""
+        if self.pair.frictional:
+            return friction_forces(self.pair, self.multipliers)
+        return nodal_forces(self.pair.coupling, self.values, self.pair.contactor.dim)
+
+    @property
+    def area(self) -> float:
+        """Where contact is closed."""
+        pair = self.pair
+        return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
+
+
+def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surroundings) -> ContactResult:
+    """residual: of the contact law."""
+    pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
+    forces, others = own.forces
+    ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
+    covered = coupling.segments > 0
+    at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
+    raw = facet_node_values(pair.contactor, degree, own.normal)
+    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(own, at))
+    share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
+    statistics, amount = _statistics(mesh, own, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    shown = corner_values(pair.contactor, nodal)
+    return ContactResult(
+        name=pair.contact.name,
+        contactor=pair.contactor,
+        target=pair.target,
+        force=amount.force,
+        max_pressure=statistics.largest,
+        area=own.area,
+        max_penetration=own.penetration,
+        active=int(own.closed.sum()),
+        multipliers=len(own.pressure),
+        removed=pair.space.removed,
+        segments=int(coupling.segments.sum()),
+        pressure=nodal,
+        multiplier=raw,
+        share=share,
+        gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, own.gaps), np.nan),
+        covered=covered,
+        covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
+        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
+        + friction_checks(pair, own.multipliers, own.status, own.slips, around.reference),
+        statistics=statistics,
+        resultant=amount,
+        contactor_forces=forces[ids],
+        target_forces=others[target_ids],
+        body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
+        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips),
+    )
+
+
+def _statistics(
+    mesh: Mesh,
+    own: PairState,
+    at: Averages | None,
+    nodal: NDArray[np.float64],
+    share: NDArray[np.float64],
+    nothing: float,
+) -> tuple[PressureStatistics, Resultant]:
+    """nodal, share: (n_facets, 9) reported pressure and covered share; nothing: pressure that is left after unloading."""
+    pair = own.pair
+    fields = own.normal, loaded_part(pair, own.pressure, own.closed, own.normal)
+    load, loaded = (nodal_parts(pair.coupling, at, field) for field in fields)
+    forces, _ = own.forces
+    ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
+    return (
+        pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
+        resultant(mesh.points[ids], forces[ids], mesh.axisymmetric, none),
+    )
+
+
+def _reported(own: PairState, at: Averages) -> NDArray[np.float64]:
+    """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients, by
+    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
+    planes of symmetry mended, theory (P14)."""
+    pair, average = own.pair, at.of(own.normal)
+    if pair.tied or (own.closed.all() and pair.space.continuous and pair.space.ordinary):
+        sharp = at.sharpened(average, at.surface.points)
+        if pair.tied or sharp.min() >= 0.0:
+            return sharp
+    return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
+
+
+def _compression(pair: Pair, traction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normal part of the tie traction, facet-wise coefficients, compression positive."""
+    normals = nodal_normals(pair.contactor).reshape(traction.shape)
+    return np.asarray(-np.einsum("ka,ka->k", normals, traction))

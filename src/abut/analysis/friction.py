@@ -1,0 +1,104 @@
+"""Friction of a contact at the end of a step: tractions, slips, and the lines of its certificate."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.contact.geometry import by_kind, function_count
+from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
+from abut.problem.contact_pairs import Pair
+from abut.solution import Check, FrictionResult
+from abut.solution.state import CLOSED, OPEN, SLIPPING
+
+CONE = 1e-6  # traction beyond the bound, over the largest pressure
+OPPOSED = 1e-6  # power that slip in another direction than the traction's would need, over the largest
+STUCK = 1e-6  # slip that sticking points may have left, as a pressure over the largest
+WORK = 1e-6  # friction that gives work back, over the largest of one multiplier
+Vector = NDArray[np.float64]
+
+
+def traction_values(pair: Pair, multipliers: Vector) -> Vector:
+    """Tangential traction on the contactor as facet-wise coefficients, (9 n_facets, dim)."""
+    return np.asarray(pair.space.transfer @ pair.tangential_traction(multipliers))
+
+
+def friction_result(
+    pair: Pair, at: Averages, multipliers: Vector, status: NDArray[np.int8], slips: Vector
+) -> FrictionResult | None:
+    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; None without friction."""
+    if not pair.frictional:
+        return None
+    weight, own = pair.space.weight, status[pair.normal]
+    traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
+    values = traction_values(pair, multipliers)
+    shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
+    return FrictionResult(
+        coefficient=pair.contact.coefficient,
+        traction=np.stack(shown, axis=-1),
+        slip=_at_nodes(pair, slip),
+        total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
+        status=_status_at_nodes(pair, own),
+        sticking_area=float(weight[own == CLOSED].sum()),
+        slipping_area=float(weight[own == SLIPPING].sum()),
+        work=-float((weight * np.einsum("kd,kd->k", traction, slip))[own != OPEN].sum()),
+    )
+
+
+def _at_nodes(pair: Pair, values: Vector) -> Vector:
+    """Vectors (n_functions, dim) at the facets' nodes, (n_facets, 9, dim), NaN where padded."""
+    own = pair.space.plain @ values
+    degree = pair.coupling.degree
+    return np.stack([facet_node_values(pair.contactor, degree, component) for component in own.T], axis=-1)
+
+
+def _status_at_nodes(pair: Pair, status: NDArray[np.int8]) -> NDArray[np.int32]:
+    """Status (n_functions,) at the facets' nodes, (n_facets, 9), 0 where padded; a node that has no function of its own, as
+    in the middle of an edge, has the highest of the facet."""
+    uses = pair.space.plain.copy()
+    uses.data = np.ones_like(uses.data)
+    rows = uses.multiply(status[None, :].astype(float)).tocsr().max(axis=1).toarray().reshape(-1, 9)
+    result = np.where(pair.contactor.nodes >= 0, rows.max(axis=1, keepdims=True), 0.0)
+    for kind, facets in by_kind(pair.contactor):
+        n = function_count(kind, pair.coupling.degree)
+        result[facets, :n] = rows[facets, :n]
+    return result.astype(np.int32)
+
+
+def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
+    """Nodal forces of pressure and friction on all points, on the contactor's side and on the target's, (n_points, dim)."""
+    force = np.asarray(pair.rows.T @ multipliers).reshape(-1, pair.contactor.dim)
+    mine = np.zeros((len(force), 1), dtype=bool)
+    mine[pair.contactor.node_ids] = True
+    return np.where(mine, force, 0.0), np.where(mine, 0.0, force)
+
+
+def friction_checks(
+    pair: Pair, multipliers: Vector, status: NDArray[np.int8], slips: Vector, largest: float
+) -> tuple[Check, ...]:
+    """What a solution with friction must meet at every multiplier. largest: pressure, now or in a step before."""
+    if not pair.frictional:
+        return ()
+    name, own, coefficient = pair.contact.name, status[pair.normal], pair.contact.coefficient
+    pressure = np.maximum(multipliers[pair.normal], 0.0)
+    traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
+    size, way = np.linalg.norm(traction, axis=1), np.linalg.norm(slip, axis=1)
+    bound = coefficient * pressure if np.isfinite(coefficient) else np.where(own != OPEN, np.inf, 0.0)
+    largest = max(largest, float(pressure.max(initial=0.0)), 1e-300)
+    slips_now, sticks = own == SLIPPING, own == CLOSED
+    power = np.einsum("kd,kd->k", traction, slip)
+    against = (size * way + power)[slips_now]
+    most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, 1e-300)
+    work = -(power * pair.space.weight)[own != OPEN]
+    unit = max(float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
+    values = (
+        ("friction cone", max(float((size - bound).max(initial=0.0)), 0.0) / largest, CONE,
+         "tangential traction beyond the coefficient times the pressure, over the largest pressure"),
+        ("slip direction", float(against.max(initial=0.0)) / most, OPPOSED,
+         "power that is missing because slip is not opposite to the traction, over the largest"),
+        ("sticking", float(way[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
+         "slip of sticking points in the step, as a pressure over the largest pressure"),
+        ("friction work", max(-float(work.min(initial=0.0)), 0.0) / unit, WORK,
+         "work that friction gives back at a point in the step, over the largest that it takes"),
+    )  # fmt: skip
+    return tuple(Check(name, *line) for line in values)

@@ -1,0 +1,163 @@
+"""A run: a model set up, marched through its load steps, and what is told on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
+from abut.analysis.results import step_result
+from abut.analysis.step_records import check_order, restored, saved_step
+from abut.errors import SingularModelError
+from abut.linear.solver import LinearSolver, NotConverged
+from abut.model import Model
+from abut.model.conditions import weights
+from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
+from abut.probing import Place, find_places, read
+from abut.problem.assembly import Assembled, assemble, prescribed
+from abut.problem.clock import Clock
+from abut.problem.restraint import require_balance
+from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution.state import State
+
+if TYPE_CHECKING:
+    from abut.parallel.team import Team
+
+ABSURD = 1e6  # displacement over model size that no units explain
+
+
+@dataclass
+class Told:
+    """What a run says: to whom, and the notes so far."""
+
+    observe: Observer
+    notes: list[str] = field(default_factory=list)
+
+    def note(self, text: str) -> None:
+        self.notes.append(text)
+        self.observe(text)
+
+
+@dataclass
+class Run:
+    """A model ready to be solved; ``steps`` grows, and the linear solver may be replaced. kind: "direct" or "amg"."""
+
+    model: Model
+    told: Told
+    keep: OnStep
+    team: Team | None
+    clock: Clock
+    places: Sequence[Place]
+    assembled: Assembled
+    kind: str
+    solver: LinearSolver
+    steps: list[Step] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
+        """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
+        told, clock = Told(observe), Clock()
+        places = find_places(model)
+        for text in (text for place in places for text in place.notes):
+            told.note(text)
+        if team is None and model.solve.linear == "petsc":
+            from abut.parallel.team import start_team
+
+            team = start_team()
+        held, loaded = prescribed(model)
+        clock.mark("set-up")
+        backend = assembled_bodies(model, observe, told.note, clock, team)
+        assembled = assemble(model, held, loaded, backend, observe, told.note, clock)
+        problem = assembled.problem
+        check_order(resume, problem.n_free, int(problem.operator.shape[0]))
+        kind = solver_kind(problem, team)
+        if resume and model.solve.linear in ("auto", "petsc"):
+            kind = resume[-1].linear
+        return cls(model, told, keep, team, clock, places, assembled, kind, linear_solver(kind, problem, team))
+
+    def restore(self, done: Sequence[Saved]) -> State:
+        """Take up the steps done before; the state to go on from."""
+        if not done:
+            return self.assembled.problem.start()
+        self.told.observe(Phase("restoring the steps done before"))
+        for saved in done:
+            self.steps.append(self._result(restored(saved)))
+        self.clock.mark("results")
+        return done[-1].state
+
+    def march(self, first: State) -> None:
+        """Solve the steps that are left, each told and kept as it ends."""
+        problem, observe, solve = self.assembled.problem, self.told.observe, self.model.solve
+        times = [t for t in solve.ends if not self.steps or t > first.time * (1.0 + 1e-12)]
+        count = len(self.steps) + len(times)
+
+        def begins(number: int, time: float) -> None:
+            of_all = max(count, number)
+            observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
+            loads = problem.held.free.T @ (self.assembled.loaded.forces @ weights(self.model.histories, time))
+            require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
+
+        def prepares(what: LinearSolver) -> None:
+            observe(Phase(*setting_up(what, problem)))
+
+        def halves(attempt: Attempt, time: float) -> None:
+            self.told.note(
+                f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations: it goes to time "
+                f"{time:.6g} first, not to {attempt.state.time:.6g}"
+            )
+
+        friction = any(pair.frictional for pair in problem.pairs)
+        schedule: Schedule = Automatic(times, first.time) if friction else Fixed(times)
+        control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
+        for attempt in march(problem, first, schedule, self.solver, control, len(self.steps) + 1):
+            self.clock.mark("solve")
+            observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
+            self._end(attempt)
+        if self.solver.count is not None:
+            self.told.note(f"{self.solver.count.iterations} linear iterations in all")
+
+    def so_far(self, complete: bool) -> Solution:
+        """The steps up to here; complete: there are no more to come."""
+        n_free, timings = self.assembled.problem.n_free, dict(self.clock.timings)
+        return Solution(
+            self.model, tuple(self.steps), n_free, self.solver.name, tuple(self.told.notes), timings, complete
+        )
+
+    def _result(self, attempt: Attempt) -> Step:
+        step = step_result(self.assembled, attempt, self.steps)
+        _check_size(self.model, step.displacement, self.told.note)
+        return replace(step, probes=tuple(read(place, step) for place in self.places))
+
+    def _end(self, attempt: Attempt) -> None:
+        self.steps.append(self._result(attempt))
+        self.clock.mark("results")
+        if attempt.converged:
+            self.keep(self.so_far(complete=False), saved_step(attempt, self.kind))
+            self.clock.mark("writing")
+        else:
+            self.told.note(f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations")
+
+    def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
+        self.told.note(f"step {number}: {reason}: going on with the direct solver")
+        self.solver, self.kind = linear_solver("direct", self.assembled.problem, self.team), "direct"
+        return self.solver
+
+
+def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:
+    """Displacements beyond the size of the model mean wrong units, or a matrix that is singular in all but name."""
+    extent = float(np.ptp(model.mesh.points, axis=0).max())
+    largest = float(np.abs(displacement).max(initial=0.0))
+    if not largest < ABSURD * extent:
+        raise SingularModelError(
+            f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}: check the "
+            "units of Young's moduli, loads and mesh, and that supports constrain every body"
+        )
+    if largest > extent:
+        note(
+            f"displacements of {largest:.2g} exceed the model size {extent:.2g}: check units (displacements must be small)"
+        )

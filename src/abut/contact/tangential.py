@@ -1,0 +1,74 @@
+"""Tangential jumps of a contact pair: operators for the slip of the contactor over its target, and a frame for it at every
+node of the contactor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.coupling import IntegrationPoints
+
+UNEVEN = 1e-6  # difference of the shares that supports hold of two tangents, above which the frame follows them
+HELD = 1e-9  # share of a tangent along which a node can move, below which it cannot
+Array = NDArray[np.float64]
+
+
+def slip_operators(at: IntegrationPoints) -> tuple[Any, ...]:
+    """int H_k d . (u_C - u_T) for directions d in the tangent plane of each integration point, facet by facet, theory (R1):
+    (9 n_facets, dim n_points) sparse each. In 2D d is the normal turned by a right angle; in 3D there are three, the
+    axes less their normal parts."""
+    normal = at.normal
+    dim = normal.shape[1]
+    entries = at.gap_operator.tocoo()
+    along = entries.data * normal[entries.row, entries.col % dim]
+    shapes = sp.csr_matrix(  # of the contactor, minus those of the target: the normal part of each, put together
+        (along, (entries.row, entries.col // dim)), shape=(len(normal), at.gap_operator.shape[1] // dim)
+    )
+    if dim == 2:
+        fields = [turned(normal)]
+    else:
+        fields = [np.eye(dim)[a] - normal * normal[:, [a]] for a in range(dim)]
+    return tuple(_integrated(at, shapes, field) for field in fields)
+
+
+def _integrated(at: IntegrationPoints, shapes: Any, field: Array) -> Any:
+    """int H_k d . (u_C - u_T); field: (n, dim) the direction d at every integration point."""
+    dim, total = field.shape[1], None
+    for a in range(dim):
+        scalar = (at.pressure.T @ sp.diags(at.weight * field[:, a]) @ shapes).tocoo()
+        own = sp.csr_matrix(
+            (scalar.data, (scalar.row, dim * scalar.col + a)), shape=(scalar.shape[0], dim * scalar.shape[1])
+        )
+        total = own if total is None else total + own
+    return total
+
+
+def turned(normal: Array) -> Array:
+    """Unit normals (n, 2) turned by a right angle, against the clock."""
+    return np.column_stack([-normal[:, 1], normal[:, 0]])
+
+
+def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Tangents (n, dim - 1, dim) square to each other and to unit normals (n, dim), and which of them, (n, dim - 1) bool,
+    point where the contactor's node can move.
+
+    moves: (n, dim, dim), projector on the directions in which each node can move. In 3D the frame follows what supports
+    hold, so that a tangent is free or held and never both; else its first tangent is the axis nearest to the plane."""
+    dim = normals.shape[1]
+    if dim == 2:
+        tangents = turned(normals)[:, None]
+    else:
+        axis = np.eye(dim)[np.abs(normals).argmin(axis=1)]
+        first = axis - normals * np.einsum("nd,nd->n", axis, normals)[:, None]
+        first /= np.linalg.norm(first, axis=1, keepdims=True)
+        tangents = np.stack([first, np.cross(normals, first)], axis=1)
+        inside = np.einsum("nad,nde,nbe->nab", tangents, moves, tangents)
+        level = 0.5 * np.trace(inside, axis1=1, axis2=2)[:, None, None] * np.eye(2)
+        uneven = np.abs(inside - level).max(axis=(1, 2), initial=0.0) > UNEVEN
+        turn = np.linalg.eigh(inside[uneven])[1]
+        tangents[uneven] = np.einsum("nab,nad->nbd", turn, tangents[uneven])
+    free = np.einsum("nad,nde,nae->na", tangents, moves, tangents) > HELD
+    return tangents, free

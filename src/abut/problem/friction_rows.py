@@ -1,0 +1,62 @@
+"""The multipliers of a contact with friction: pressure, and traction along the tangents of the contactor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.geometry import side_normals
+from abut.contact.pressure_space import PressureSpace, only
+from abut.contact.tangential import frames
+from abut.mesh.surface import Surface
+from abut.problem.constraints import Supports
+from abut.problem.held_multipliers import NO_EFFECT, row_norms
+
+
+@dataclass(frozen=True)
+class Slip:
+    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
+    dim) unit, at the node of each function of the pressure."""
+
+    operators: tuple[Any, ...]
+    tangents: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FrictionRows:
+    """Multipliers component by component, the pressure first. components: the space of each; index: (n_functions, dim) the
+    multiplier of each function and component, -1 where there is none; rows: (n, dim n_points) on all displacements."""
+
+    components: tuple[PressureSpace, ...]
+    index: NDArray[np.int64]
+    rows: Any
+    slip: Slip
+
+
+def friction_rows(
+    contactor: Surface, space: PressureSpace, normal: Any, operators: tuple[Any, ...], held: Supports
+) -> FrictionRows:
+    """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
+    as at a plane of symmetry, there is no traction along it."""
+    dim, n = contactor.dim, len(space)
+    _, at = side_normals(contactor)
+    normals = -at[space.side]  # from target to contactor
+    axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
+    tangents, free = frames(normals, np.stack(axes, axis=1))
+    fields = [(space.transfer.T @ own).tocsr() for own in operators]
+    index, first = np.full((n, dim), -1), n
+    index[:, 0] = np.arange(n)
+    rows, components = [normal], [space]
+    for b in range(dim - 1):
+        parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
+        own = sum(parts[1:], parts[0]).tocsr()
+        keep = free[:, b] & (row_norms(own @ held.free) > NO_EFFECT * space.weight)
+        rows.append(own[keep])
+        components.append(only(space, keep))
+        index[keep, 1 + b] = first + np.arange(int(keep.sum()))
+        first += int(keep.sum())
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents))

@@ -1,0 +1,80 @@
+"""Every job file in examples/ is found, loads, and (but for the long ones) runs to balance."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import abut
+from abut.job import load_job
+from abut.report.lines import pressure_lines
+from abut.report.origin import PROFILE, ellipse
+from abut.report.origin import quantities as known_quantities
+
+FOLDER = Path(__file__).parents[2] / "examples"
+JOBS = [path for path in sorted(FOLDER.rglob("*.toml")) if path.parent.name != "faulty"]  # those: test_check.py
+LONG = {"pin-lug", "hertz-sphere"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(p, marks=[pytest.mark.long] if p.parent.name in LONG else []) for p in JOBS],
+    ids=lambda p: f"{p.parent.name}-{p.stem}",
+)
+def test_example_runs_and_balances(path: Path) -> None:
+    """Supports carry what the loads bring; the contact carries it from body to body (to 1e-9 of the load)."""
+    solution = abut.solve(load_job(path).model)
+    assert solution.converged
+    step = solution.steps[-1]
+    check_expected(path, step)
+    size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
+    balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
+    assert np.abs(balance).max() < 1e-9 * size
+    for contact in step.contacts:  # action and reaction: the target gets the opposite, on the same lines of action
+        assert contact.pressure[np.isfinite(contact.pressure)].min() > -0.1 * contact.max_pressure
+    assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
+
+
+def check_expected(path: Path, step: abut.solution.Step) -> None:
+    """What theory says of the first contact and of probes: expected.json beside the job, by the job file's name."""
+    expected = json.loads((path.parent / "expected.json").read_text())[path.stem]
+    quantities = known_quantities(step)
+    for name, wanted in expected.items():
+        assert wanted["source"]
+        if name == PROFILE:
+            check_profile(step.contacts[0], expected, wanted["tolerance"])
+            continue
+        value = quantities[name]
+        if "value" in wanted:
+            assert value == pytest.approx(wanted["value"], rel=wanted["tolerance"]), name
+        assert wanted.get("at_least", -np.inf) <= value <= wanted.get("at_most", np.inf), name
+
+
+def check_profile(contact: abut.solution.ContactResult, expected: dict, tolerance: float) -> None:
+    """The pressure along the report's line is Hertz's ellipse, in the mean over the line (as share of the peak): its edge,
+    where the slope is infinite, falls within a facet."""
+    theory = ellipse(expected)
+    assert theory is not None
+    peak, half, centre = theory
+    line = pressure_lines(contact)[0]
+    s = line.distance_from(np.array(centre))
+    error = np.abs(line.pressure - peak * np.sqrt(np.maximum(1.0 - (s / half) ** 2, 0.0)))
+    assert np.sum(0.5 * (error[1:] + error[:-1]) * np.diff(s)) < tolerance * peak * np.ptp(s)
+
+
+def test_another_code_uses_the_interface_alone() -> None:
+    """scikit-fem with abut's interface gives what abut gives: the same equations, to rounding (1e-10)."""
+    pytest.importorskip("skfem")
+    path = Path(__file__).parents[2] / "examples" / "scikit-fem" / "contact.py"
+    spec = importlib.util.spec_from_file_location("contact_by_scikit_fem", path)
+    assert spec is not None
+    assert spec.loader is not None
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    assert example.main() < 1e-10
+    active = example.solve()[2]
+    assert 0 < active.sum() < len(active)  # the crown opens towards the corners: the active set had to be found
