@@ -27,7 +27,10 @@ struct Curve {
     double t = dot2(p - a, chord) / dot2(chord, chord);
     for (int i = 0; i < 4 && !straight; ++i) {
       const Point2 s = slope(t);
-      t -= dot2(at(t) - p, s) / dot2(s, s);
+      const double step = dot2(at(t) - p, s) / dot2(s, s);
+      t -= step;
+      if (std::abs(step) < 1e-16)
+        break;
     }
     return t;
   }
@@ -48,6 +51,12 @@ struct Polygon {
   void push(const Vertex &w) {
     if (size < MAX_CLIP)
       v[size++] = w;
+  }
+  Point2 middle() const {
+    Point2 mean{0, 0};
+    for (int i = 0; i < size; ++i)
+      mean = mean + (1.0 / size) * v[i].p;
+    return mean;
   }
 };
 
@@ -167,11 +176,8 @@ void integrate_polygon(const Polygon &polygon, CurveOf curve_of, const Rule &rul
   Point2 apex = polygon.v[0].p;
   const Point2 none{0, 0};
   const bool around = !fan && !outline.straight;
-  if (around) {
-    apex = none;
-    for (int i = 0; i < polygon.size; ++i)
-      apex = apex + (1.0 / polygon.size) * polygon.v[i].p;
-  }
+  if (around)
+    apex = polygon.middle();
   for (int i = around ? 0 : 1; i + (around ? 0 : 1) < outline.size; ++i) {
     const Edge &edge = outline.edge[i];
     const Point2 first = !around && i == 1 ? outline.edge[0].bulge : none;

@@ -20,14 +20,13 @@ struct Contactor3 {
         d[a] = f.normals[i][a] - plane.n[a];
       flat = flat && dot(d, d, 3) < 1e-26;
     }
-    map.terms = facet.position.terms;
-    for (int i = 0; i < map.terms; ++i) {
-      const double *c = facet.position.c[i];
-      double x[3];
-      for (int a = 0; a < 3; ++a)
-        x[a] = i == 0 ? c[a] - plane.origin[a] : c[a];
-      map.c[i][0] = dot(x, plane.e1, 3), map.c[i][1] = dot(x, plane.e2, 3);
-    }
+    Polynomial<3> from = facet.position;
+    for (int a = 0; a < 3; ++a)
+      from.c[0][a] -= plane.origin[a];
+    to_frame(from, position), to_frame(facet.direction, direction);
+    map.terms = position.terms;
+    for (int i = 0; i < map.terms; ++i)
+      map.c[i][0] = position.c[i][0], map.c[i][1] = position.c[i][1];
     flatten(
         {f, m, false},
         [&](const double *xi, int) {
@@ -54,27 +53,46 @@ struct Contactor3 {
     const Point2 start = plane.flat(v);
     if (flat)
       return start;
+    const double height = plane.height(v);
+    double xi[2], x[3], n[3], dx[2][3], dn[2][3];
+    facet.centre(xi);
     Point2 p = start;
-    Spot<2> at;
-    facet.centre(at.xi);
     for (int i = 0; i < 12; ++i) {
-      locate(p, at);
-      if (facet.clamp(at.xi))
-        at.known = false;
-      double x[3], n[3];
-      facet.position.at(at.xi, x), facet.normal(at.xi, n);
-      const double along = dot(n, plane.n, 3);
-      if (along < 0.1)
+      position.at(xi, x, dx), direction.at(xi, n, dn);
+      if (leaning(n))
         return p;
-      // Height of v above the facet's tangent plane region: the contactor point itself may stand off the mean plane.
-      const double t = (plane.height(v) - plane.height(x)) / along;
-      const Point2 next = start - t * Point2{dot(n, plane.e1, 3), dot(n, plane.e2, 3)};
-      const Point2 moved = next - p;
-      p = next;
-      if (dot2(moved, moved) < 1e-28 * (dot2(p, p) + 1e-300))
-        break;
+      // How much of the way from the facet's point along its normal is missing to v.
+      const double t = (height - x[2]) / n[2];
+      double s[2][2];
+      for (int k = 0; k < 2; ++k)
+        for (int a = 0; a < 2; ++a)
+          s[k][a] = dx[k][a] + t * dn[k][a] - n[a] / n[2] * (dx[k][2] + t * dn[k][2]);
+      const Point2 d{x[0] + t * n[0] - start.x, x[1] + t * n[1] - start.y}, a{s[0][0], s[0][1]}, b{s[1][0], s[1][1]};
+      const double det = cross2(a, b), before[2] = {xi[0], xi[1]};
+      if (det == 0)
+        return p;
+      xi[0] -= cross2(d, b) / det, xi[1] -= cross2(a, d) / det;
+      facet.clamp(xi);
+      position.at(xi, x), direction.at(xi, n);
+      if (leaning(n))
+        return p;
+      p = start - (height - x[2]) / n[2] * Point2{n[0], n[1]};
+      if (std::abs(xi[0] - before[0]) + std::abs(xi[1] - before[1]) < SETTLED)
+        return p;
     }
     return p;
+  }
+
+private:
+  static constexpr double SETTLED = 1e-7; // of the reference domain: what Newton's next step leaves is rounding
+  Polynomial<3> position, direction;      // in the plane's frame
+
+  static bool leaning(const double *n) { return !(n[2] > 0.1 * std::sqrt(dot(n, n, 3))); }
+  void to_frame(const Polynomial<3> &from, Polynomial<3> &to) const {
+    to.terms = from.terms;
+    for (int i = 0; i < from.terms; ++i)
+      to.c[i][0] = dot(from.c[i], plane.e1, 3), to.c[i][1] = dot(from.c[i], plane.e2, 3),
+      to.c[i][2] = dot(from.c[i], plane.n, 3);
   }
 };
 

@@ -13,7 +13,7 @@ constexpr int MANY_CORNERS = 12;   // polygons with more are halved before they 
 struct Segment {
   int target;
   double begin = 0, end = 0; // 2D
-  Polygon polygon;           // 3D: uncut by others, its vertices on the chords
+  Polygon polygon, finished; // 3D: uncut by others, its vertices on the chords, and where the curves cross
   int mine = 0, theirs = 0;  // 3D: the two pieces
   double xi[2], eta[2];      // where the integration begins to look
   std::vector<int> behind;   // segments that lie nearer

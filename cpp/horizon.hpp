@@ -23,30 +23,24 @@ class Horizon {
 public:
   Horizon(const Facet &c, double reach) : dim_(c.dim), reach_(reach) {
     set_frame(c);
-    for (int i = 0; i < c.nodes; ++i)
-      add(own_, c.x[i]);
-    thickness_ = std::max(std::abs(own_.lowest), std::abs(own_.highest));
+    const Hull hull(c, c.x), normals(c, c.normals);
+    own_ = extent(hull);
     double size = 0;
     for (int a = 0; a < dim_ - 1; ++a)
       size = std::max(size, own_.high[a] - own_.low[a]);
-    margin_ = (quadratic(c.kind) ? CURVED : ROUNDING) * size;
-    for (int i = 0; i < c.nodes; ++i) {
-      const double along = dot(c.normals[i], normal_, dim_);
+    margin_ = ROUNDING * size;
+    for (int i = 0; i < normals.size; ++i) {
+      const double along = dot(normals.x[i], normal_, dim_);
       for (int a = 0; a < dim_ - 1; ++a)
         slope_[a] =
-            along < LEANING ? HUGE_VAL : std::max(slope_[a], std::abs(dot(c.normals[i], axis_[a], dim_)) / along);
+            along < LEANING ? HUGE_VAL : std::max(slope_[a], std::abs(dot(normals.x[i], axis_[a], dim_)) / along);
     }
-    // Between the nodes of a quadratic facet normals may lean further.
     for (double &slope : slope_)
-      slope = (quadratic(c.kind) ? 1.0 + 2 * CURVED : 1.0) * slope + ROUNDING;
+      slope += ROUNDING;
   }
 
-  bool may_see(const Facet &t) const {
-    Extent its;
-    for (int i = 0; i < t.nodes; ++i)
-      add(its, t.x[i]);
-    return may_see(its, quadratic(t.kind) ? CURVED : 0.0);
-  }
+  // Anything inside the hull of a target facet.
+  bool may_see(const Hull &hull) const { return may_see(extent(hull)); }
 
   // Anything inside a box along the axes.
   bool may_see(const Box &box) const {
@@ -64,12 +58,11 @@ public:
     for (int a = 0; a < dim_ - 1; ++a)
       widen(axis_[a], its.low[a], its.high[a]);
     widen(normal_, its.lowest, its.highest);
-    return may_see(its, 0.0);
+    return may_see(its);
   }
 
 private:
-  static constexpr double CURVED = 0.25;   // of its size: how far a curved facet may reach beyond its nodes
-  static constexpr double ROUNDING = 1e-9; // likewise
+  static constexpr double ROUNDING = 1e-9; // of its size
   static constexpr double LEANING = 0.2;   // cosine between normals from which down no bound is given
 
   void set_frame(const Facet &c) {
@@ -94,14 +87,20 @@ private:
     extent.add(flat, dim_ - 1, dot(d, normal_, dim_));
   }
 
-  bool may_see(const Extent &its, double curved) const {
-    const double bulge = curved * std::max({its.high[0] - its.low[0], dim_ == 3 ? its.high[1] - its.low[1] : 0.0,
-                                            its.highest - its.lowest});
-    if (its.lowest - bulge - thickness_ > 2 * reach_ || its.highest + bulge + thickness_ < -2 * reach_)
+  Extent extent(const Hull &hull) const {
+    Extent result;
+    for (int i = 0; i < hull.size; ++i)
+      add(result, hull.x[i]);
+    return result;
+  }
+
+  bool may_see(const Extent &its) const {
+    const double above = its.highest - own_.lowest, below = own_.highest - its.lowest;
+    if (-below > 2 * reach_ || -above > 2 * reach_)
       return false;
-    const double height = std::max(std::abs(its.lowest), std::abs(its.highest)) + bulge + thickness_;
+    const double height = std::max(above, below);
     for (int a = 0; a < dim_ - 1; ++a) {
-      const double wider = height * slope_[a] + bulge + margin_;
+      const double wider = height * slope_[a] + margin_;
       if (its.low[a] - wider > own_.high[a] || its.high[a] + wider < own_.low[a])
         return false;
     }
@@ -109,7 +108,7 @@ private:
   }
 
   int dim_;
-  double reach_, origin_[3], axis_[2][3], normal_[3], slope_[2] = {0, 0}, thickness_, margin_;
+  double reach_, origin_[3], axis_[2][3], normal_[3], slope_[2] = {0, 0}, margin_;
   Extent own_;
 };
 

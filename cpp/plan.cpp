@@ -7,7 +7,9 @@ namespace abut {
 constexpr std::size_t FEW_FACETS = 200; // not worth a thread
 constexpr double STRICT = 1e-12;        // tolerance for affine facets: theory (Q4)
 constexpr double COARSE = 1e-10;        // tolerances from here up: fewer points do for the moments to be met
-constexpr int COARSE_POINTS = 8;
+constexpr int COARSE_POINTS = 6;
+// Gauss points for N_i N_j on affine facets of each type: curved ones do not do with fewer.
+constexpr std::array<int, QUAD9 + 1> AFFINE_POINTS{2, 3, 2, 3, 3, 4, 5};
 
 namespace {
 
@@ -124,7 +126,7 @@ int points_needed(Facet facet, int subdivisions, const RuleTable &rules, const R
   const int most = coarse ? COARSE_POINTS : int(exact_rules.count);
   const double area = exact_moments(facet, exact_rules.rule(most), axisymmetric, exact);
   const int last = int(rules.count);
-  int n = coarse ? std::min(last, 3) : 1;
+  int n = coarse ? std::min(last, std::max(AFFINE_POINTS[facet.kind], 3)) : 1;
   if (facet.dim == 2) {
     while (n < last && !(moment_error_line(facet, rules.rule(n), exact, area, axisymmetric) < tolerance))
       ++n;

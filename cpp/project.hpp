@@ -74,6 +74,30 @@ struct Facet {
   }
 };
 
+// Points of which everything interpolated over a facet is a mean with weights that are not negative: the Bezier points
+// of its polynomial.
+struct Hull {
+  int size;
+  double x[MAX_FACET_NODES][3];
+
+  Hull() = default;
+  Hull(const Facet &f, const double (*values)[3])
+      : size(quadratic(f.kind) && !f.triangle() && f.dim == 3 ? 9 : f.nodes) {
+    const int corners = CORNERS[f.kind];
+    for (int a = 0; a < 3; ++a) {
+      double sum = 0, middles = 0;
+      for (int i = 0; i < corners; ++i)
+        x[i][a] = values[i][a], sum += values[i][a];
+      for (int i = corners; i < std::min(f.nodes, 2 * corners); ++i) {
+        const int end = f.dim == 2 ? 1 : (i + 1) % corners;
+        x[i][a] = 2 * values[i][a] - 0.5 * (values[i - corners][a] + values[end][a]), middles += values[i][a];
+      }
+      if (size == 9)
+        x[8][a] = f.nodes == 9 ? 4 * values[8][a] - middles + 0.25 * sum : middles - 0.75 * sum;
+    }
+  }
+};
+
 // A point of a facet with its place and its slopes, from which the search for the next one starts.
 template <int W> struct Spot {
   double xi[2], x[W], slope[2][W];

@@ -31,12 +31,25 @@ namespace {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
 
-Box box_of(const Facet &f) {
+Box box_of(const Hull &hull, int dim) {
   Box box;
-  for (int i = 0; i < f.nodes; ++i)
-    box.add(f.x[i], f.dim);
-  if (quadratic(f.kind))
-    box.inflate(0.15 * box.diagonal(f.dim), f.dim);
+  for (int i = 0; i < hull.size; ++i)
+    box.add(hull.x[i], dim);
+  return box;
+}
+
+// All that lies within reach of a contactor facet along its normals.
+Box swept_box(const Facet &c, double reach) {
+  const Hull hull(c, c.x), normals(c, c.normals);
+  Box box = box_of(hull, c.dim);
+  for (int i = 0; i < hull.size; ++i)
+    for (int side = -1; side <= 1; side += 2) {
+      double far[3];
+      for (int a = 0; a < c.dim; ++a)
+        far[a] = hull.x[i][a] + side * reach * normals.x[i][a];
+      box.add(far, c.dim);
+    }
+  box.inflate(1e-9 * box.diagonal(c.dim), c.dim);
   return box;
 }
 
@@ -78,19 +91,17 @@ struct Sight3 {
 };
 
 // Moves vertices where two curves cross on to both; false for a polygon without area.
-bool finish(const Over &over, Polygon &polygon, double scale, Point2 *corner, Point2 &middle) {
+bool finish(const Over &over, Polygon &polygon, double scale) {
   if (polygon.size < 3)
     return false;
-  const Polygon chords = polygon;
-  middle = {0, 0};
+  Point2 corner[MAX_CLIP];
   for (int i = 0; i < polygon.size; ++i) {
     Vertex &v = polygon.v[i];
-    const Vertex &before = chords.v[(i + polygon.size - 1) % polygon.size];
+    const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
     const Curve *in = over.curve(before), *out = over.curve(v);
     if (in && out && before.side != v.side && !(in->straight && out->straight))
       polish(*in, *out, v.p);
     corner[i] = v.p;
-    middle = middle + (1.0 / polygon.size) * v.p;
   }
   return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
 }
@@ -108,13 +119,12 @@ void cut_pieces(const Over &over, const Facet &t, Segment own, double reach, std
   for (int i = 0; i < mine.size; ++i)
     subject.push({mine.p[i], own.mine, i});
   own.polygon = clip_convex(subject, theirs.p, theirs.size, own.theirs);
-  Polygon polygon = own.polygon;
-  Point2 corner[MAX_CLIP], middle;
-  if (!finish(over, polygon, scale_of(mine), corner, middle))
+  own.finished = own.polygon;
+  if (!finish(over, own.finished, scale_of(mine)))
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
-  if (!(std::abs(at.look(t, middle)) <= reach))
+  if (!(std::abs(at.look(t, own.finished.middle())) <= reach))
     return;
   double y[3], tangent[2][3], facing[3];
   t.position.at(at.other.xi, y, tangent);
@@ -142,9 +152,9 @@ void find_hidden(const Over &over, const std::vector<Facet> &targets, const std:
         const Piece &other = over.piece(b.theirs);
         const Polygon common = clip_convex(a.polygon, other.p, other.size, b.theirs);
         Point2 corner[MAX_CLIP];
-        middle = {0, 0};
         for (int i = 0; i < common.size; ++i)
-          corner[i] = common.v[i].p, middle = middle + (1.0 / common.size) * corner[i];
+          corner[i] = common.v[i].p;
+        middle = common.middle();
         return common.size > 2 && signed_area(corner, common.size) > TOUCHING * scale_of(over.piece(a.mine));
       },
       [&](const Segment &own, Point2 middle) {
@@ -153,11 +163,8 @@ void find_hidden(const Over &over, const std::vector<Facet> &targets, const std:
       });
 }
 
-void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygon polygon, const Rule &rule,
+void integrate_part(const Over &over, const Facet &t, const Segment &own, const Polygon &polygon, const Rule &rule,
                     Accumulator &sums) {
-  Point2 corner[MAX_CLIP], middle;
-  if (!finish(over, polygon, scale_of(over.piece(own.mine)), corner, middle))
-    return;
   sums.count_segment();
   Sight3 at(over.c, own.xi, own.eta);
   if (sums.wants_sights()) {
@@ -168,9 +175,9 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
       at.find_shapes(t);
       sums.see(at.nc, at.nt, gap, normal);
     };
-    see(middle);
+    see(polygon.middle());
     for (int i = 0; i < polygon.size; ++i)
-      see(corner[i]);
+      see(polygon.v[i].p);
     at.begin(own.xi, own.eta); // integrals are the same with sights and without
   }
   integrate_polygon(
@@ -193,10 +200,10 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, Polygo
 void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
                       const Rule &rule, Accumulator &sums) {
   if (own.behind.empty()) {
-    integrate_part(over, t, own, own.polygon, rule, sums);
+    integrate_part(over, t, own, own.finished, rule, sums);
     return;
   }
-  const double least = TOUCHING * scale_of(over.piece(own.mine));
+  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
   std::vector<Polygon> left{own.polygon}, next;
   for (int nearer : own.behind) {
     next.clear();
@@ -204,8 +211,9 @@ void integrate_pieces(const Over &over, const Facet &t, const Segment &own, cons
       outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
     left.swap(next);
   }
-  for (const Polygon &part : left)
-    integrate_part(over, t, own, part, rule, sums);
+  for (Polygon &part : left)
+    if (finish(over, part, scale))
+      integrate_part(over, t, own, part, rule, sums);
 }
 
 // What is asked of a target facet: its number, its points' numbers, how often it is divided.
@@ -247,12 +255,13 @@ void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reac
     }
 }
 
-// What all threads share: both surfaces, the target's facets and the tree of their boxes.
+// What all threads share: both surfaces, the target's facets, their hulls and the tree of their boxes.
 struct Interface {
   const Planned &contactor, &target;
   const RuleTable &rules;
   const Options &options;
   std::vector<Facet> targets;
+  std::vector<Hull> hulls;
   Tree tree;
 };
 
@@ -278,19 +287,9 @@ private:
   // The target facets that the contactor facet may see within reach.
   void find(const Facet &c) {
     const double reach = both_.options.reach;
-    Box swept = box_of(c);
-    for (int i = 0; i < c.nodes; ++i) {
-      double far[3];
-      for (int side = -1; side <= 1; side += 2) {
-        for (int a = 0; a < c.dim; ++a)
-          far[a] = c.x[i][a] + side * reach * c.normals[i][a];
-        swept.add(far, c.dim);
-      }
-    }
-    swept.inflate(1e-9 * swept.diagonal(c.dim), c.dim);
     const Horizon horizon(c, reach);
-    both_.tree.query(swept, found_, [&](const Box &box) { return horizon.may_see(box); });
-    std::erase_if(found_, [&](int t) { return !horizon.may_see(both_.targets[t]); });
+    both_.tree.query(swept_box(c, reach), found_, [&](const Box &box) { return horizon.may_see(box); });
+    std::erase_if(found_, [&](int t) { return !horizon.may_see(both_.hulls[t]); });
   }
 
   void run_line(std::size_t f, const Facet &c) {
@@ -341,10 +340,14 @@ private:
 Interface interface(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options) {
   const SurfaceView &surface = target.surface;
   std::vector<Facet> targets(surface.facets);
+  std::vector<Hull> hulls(surface.facets);
   std::vector<Box> boxes(surface.facets);
-  for (std::size_t t = 0; t < surface.facets; ++t)
-    targets[t] = surface.facet(t), boxes[t] = box_of(targets[t]);
-  return {contactor, target, rules, options, std::move(targets), Tree(std::move(boxes), surface.dim)};
+  for (std::size_t t = 0; t < surface.facets; ++t) {
+    targets[t] = surface.facet(t);
+    hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
+  }
+  Tree tree(std::move(boxes), surface.dim);
+  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree)};
 }
 
 } // namespace

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from decks import BRICKS, PAIR, load
+from friction_models import FRICTION, on_a_slope, pushed
 
 import abut
 from abut import write
@@ -19,7 +21,7 @@ from abut.materials.material import Evaluated, OwnMaterial
 from models.decks import BRICKS, PAIR, load
 from models.friction import FRICTION, on_a_slope, pushed
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "pushed-block" / "job.toml"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "pushed-block" / "job.toml"
 DECK = BRICKS + PAIR.replace("HARD\n", "HARD\n*FRICTION\n0.25, 1.E4\n")
 DRIVEN = """*BOUNDARY
 BOTTOM, 1, 3

@@ -29,9 +29,9 @@ COUPLED = {  # entries in a row of the stiffness
     "tri3": 14, "tri6": 23, "quad4": 18, "quad8": 30, "quad9": 32, "tet4": 45, "tet10": 85, "hex8": 81, "hex20": 190,
     "hex27": 192, "wedge6": 63, "wedge15": 130,
 }  # fmt: skip
-SEGMENT = {  # seconds a segment between flat facets, between curved ones
-    "line2": (4e-6, 1e-5), "line3": (4e-6, 1e-5), "tri3": (1.2e-5, 3e-5), "quad4": (2.5e-5, 9e-5), "tri6": (3e-5, 2.5e-4),
-    "quad8": (6e-5, 2.8e-4), "quad9": (7e-5, 3e-4),
+SEGMENT = {  # seconds a segment between flat facets, between curved ones, with the search for what lies beyond the rim
+    "line2": (4e-6, 1e-5), "line3": (4e-6, 1e-5), "tri3": (2.1e-5, 1.5e-4), "quad4": (2.8e-5, 1.8e-4),
+    "tri6": (3e-5, 1.6e-4), "quad8": (4.5e-5, 2e-4), "quad9": (5.5e-5, 2.2e-4),
 }  # fmt: skip
 A_PAIR, A_BODY = 8e-3, 4e-4  # seconds a pair and a body, whatever their size
 RESULT = 1.0e-6  # seconds a free displacement and step: stresses, checks
