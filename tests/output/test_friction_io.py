@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from decks import BRICKS, PAIR, load
-from friction_models import FRICTION, on_a_slope, pushed
 
 import abut
 from abut import write
