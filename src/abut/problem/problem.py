@@ -15,6 +15,7 @@ from abut.model.conditions import weights
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import Regularisation
+from abut.problem.kinematics import Kinematics
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.restraint import Restraint
@@ -67,7 +68,7 @@ class ContactProblem:
     terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
     (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
     (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
-    unit: size of the stiffness' entries, where it is constant.
+    unit: size of the stiffness' entries, where it is constant; kinematics: of each pair, ``Frozen`` where left out.
     """
 
     model: Model
@@ -80,11 +81,16 @@ class ContactProblem:
     stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
+    kinematics: Sequence[Kinematics] = ()
 
     @property
     def constant(self) -> bool:
         """As in ``Problem``."""
-        return self.stiffness is not None
+        return self.stiffness is not None and self._frozen
+
+    @property
+    def _frozen(self) -> bool:
+        return all(own.constant for own in self.kinematics)
 
     @property
     def n_free(self) -> int:
@@ -93,7 +99,7 @@ class ContactProblem:
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
-        offset = self._offset(np.zeros(len(self.model.histories)))
+        _, offset, _ = self._contact(rest, np.zeros(len(self.model.histories)))
         first, closed = 0, np.zeros(len(offset), dtype=bool)
         for pair in self.pairs:
             own = slice(first, first := first + len(pair))
@@ -109,16 +115,17 @@ class ContactProblem:
             before, now = (replace(state, unknowns=np.zeros(self.n_free)) for state in (before, now))
         at, shares = now.unknowns, self._shares(before, now)
         force = self.held.free.T @ np.asarray(sum(share.force for share in shares))
+        factors = weights(self.model.histories, now.time)
+        operator, offset, bending = self._contact(now, factors, slipped)
         if self.constant:
             stiffness, load = self.stiffness, -force
         else:
-            tangents = [share.tangent.reduce(self.held) for share in shares if share.tangent is not None]
-            stiffness = self.springs.added_to(sum(tangents[1:], tangents[0]))
+            stiffness = self._tangent(shares)
+            stiffness = stiffness if bending is None else stiffness - bending
             load = stiffness @ at - force - self.springs.forces(at)
-        factors = weights(self.model.histories, now.time)
         return Linearised(
-            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
-            self.restraint, load, self.unit or unit_of(stiffness),
+            now.time, factors, stiffness, load, self.pairs, operator, offset, self.motions, self.restraint, load,
+            self.unit or unit_of(stiffness),
         )  # fmt: skip
 
     def accepted(self, before: State, now: State) -> State:
@@ -146,7 +153,8 @@ class ContactProblem:
         pairs = [with_plain_functions(self.model, pair, self.held, part) for pair, part in zip(self.pairs, own)]
         if all(new is old for new, old in zip(pairs, self.pairs)):
             return self
-        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free))
+        kinematics = [kind.of(pair) for kind, pair in zip(self.kinematics, pairs)]
+        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free), kinematics=kinematics)
 
     def displacement(self, state: State) -> NDArray[np.float64]:
         """Of all points, (dim n_points,)."""
@@ -162,10 +170,30 @@ class ContactProblem:
                 gap[pair.tangential] -= before
         return np.concatenate(own) if own else np.zeros(0)
 
+    def _contact(
+        self, now: State, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()
+    ) -> tuple[Operator, NDArray[np.float64], Operator]:
+        """Operator B and offset g0 of the gaps B q + g0 near ``now``, and their second derivatives times the multipliers;
+        the same operator comes back where all kinematics are constant."""
+        if self._frozen:
+            return self.operator, self._offset(factors, slipped), None
+        multipliers = np.split(now.multipliers, np.cumsum([len(pair) for pair in self.pairs])[:-1])
+        jumps = [kind.at(now.unknowns, factors, own) for kind, own in zip(self.kinematics, multipliers)]
+        operator = sp.vstack([jump.operator for jump in jumps]).tocsr()
+        value = np.concatenate([jump.value for jump in jumps])
+        bending = [jump.bending for jump in jumps if jump.bending is not None]
+        return operator, value - operator @ now.unknowns, sum(bending[1:], bending[0]) if bending else None
+
+    def _tangent(self, shares: Sequence[Share]) -> Operator:
+        """The stiffness on the free displacements."""
+        if self.stiffness is not None:
+            return self.stiffness
+        tangents = [share.tangent.reduce(self.held) for share in shares if share.tangent is not None]
+        return self.springs.added_to(sum(tangents[1:], tangents[0]))
+
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
         """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, theory (R2);
-        empty
-        without friction."""
+        empty without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []
         factors = weights(self.model.histories, before.time)
