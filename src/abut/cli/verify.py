@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from abut.errors import InputError, nearest
-from abut.types import Json
 
 if TYPE_CHECKING:
     from abut.benchmarks import Outcome
+    from abut.types import Json
 
 DONE, FAILED = 0, 1
 
