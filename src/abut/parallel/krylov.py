@@ -58,9 +58,9 @@ class Conditions:
 NONE = Conditions(None, None, None, np.zeros(0))  # of every process but the first
 
 
-def multigrid(store: Store, motions: Vector) -> str:
-    """Set up and keep the preconditioner of the stiffness, and return PETSc's name of it. motions: (n_own, m) orthonormal
-    rigid motions, this process's share."""
+def multigrid(store: Store, motions: Vector) -> None:
+    """Set up and keep the preconditioner of the stiffness. motions: (n_own, m) orthonormal rigid motions, this process's
+    share."""
     from petsc4py import PETSc
 
     matrix = store["matrix"]
@@ -82,7 +82,6 @@ def multigrid(store: Store, motions: Vector) -> str:
     solver.setUp()
     solver.getPC().setReusePreconditioner(True)  # while springs are in the matrix
     store["stiffness solver"] = solver
-    return str(solver.getPC().getType())
 
 
 def iterate(

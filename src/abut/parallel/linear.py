@@ -26,6 +26,8 @@ from abut.linear.schur_preconditioner import (
 from abut.linear.solver import Count, NotConverged, Prepared, Solve
 from abut.parallel.krylov import (
     FACTORS,
+    MULTIGRID,
+    STIFFNESS,
     Answer,
     Conditions,
     by_factors,
@@ -48,14 +50,12 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Iterative:
-    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes. kind: of
-    preconditioner."""
+    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes."""
 
     system: Linearised
     pressures: PressureBlock
     predict: Predict
     count: Count
-    kind: str
     exact: bool = False
     accurate: float = ACCURATE
 
@@ -185,7 +185,10 @@ class PetscIterations:
 
     motions: Vector
     count: Count
-    name: str = "PETSc Krylov"
+
+    @property
+    def name(self) -> str:
+        return f"PETSc Krylov with {preconditioner()}"
 
     def condensed(self, problem: Problem) -> Problem:
         """The problem as it is."""
@@ -195,7 +198,6 @@ class PetscIterations:
         """As in ``LinearSolver``. Raises InputError for the constraint function, whose rows the preconditioner does not
         know."""
         matrix: Distributed = system.stiffness
-        kept = isinstance(previous, Iterative) and previous.system.stiffness is matrix
         if isinstance(previous, Iterative) and previous.system.same_matrices(system):
             return replace(previous, system=system)
         smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
@@ -204,19 +206,17 @@ class PetscIterations:
                 f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
                 '"complementarity", or leave the option -pc_type out'
             )
-        if kept and isinstance(previous, Iterative):
-            kind = previous.kind
-        else:
-            kind = matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))[0]
+        if previous is None or previous.system.stiffness is not matrix:
+            matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))
         pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
         predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
-        return Iterative(system, pressures, predict, self.count, kind)
+        return Iterative(system, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""
         if not isinstance(prepared, Iterative):
             return self.name
-        return f"{self.name} with {prepared.kind}, {_processes(prepared.matrix.team)}"
+        return f"{self.name}, {_processes(prepared.matrix.team)}"
 
 
 @dataclass(frozen=True)
@@ -270,6 +270,15 @@ def choose(problem: ContactProblem) -> str:
         )
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
+
+
+def preconditioner() -> str:
+    """PETSc's name of what preconditions the stiffness."""
+    from petsc4py import PETSc
+
+    options = PETSc.Options()
+    given = options.getString("pc_type", MULTIGRID["pc_type"])
+    return str(options.getString(STIFFNESS + "pc_type", given))
 
 
 def wants_factors() -> bool:
