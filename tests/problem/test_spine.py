@@ -185,6 +185,17 @@ def test_soft_layer_is_a_spring_in_a_row(stiffness: float) -> None:
     assert solution.contacts[0].max_pressure == pytest.approx(10.0, rel=1e-10)
 
 
+def test_laws_of_wrong_shapes_are_refused() -> None:
+    class Flat:
+        def evaluate(self, jump: Any, traction: Any, state: LawState) -> Any:
+            return replace(soft_layer.SoftLayer(1.0).evaluate(jump, traction, state), by_jump=np.zeros(len(jump)))
+
+    with pytest.raises(
+        abut.InputError, match=r"law: evaluate returned by_jump of shape \(\d+,\), expected \(\d+, 1, 1\)"
+    ):
+        soft_layer.pressed(Flat())
+
+
 def test_laws_that_are_none_are_refused() -> None:
     with pytest.raises(abut.InputError, match="law"):
         abut.Contact("a", "b", law=3.0)  # type: ignore[arg-type]

@@ -19,25 +19,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LawState:
-    """Data of a law besides jump and traction. closed: (n,) bool, the contact status that the search holds; history:
-    (n, k) of the law after the last converged step, None where it has none; slipping: (n,) bool, of those closed, None
-    without friction."""
+    """Data of a law besides jump and traction. closed: (n,) bool, the contact status that the search holds; slipping: (n,)
+    bool, of those closed, None without friction."""
 
     closed: NDArray[np.bool_]
-    history: Array | None = None
     slipping: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
 class LawResult:
     """A law near jumps and tractions. residual: (n, c), zero where the law is met, in any unit; by_jump, by_traction:
-    (n, c, c) its derivatives; closed: (n,) bool, points in contact; history: (n, k) or None."""
+    (n, c, c) its derivatives; closed: (n,) bool, points in contact."""
 
     residual: Array
     by_jump: Array
     by_traction: Array
     closed: NDArray[np.bool_]
-    history: Array | None = None
 
 
 @runtime_checkable

@@ -3,20 +3,19 @@ node of the contactor."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.coupling import IntegrationPoints
+from abut.types import Sparse
 
 UNEVEN = 1e-6  # difference of the shares that supports hold of two tangents, above which the frame follows them
 HELD = 1e-9  # share of a tangent along which a node can move, below which it cannot
 Array = NDArray[np.float64]
 
 
-def slip_operators(at: IntegrationPoints) -> tuple[Any, ...]:
+def slip_operators(at: IntegrationPoints) -> tuple[Sparse, ...]:
     """int H_k d . (u_C - u_T) for directions d in the tangent plane of each integration point, facet by facet, theory (R1):
     (9 n_facets, dim n_points) sparse each. In 2D d is the normal turned by a right angle; in 3D there are three, the
     axes less their normal parts."""
@@ -34,16 +33,14 @@ def slip_operators(at: IntegrationPoints) -> tuple[Any, ...]:
     return tuple(_integrated(at, shapes, field) for field in fields)
 
 
-def _integrated(at: IntegrationPoints, shapes: Any, field: Array) -> Any:
+def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
     """int H_k d . (u_C - u_T); field: (n, dim) the direction d at every integration point."""
-    dim, total = field.shape[1], None
+    dim, parts = field.shape[1], []
     for a in range(dim):
         scalar = (at.pressure.T @ sp.diags(at.weight * field[:, a]) @ shapes).tocoo()
-        own = sp.csr_matrix(
-            (scalar.data, (scalar.row, dim * scalar.col + a)), shape=(scalar.shape[0], dim * scalar.shape[1])
-        )
-        total = own if total is None else total + own
-    return total
+        where = scalar.row, dim * scalar.col + a
+        parts.append(sp.csr_matrix((scalar.data, where), shape=(scalar.shape[0], dim * scalar.shape[1])))
+    return sum(parts[1:], parts[0])
 
 
 def turned(normal: Array) -> Array:

@@ -141,14 +141,15 @@ class Course:
         return Following(lawful, accuracy)
 
     def _foreseen(self, solved: Solved, gap: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """The set that the law asks for, or a better guess that has not been seen yet."""
+        """The set that the law asks for, or a better guess that has not been seen yet; no guess from a state that an
+        iterative solver has left too rough to tell anything."""
         self.lawful = None
-        if not self.foresee:
+        if not self.foresee or not (self.solver.exact or solved.error <= TOLD):
             return solved.wanted
         guess = self.solver.foresee(gap, solved.state.multipliers, solved.wanted, self.tied)
         if guess.tobytes() in {*self.seen, solved.state.closed.tobytes()}:
             return solved.wanted
-        self.lawful = solved.wanted if self.solver.exact or solved.error <= TOLD else None
+        self.lawful = solved.wanted
         return guess
 
     def _slow(self, active: NDArray[np.bool_], rows: int) -> bool:

@@ -20,6 +20,7 @@ from abut.nonlinear.iteration import (
     advance,
     largest_force,
     largest_pressure,
+    part_of,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -37,24 +38,24 @@ Status = NDArray[np.int8]
 
 def friction_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
-    return _laws(system, state, 1.0)
+    return _laws(system, state, slippery=False)
 
 
-def _laws(system: Linearised, state: State, share: float) -> list[LawRows]:
-    """The same with a share of every coefficient of friction."""
+def _laws(system: Linearised, state: State, slippery: bool) -> list[LawRows]:
+    """The same, or without friction where ``slippery``."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(pair, _law(pair, share), gap, multipliers, closed, slipping if pair.frictional else None)
+        at_multipliers(pair, _law(pair, slippery), gap, multipliers, closed, slipping if pair.frictional else None)
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 
 
-def _law(pair: Pair, share: float) -> Tied | Coulomb | Complementarity:
+def _law(pair: Pair, slippery: bool) -> Tied | Coulomb | Complementarity:
     if pair.tied:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
-    return Coulomb(pair.stiffness, pair.contact.coefficient if share else 0.0)
+    return Coulomb(pair.stiffness, 0.0 if slippery else pair.contact.coefficient)
 
 
 def solve_friction(
@@ -123,7 +124,7 @@ def _without_friction(search: _Search, first: State, limit: int) -> State | None
     for _ in range(limit):
         clock = time.perf_counter()
         try:
-            state = advance(search.solver, state, _laws(system, state, 0.0))
+            state = advance(search.solver, state, _laws(system, state, slippery=True))
         except SingularModelError:
             return None
         wanted = next_status(system, state, search.increment)
@@ -157,7 +158,7 @@ class _Search:
         """Of the laws with the status as it is, over the largest pressure."""
         system = self.solver.system
         left = [
-            float(np.abs(law.residual / pair.weight).max(initial=0.0)) * (pair.stiffness)
+            float(np.abs(law.residual / pair.weight).max(initial=0.0)) * pair.stiffness
             for pair, law in zip(system.pairs, friction_laws(system, state))
         ]
         return max(left, default=0.0) / largest_pressure(state, self.increment)
@@ -183,11 +184,7 @@ class _Search:
             if self.size(best) <= (1.0 - LESS * share) * before:
                 return best
             share *= 0.5
-            best = replace(
-                state,
-                unknowns=state.unknowns + share * (full.unknowns - state.unknowns),
-                multipliers=state.multipliers + share * (full.multipliers - state.multipliers),
-            )
+            best = part_of(state, full, share)
         return full
 
 

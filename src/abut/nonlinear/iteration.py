@@ -59,6 +59,15 @@ def advance(solver: Prepared, state: State, laws: Sequence[LawRows], accuracy: f
     return replace(state, unknowns=state.unknowns + du, multipliers=state.multipliers + dp)
 
 
+def part_of(state: State, full: State, share: float) -> State:
+    """A share of the step from one state to another one."""
+    return replace(
+        state,
+        unknowns=state.unknowns + share * (full.unknowns - state.unknowns),
+        multipliers=state.multipliers + share * (full.multipliers - state.multipliers),
+    )
+
+
 def next_active(
     system: Linearised, state: State, increment: Increment, tied: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], Vector]:

@@ -21,6 +21,7 @@ from abut.nonlinear.iteration import (
     largest_force,
     largest_pressure,
     next_active,
+    part_of,
     report,
 )
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
@@ -177,9 +178,5 @@ def _line_search(smooth: Smooth, state: State, full: State, laws: Laws) -> tuple
         if size(best) <= max((1.0 - 0.1 * share) * before, 1e-9):
             return best, True
         share *= 0.5
-        best = replace(
-            state,
-            unknowns=state.unknowns + share * (full.unknowns - state.unknowns),
-            multipliers=state.multipliers + share * (full.multipliers - state.multipliers),
-        )
+        best = part_of(state, full, share)
     return best, False

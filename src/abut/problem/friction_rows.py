@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +14,7 @@ from abut.contact.tangential import frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Slip:
     """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
     dim) unit, at the node of each function of the pressure."""
 
-    operators: tuple[Any, ...]
+    operators: tuple[Sparse, ...]
     tangents: NDArray[np.float64]
 
 
@@ -33,12 +33,12 @@ class FrictionRows:
 
     components: tuple[PressureSpace, ...]
     index: NDArray[np.int64]
-    rows: Any
+    rows: Sparse
     slip: Slip
 
 
 def friction_rows(
-    contactor: Surface, space: PressureSpace, normal: Any, operators: tuple[Any, ...], held: Supports
+    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
 ) -> FrictionRows:
     """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
     as at a plane of symmetry, there is no traction along it."""

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.laws import Law, LawResult, LawState
+from abut.errors import InputError
 from abut.problem.contact_pairs import Pair, PairPoints
 from abut.types import Sparse
 
@@ -23,7 +24,7 @@ class LawRows:
     residual: (n,); closed: (n,) bool, multipliers in contact; by_gap: (n, n_gaps) sparse, derivative by the gaps that the
     law looks at; by_pressure: (n, n) sparse, derivative by the multipliers. at_points: the gaps are those at the
     integration points, else the n weighted ones; decoupled: (n,) bool, rows that hold nothing but their own multiplier;
-    symmetric: all others look at minus their own weighted gap.
+    symmetric: all others look at minus their own weighted gap, and give way under their own multiplier.
     """
 
     residual: Vector
@@ -46,28 +47,29 @@ def at_multipliers(
     """Rows of a law at each multiplier. gap: (n,) weighted; its mean under the multiplier's function is the jump; closed,
     slipping: (n,) status, the latter with friction.
 
-    Normal laws are divided by minus their derivative by the gap, so that every linear solver meets rows of one kind."""
+    Normal laws are divided by minus their derivative by the gap, so that every linear solver meets rows of one kind. Raises
+    InputError for a user's law that returns arrays of other shapes than it should."""
     where, weight = pair.index, pair.weight
     there = where >= 0
     mean = np.zeros(len(pair)) if not len(pair) else gap / weight
     state = LawState(_status(closed, where), slipping=None if slipping is None else _status(slipping, where))
-    result = law.evaluate(_spread(mean, where), _spread(multipliers, where), state)
+    result = _checked(law.evaluate(_spread(mean, where), _spread(multipliers, where), state), where.shape, pair)
     number = np.broadcast_to(where[:, :, None], (*where.shape, where.shape[1]))
     other = np.broadcast_to(where[:, None, :], number.shape)
     both = (number >= 0) & (other >= 0)
     n = len(pair)
-    residual, by_gap, by_pressure = np.zeros(n), _matrix(result.by_jump, number, other, both, n), None
+    residual = np.zeros(n)
     residual[where[there]] = result.residual[there]
-    by_pressure = _matrix(result.by_traction, number, other, both, n)
+    by_gap, by_pressure = (_matrix(of, number, other, both, n) for of in (result.by_jump, result.by_traction))
     if where.shape[1] == 1:
         by_gap, by_pressure, residual = _normalised(by_gap, by_pressure, residual, weight, pair.stiffness)
     decoupled = np.diff(by_gap.indptr) == 0
-    own = by_gap.diagonal()
+    plain = (by_gap.diagonal() == -1.0) & (by_pressure.diagonal() <= 0.0)
     shut = np.zeros(n, dtype=bool)
     shut[where[there]] = np.broadcast_to(result.closed[:, None], where.shape)[there]
     return LawRows(
         weight * residual, shut, by_gap, (sp.diags(weight) @ by_pressure).tocsr(), False, decoupled,
-        bool((own[~decoupled] == -1.0).all()),
+        bool(plain[~decoupled].all()),
     )  # fmt: skip
 
 
@@ -104,6 +106,17 @@ def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bo
         at_points=False,
         decoupled=np.zeros(n, dtype=bool),
     )
+
+
+def _checked(result: LawResult, shape: tuple[int, ...], pair: Pair) -> LawResult:
+    n, c = shape
+    for name, expected in (("residual", (n, c)), ("by_jump", (n, c, c)), ("by_traction", (n, c, c)), ("closed", (n,))):
+        found = np.shape(getattr(result, name))
+        if found != expected:
+            raise InputError(
+                f"contact '{pair.contact.name}': law: evaluate returned {name} of shape {found}, expected {expected}"
+            )
+    return result
 
 
 def _spread(values: Vector, where: NDArray[np.int64]) -> Vector:
