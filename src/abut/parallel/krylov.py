@@ -26,6 +26,11 @@ NOTHING = (
 )
 FACTORS = ("cholesky", "lu")
 OUT_OF_MEMORY = (-8, -9, -11, -13, -14, -15, -17, -20)  # what MUMPS calls so in INFOG(1)
+WORKSPACE = (
+    50,
+    200,
+    1000,
+)  # per cent over MUMPS's estimate, tried in turn: pivots put off for later need more than it sees
 PACKAGES = ("mumps", "superlu_dist")
 
 
@@ -142,7 +147,7 @@ def drop_factors(store: Store) -> None:
 
 
 def _factors(matrix: Foreign, n: int, symmetric: bool, own: Conditions) -> tuple[Foreign, Foreign]:
-    """PETSc's solver, and the matrix that it factorises at its first solution."""
+    """PETSc's solver, and the matrix that it factorises."""
     from petsc4py import PETSc
 
     operator = matrix
@@ -155,7 +160,19 @@ def _factors(matrix: Foreign, n: int, symmetric: bool, own: Conditions) -> tuple
         nest.assemble()
         operator = nest.convert("aij", PETSc.Mat())
     operator.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
-    solver = PETSc.KSP().create(matrix.comm)
+    for share in WORKSPACE:
+        solver = _direct(operator, symmetric, share)
+        if share == WORKSPACE[-1] or not _ran_out(solver.getPC()):
+            break
+        solver.destroy()
+    return solver, operator
+
+
+def _direct(operator: Foreign, symmetric: bool, workspace: int) -> Foreign:
+    """PETSc's solver with the factors of a matrix. workspace: in per cent over MUMPS's own estimate."""
+    from petsc4py import PETSc
+
+    solver = PETSc.KSP().create(operator.comm)
     solver.setOperators(operator)
     solver.setType("fgmres")
     solver.setTolerances(rtol=REFINED, atol=0.0, max_it=REFINEMENTS)
@@ -163,9 +180,13 @@ def _factors(matrix: Foreign, n: int, symmetric: bool, own: Conditions) -> tuple
     preconditioner = solver.getPC()
     preconditioner.setType("cholesky" if symmetric and package == "mumps" else "lu")
     preconditioner.setFactorSolverType(package)
+    if package == "mumps":
+        preconditioner.setFactorSetUpSolverType()
+        preconditioner.getFactorMatrix().setMumpsIcntl(14, workspace)
     if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
         solver.setFromOptions()
-    return solver, operator
+    solver.setUp()
+    return solver
 
 
 def direct_solver() -> str:
