@@ -118,6 +118,7 @@ class CouplingOptions:
     hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
             only, theory (S12).
     componentwise: without the normal, for one displacement component (ties).
+    normals: (n_facets, 9, dim) unit normals at the contactor's facets' nodes; ``nodal_normals`` where left out.
     keep_points: keep the integration points; keep_sights: keep corners and middles of the segments, which takes a tenth of
             the time.
     """
@@ -130,6 +131,7 @@ class CouplingOptions:
     componentwise: bool = False
     keep_points: bool = False
     keep_sights: bool = False
+    normals: NDArray[np.float64] | None = None
 
 
 def couple(
@@ -186,7 +188,7 @@ def _check(contactor: Surface, target: Surface) -> None:
 def _cut(contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions) -> Json:
     """What the compiled core makes of some facets of the contactor."""
     tables = rule_tables(options.rule)
-    normals = nodal_normals(contactor)
+    normals = nodal_normals(contactor) if options.normals is None else options.normals
     part = contactor if len(facets) == len(contactor) else contactor.part(facets)
     turning = turning_within(part, normals[facets])
     order_c, split_c = _plan(part, tables, options.points, turning)

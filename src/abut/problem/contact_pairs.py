@@ -36,6 +36,7 @@ from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
+from abut.problem.contact_normals import contact_normals
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
 from abut.problem.tied_rows import tied_rows
@@ -223,9 +224,10 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
     reach = _reach(held, contactor, target)
-    contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
-    sizes = facet_sizes(contactor)
     scales = _scales(model, contactor, target)
+    normals = contact_normals(contactor, target, scales.share, reach, couple, held) if contact.frictional else None
+    contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
+    sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), scales.young / float(np.median(sizes))
     if tied:
         own = tied_rows(contactor, coupling, space, held)
@@ -257,14 +259,14 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
-    assert coupling.points is not None
+    assert coupling.points is not None and normals is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(slim, slip_operators(coupling.points), held)
+    return _with_friction(slim, slip_operators(coupling.points), normals, held)
 
 
-def _with_friction(own: Pair, operators: tuple[Sparse, ...], held: Supports) -> Pair:
+def _with_friction(own: Pair, operators: tuple[Sparse, ...], normals: NDArray[np.float64], held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    made = friction_rows(own.contactor, own.space, own.rows, operators, held)
+    made = friction_rows(own.contactor, own.space, own.rows, operators, normals, held)
     more = made.rows.shape[0] - len(own.space)
     prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
@@ -321,12 +323,13 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    return changed if own.slip is None else _with_friction(changed, own.slip.operators, held)
+    return changed if own.slip is None else _with_friction(changed, own.slip.operators, own.slip.at_facets, held)
 
 
 def _couple(
-    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple
-) -> tuple[Surface, Coupling, PressureSpace]:
+    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple,
+    normals: NDArray[np.float64] | None,
+) -> tuple[Surface, Coupling, PressureSpace]:  # fmt: skip
     """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
@@ -345,6 +348,7 @@ def _couple(
         options = CouplingOptions(
             rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
             keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_sights=not tied,
+            normals=normals,
         )  # fmt: skip
         closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
         without = partial(couple, contactor, target, degree, options)
@@ -383,14 +387,16 @@ def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
 
 @dataclass(frozen=True)
 class _Scales:
-    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together.
-    A rigid side has none."""
+    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together, of
+    which the target has a ``share``. A rigid side has none."""
 
     young: float
     compliance: float
+    share: float
 
 
 def _scales(model: Model, contactor: Surface, target: Surface) -> _Scales:
     both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
     young = min(material.modulus for material in both if material is not None)  # the model has refused two rigid sides
-    return _Scales(young, sum(2.0 / contact_modulus(material) for material in both))
+    yields = [0.0 if material is None else 2.0 / contact_modulus(material) for material in both]
+    return _Scales(young, sum(yields), yields[1] / sum(yields))

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.geometry import side_normals
+from abut.contact.geometry import split_at_creases
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.tangential import frames
 from abut.mesh.surface import Surface
@@ -19,10 +19,13 @@ from abut.types import Sparse
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
-    dim) unit, at the node of each function of the pressure."""
+    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; at_facets: (n_facets, 9, dim)
+    normals of the contactor; normals: (n_functions, dim), from target to contactor, tangents: (n_functions, dim - 1, dim),
+    unit, at the node of each function of the pressure."""
 
     operators: tuple[Sparse, ...]
+    at_facets: NDArray[np.float64]
+    normals: NDArray[np.float64]
     tangents: NDArray[np.float64]
 
 
@@ -38,13 +41,16 @@ class FrictionRows:
 
 
 def friction_rows(
-    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
-) -> FrictionRows:
-    """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
-    as at a plane of symmetry, there is no traction along it."""
+    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...],
+    at_facets: NDArray[np.float64], held: Supports,
+) -> FrictionRows:  # fmt: skip
+    """Rows of the gap (``normal``) and of the slip, theory (R1). at_facets: (n_facets, 9, dim) normals of the contactor.
+    Where supports hold the contactor's node along a tangent, as at a plane of symmetry, there is no traction along it."""
     dim, n = contactor.dim, len(space)
-    _, at = side_normals(contactor)
-    normals = -at[space.side]  # from target to contactor
+    split, _ = split_at_creases(contactor)
+    normals = np.zeros((len(split.points), dim))
+    normals[split.nodes[split.nodes >= 0]] = -at_facets[split.nodes >= 0]  # from target to contactor
+    normals = normals[space.side]
     axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
     tangents, free = frames(normals, np.stack(axes, axis=1))
     fields = [(space.transfer.T @ own).tocsr() for own in operators]
@@ -59,4 +65,4 @@ def friction_rows(
         components.append(only(space, keep))
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
-    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents))
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, at_facets, normals, tangents))

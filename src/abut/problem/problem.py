@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.problem.approach import approach_slip
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import Regularisation
@@ -192,28 +193,32 @@ class ContactProblem:
         return self.springs.added_to(sum(tangents[1:], tangents[0]))
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
-        """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, theory (R2);
-        empty without friction."""
+        """Weighted tangential jumps of each pair from which the next step's slip counts, theory (R2): those in a converged
+        state, and what is open moved on until it closes; empty without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []
         factors = weights(self.model.histories, before.time)
-        return [
-            (pair.operator @ before.unknowns + pair.prescribed @ factors)[pair.tangential]
-            if pair.frictional
-            else np.zeros(0)
-            for pair in self.pairs
-        ]
+        ends = np.cumsum([len(pair) for pair in self.pairs])[:-1]
+        result = []
+        for pair, multipliers, closed in zip(self.pairs, *(np.split(v, ends) for v in (before.multipliers, before.closed))):
+            jump = np.zeros(0)
+            if pair.frictional:
+                gap = pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors
+                jump = gap[pair.tangential] + approach_slip(pair, gap, multipliers, closed)
+            result.append(jump)
+        return result
 
     def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
-        """Slip of each pair with friction by name, (n, 2): in the step that ends ``now``, and in all steps in contact."""
+        """Slip of each pair with friction by name, (n, 2): in the step that ends ``now``, and in all steps; none while
+        open."""
         system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
         result = {}
         for pair, gap, closed in zip(self.pairs, system.split(system.gap(now)), system.split(now.closed)):
             if pair.frictional:
                 step = gap / pair.weight
-                step[pair.normal] = 0.0
+                step[pair.normal], step[~closed] = 0.0, 0.0
                 total = earlier.get(pair.contact.name, np.zeros((len(pair), 2)))[:, 1]
-                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0)])
+                result[pair.contact.name] = np.column_stack([step, total + step])
         return result
 
     def _shares(self, before: State, now: State) -> list[Share]:
