@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 
 
 def approach_slip(pair: Pair, gap: Array, multipliers: Array, closed: NDArray[np.bool_]) -> Array:
-    """Weighted tangential jumps (n_tangential,) at which what is open closes without slip, if the bodies approach along the
-    mean normal of the nearest contact. gap, multipliers: (n,) at the end of the last step, the gap weighted; closed: (n,)."""
+    """Weighted tangential jumps (n_tangential,) at which what is open closes without slip, if the bodies approach along
+    the mean normal of the nearest contact. gap, multipliers, closed: (n,) at the end of the last step, the gap weighted."""
     slip = pair.slip
     assert slip is not None
     result = np.zeros(len(pair))
@@ -64,7 +64,9 @@ def _ways(pair: Pair, open_by: Array, pressure: Array, closed: NDArray[np.bool_]
 def _neighbours(space: PressureSpace) -> sp.csr_matrix:
     """Functions that share a facet, (n, n), each its own neighbour."""
     uses = abs(space.plain).tocoo()
-    by_facet = sp.csr_matrix((np.ones(len(uses.row)), (uses.row // 9, uses.col)), shape=(uses.shape[0] // 9, len(space)))
+    by_facet = sp.csr_matrix(
+        (np.ones(len(uses.row)), (uses.row // 9, uses.col)), shape=(uses.shape[0] // 9, len(space))
+    )
     return (by_facet.T @ by_facet).tocsr()
 
 
@@ -95,4 +97,4 @@ def _beside(near: sp.csr_matrix, open_by: Array, roots: NDArray[np.int64], weigh
     most = np.zeros(len(roots))
     np.maximum.at(most, beside.row, open_by[beside.col])
     less = (1.0 + NO_WAY) * most[beside.row] - open_by[beside.col]
-    return np.bincount(beside.col, less * weight[beside.col], minlength=len(open_by))
+    return np.asarray(np.bincount(beside.col, less * weight[beside.col], minlength=len(open_by)), dtype=float)

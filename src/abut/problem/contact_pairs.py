@@ -31,14 +31,15 @@ from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import slip_operators
 from abut.errors import InputError
-from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
 from abut.problem.contact_normals import contact_normals
+from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
+from abut.problem.scales import scales_of
 from abut.problem.tied_rows import tied_rows
 from abut.types import Array, Sparse
 
@@ -224,7 +225,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
     reach = _reach(held, contactor, target)
-    scales = _scales(model, contactor, target)
+    scales = scales_of(model, contactor, target)
     normals = contact_normals(contactor, target, scales.share, reach, couple, held) if contact.frictional else None
     contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
@@ -259,14 +260,16 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
-    assert coupling.points is not None and normals is not None
+    assert coupling.points is not None
+    assert normals is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
     return _with_friction(slim, slip_operators(coupling.points), normals, held)
 
 
 def _with_friction(own: Pair, operators: tuple[Sparse, ...], normals: NDArray[np.float64], held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    made = friction_rows(own.contactor, own.space, own.rows, operators, normals, held)
+    sides = FrictionSides(own.contactor, own.target, normals, _reach(held, own.contactor, own.target))
+    made = friction_rows(sides, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)
     prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
@@ -383,20 +386,3 @@ def _points(
 
 def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
     return default_reach(contactor, target) + 2.0 * held.largest
-
-
-@dataclass(frozen=True)
-class _Scales:
-    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together, of
-    which the target has a ``share``. A rigid side has none."""
-
-    young: float
-    compliance: float
-    share: float
-
-
-def _scales(model: Model, contactor: Surface, target: Surface) -> _Scales:
-    both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
-    young = min(material.modulus for material in both if material is not None)  # the model has refused two rigid sides
-    yields = [0.0 if material is None else 2.0 / contact_modulus(material) for material in both]
-    return _Scales(young, sum(yields), yields[1] / sum(yields))

@@ -200,7 +200,9 @@ class ContactProblem:
         factors = weights(self.model.histories, before.time)
         ends = np.cumsum([len(pair) for pair in self.pairs])[:-1]
         result = []
-        for pair, multipliers, closed in zip(self.pairs, *(np.split(v, ends) for v in (before.multipliers, before.closed))):
+        for pair, multipliers, closed in zip(
+            self.pairs, *(np.split(v, ends) for v in (before.multipliers, before.closed))
+        ):
             jump = np.zeros(0)
             if pair.frictional:
                 gap = pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors
