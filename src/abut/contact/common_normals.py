@@ -8,31 +8,27 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Couple, CouplingOptions, IntegrationPoints
-from abut.contact.geometry import CREASE, by_kind, corner_functions, nodal_normals, split_at_creases
-from abut.errors import InputError
+from abut.contact.geometry import CREASE, by_kind, corner_functions, split_at_creases
 from abut.mesh.surface import Surface
 
 NO_TILT = 1e-9  # between the normals of the two sides: rounding
 Array = NDArray[np.float64]
 
 
-def common_normals(contactor: Surface, target: Surface, share: float, reach: float, couple: Couple) -> Array:
-    """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: ``nodal_normals``
-    turned by ``share`` of the way to the target opposite, theory (R7); as they are where there is none, or it leans by more
-    than at a crease. reach: length, as for ``couple``."""
-    normals = nodal_normals(contactor)
-    try:
-        other = nodal_normals(target)
-    except InputError:  # a facet without a normal at a node: the contactor may still see the others
-        return normals
-    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True)).points
+def common_normals(
+    contactor: Surface, target: Surface, own: Array, other: Array, share: float, reach: float, couple: Couple
+) -> Array:
+    """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``own`` turned by
+    ``share`` of the way to the target opposite, theory (R7); as they are where there is none, or it leans by more than at
+    a crease. own, other: of contactor and target, as from ``nodal_normals``; reach: length, as for ``couple``."""
+    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=own)).points
     if share == 0.0 or at is None or not len(at.weight):
-        return normals
+        return own
     tilt = _opposite(target, other, at) - at.normal
     tilt[np.einsum("na,na->n", at.normal, at.normal + tilt) < CREASE] = 0.0
     if np.abs(tilt).max(initial=0.0) <= NO_TILT:
-        return normals
-    return _turned(contactor, normals, share * _at_nodes(contactor, at, tilt))
+        return own
+    return _turned(contactor, own, share * _at_nodes(contactor, at, tilt))
 
 
 def _opposite(target: Surface, normals: Array, at: IntegrationPoints) -> Array:
