@@ -36,7 +36,7 @@ def friction_result(
     values = traction_values(pair, multipliers)
     shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
     return FrictionResult(
-        coefficient=float(np.max(limit.coefficient, initial=0.0)),
+        coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
         traction=np.stack(shown, axis=-1),
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),

@@ -228,7 +228,7 @@ def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, statu
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back
         slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
-        result = np.where(closed & slips & (size > small), SLIPPING, result)
+        result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
     return np.asarray(pair.of_functions(result))
 
 
