@@ -33,6 +33,14 @@ def slip_operators(at: IntegrationPoints) -> tuple[Sparse, ...]:
     return tuple(_integrated(at, shapes, field) for field in fields)
 
 
+def distances(at: IntegrationPoints, points: Array) -> Array:
+    """int H_k (x_C - x_T), facet by facet, of points (n_points, dim) as they are: (9 n_facets, 3); in 2D, where directions
+    turn with the normal, its size int H_k (x_C - x_T) . N, (9 n_facets, 1)."""
+    gap = at.weight * (at.gap_operator @ points.ravel())
+    field = gap[:, None] if points.shape[1] == 2 else gap[:, None] * at.normal
+    return np.asarray(at.pressure.T @ field)
+
+
 def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
     """int H_k d . (u_C - u_T); field: (n, dim) the direction d at every integration point."""
     dim, parts = field.shape[1], []

@@ -20,10 +20,11 @@ from abut.types import Sparse
 @dataclass(frozen=True)
 class Slip:
     """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
-    dim) unit, at the node of each function of the pressure."""
+    dim) unit, at the node of each function of the pressure; arms: how far the sides are apart, as from ``distances``."""
 
     operators: tuple[Sparse, ...]
     tangents: NDArray[np.float64]
+    arms: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -38,9 +39,14 @@ class FrictionRows:
 
 
 def friction_rows(
-    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
+    contactor: Surface,
+    space: PressureSpace,
+    normal: Sparse,
+    operators: tuple[Sparse, ...],
+    arms: NDArray[np.float64],
+    held: Supports,
 ) -> FrictionRows:
-    """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
+    """Rows of the gap (``normal``) and of the slip, theory (R1); operators, arms: of ``Slip``. Where supports hold the contactor's node along a tangent,
     as at a plane of symmetry, there is no traction along it."""
     dim, n = contactor.dim, len(space)
     _, at = side_normals(contactor)
@@ -59,4 +65,4 @@ def friction_rows(
         components.append(only(space, keep))
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
-    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents))
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents, arms))
