@@ -12,6 +12,7 @@ from abut.problem.linearised import Linearised
 from abut.solution import ContactResult
 from abut.solution.energy import Energy
 
+NOTHING = 1e-12  # energy over the largest so far that is taken for none: a millionth of forces and of motions
 Vector = NDArray[np.float64]
 
 
@@ -54,10 +55,15 @@ def tractions(system: Linearised, multipliers: Sequence[Vector]) -> list[Vector]
 
 
 def energy(
-    system: Linearised, before: Acting, now: Acting, slips: Sequence[Vector | None], contacts: Sequence[ContactResult]
+    system: Linearised,
+    before: Acting,
+    now: Acting,
+    slips: Sequence[Vector | None],
+    contacts: Sequence[ContactResult],
+    earlier: float = 0.0,
 ) -> Energy:
     """Of the step between two states. slips: (n,) of each pair's multipliers in the step, None without friction; contacts:
-    their results."""
+    their results; earlier: the largest size of the steps before, beside which what is left after unloading is rounding."""
     moved = now.displacement - before.displacement
     given = now.prescribed - before.prescribed
 
@@ -77,6 +83,6 @@ def energy(
         stored=float(internal @ moved),
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,
-        size=max(float(np.abs(internal) @ np.abs(moved)), 1e-300),
+        size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
         rounding=float(np.finfo(float).eps * (diagonal * np.abs(free)) @ np.abs(free - before.free)),
     )

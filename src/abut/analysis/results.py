@@ -61,7 +61,8 @@ def step_result(
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
-    acting, balance = _energy(end, acted, contacts) if attempt.converged else (None, None)
+    acting, balance = _energy(end, acted, contacts, before) if attempt.converged else (None, None)
+    strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
     step = Step(
         number=attempt.number,
@@ -88,8 +89,8 @@ def step_result(
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
         rounding=_rounding(system, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
-        strained=_strained(system, end.displacement, end.internal),
-        energy=balance,
+        strained=strained,
+        energy=balance if strained else None,
     )
     return step, acting
 
@@ -112,7 +113,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
 
 
 def _energy(
-    end: _End, acted: Acting | None, contacts: Sequence[ContactResult]
+    end: _End, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acting | None, Energy | None]:
     """What acts at the end of a step, and the energy over it; None without friction."""
     system, held = end.system, end.problem.held
@@ -126,7 +127,8 @@ def _energy(
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
     slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
-    return now, energy(system, acted, now, slips, contacts)
+    earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
+    return now, energy(system, acted, now, slips, contacts, earlier)
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
