@@ -11,7 +11,6 @@ import pytest
 import abut
 from abut.analysis import friction as analysed
 from abut.mesh import make
-from abut.problem.friction_rows import Slip
 from abut.problem.problem import ContactProblem
 from models.friction import FRICTION, PRESSURE, Hooke, cattaneo, on_a_slope, pushed, sheared
 from models.patch import two_blocks
@@ -175,8 +174,8 @@ def test_moments_of_tractions_across_a_gap(dim: int, monkeypatch: pytest.MonkeyP
     honest = analysed.friction_balance
 
     def without(pair, multipliers):
-        slip = None if pair.slip is None else Slip(pair.slip.operators, pair.slip.tangents, 0.0 * pair.slip.arms)
-        return honest(replace(pair, slip=slip), multipliers)
+        operators = replace(pair.slip.operators, arms=0.0 * pair.slip.operators.arms)
+        return honest(replace(pair, slip=replace(pair.slip, operators=operators)), multipliers)
 
     monkeypatch.setattr("abut.analysis.contact_results.friction_balance", without)
     line = checks(abut.solve(model))[model.contacts[0].name, "moment balance"]

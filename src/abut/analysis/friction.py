@@ -124,7 +124,7 @@ def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | N
     """Relative errors of force and moment between the two sides with pressure and traction; None without friction.
 
     Across a gap g a traction acts on one line on the contactor and on another on the target: of the moments, this couple
-    g N x t is left out, theory (R10)."""
+    g N x t is left out, theory (R9)."""
     if pair.slip is None:
         return None
     dim, ids = pair.contactor.dim, pair.contactor.node_ids
@@ -132,7 +132,7 @@ def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | N
     size = max(0.5 * float(np.abs(force).sum()), 1e-300)
     turn = 0.0
     if not pair.contactor.axisymmetric:
-        arms = pair.space.transfer.T @ pair.slip.arms
+        arms = pair.space.transfer.T @ pair.slip.operators.arms
         along = pair.tangential_traction(multipliers)
         if dim == 2:  # turned normals are square to N and of unit length at every point
             along = np.einsum("kd,kd->k", along, pair.slip.tangents[:, 0])[:, None]

@@ -29,7 +29,7 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
-from abut.contact.tangential import distances, slip_operators
+from abut.contact.tangential import SlipOperators, slip_operators
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
@@ -259,15 +259,12 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         return own_pair
     assert coupling.points is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    arms = distances(coupling.points, contactor.points)
-    return _with_friction(slim, slip_operators(coupling.points), arms, held)
+    return _with_friction(slim, slip_operators(coupling.points, contactor.points), held)
 
 
-def _with_friction(
-    own: Pair, operators: tuple[Sparse, ...], arms: NDArray[np.float64], held: Supports
-) -> Pair:
+def _with_friction(own: Pair, operators: SlipOperators, held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    made = friction_rows(own.contactor, own.space, own.rows, operators, arms, held)
+    made = friction_rows(own.contactor, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)
     prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
@@ -324,7 +321,7 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    return changed if own.slip is None else _with_friction(changed, own.slip.operators, own.slip.arms, held)
+    return changed if own.slip is None else _with_friction(changed, own.slip.operators, held)
 
 
 def _couple(
