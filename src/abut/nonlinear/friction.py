@@ -21,6 +21,7 @@ from abut.nonlinear.iteration import (
     largest_force,
     largest_pressure,
     part_of,
+    points,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -107,7 +108,7 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
         wanted = next_status(system, following, search.increment)
         changed = wanted != state.status
         state = following.with_status(wanted)
-        left = search.report(state, int(changed.sum()), clock)
+        left = search.report(state, points(system, changed), clock)
         if not changed.any() and (left <= TOLERANCE or (left <= ROUNDING and left > 0.5 * before)):
             return Found(state, tuple(search.done), True, changed, friction_laws)
         before = left if not changed.any() else np.inf
@@ -131,7 +132,7 @@ def _without_friction(search: _Search, first: State, limit: int) -> State | None
             return None
         wanted = next_status(system, state, search.increment)
         changed = (wanted != OPEN) != state.closed
-        search.report(state, int(changed.sum()), clock)
+        search.report(state, points(system, changed), clock)
         if not changed.any():
             return state.with_status(wanted)
         state = state.with_status(np.where(slippery & (wanted != OPEN), SLIPPING, wanted))
