@@ -16,6 +16,7 @@ from abut.cells import MAX_FACET_NODES
 from abut.model.offset import offsets
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
@@ -29,7 +30,7 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 @dataclass(frozen=True)
 class _End:
     """A model at the end of a load step. displacement, internal, reaction: (dim n_points,) without rigid motions on springs,
-    forces of stresses, forces of supports and links; pressures: (n,) of each pair."""
+    forces of stresses, of supports and links, of loads that follow the deformation; pressures: (n,) of each pair."""
 
     problem: ContactProblem
     system: Linearised
@@ -39,6 +40,7 @@ class _End:
     pressures: list[NDArray[np.float64]]
     internal: NDArray[np.float64]
     reaction: NDArray[np.float64]
+    following: NDArray[np.float64]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -68,13 +70,11 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=assembled.loaded.resultant @ system.factors,
+        load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
-        rigid={
-            body.rigid.body: RigidResult(*body.motion(end.nodal), *body.resultant(by_supports)) for body in held.bodies
-        },
+        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -97,8 +97,19 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         contact_force += pair.rows.T @ pressure
     motion = Motion(state.time, displacement, state.history.of(bodies.name))
     internal = bodies.evaluate(motion, motion).force
-    reaction = internal - assembled.loaded.forces @ system.factors - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, reaction)
+    following = np.zeros_like(displacement)
+    for term in problem.terms:
+        if isinstance(term, FollowerLoads):
+            following -= term.evaluate(motion, motion).force
+    reaction = internal - assembled.loaded.forces @ system.factors - contact_force - following
+    return _End(problem, system, state, motion, displacement, pressures, internal, reaction, following)
+
+
+def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
+    """Motion of a rigid body, and what moves it."""
+    if finite:
+        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
+    return RigidResult(*body.motion(nodal), *body.resultant(forces))
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
