@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.models.sheets import chain, sheet, together, turn
 
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent, normal_derivative
@@ -13,7 +14,6 @@ from abut.contact.geometry import Smoothing, nodal_normals, smoothing
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.types import Array
-from tests.models.sheets import chain, sheet, together, turn
 
 LINES = ("line2", "line3")
 FACES = ("tri3", "tri6", "quad4", "quad8", "quad9")
