@@ -18,6 +18,7 @@ from abut.analysis.statistics import (
     pressure_statistics,
     resultant,
 )
+from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import full_moments, nodal_normals
 from abut.contact.nodal_recovery import (
     Averages,
@@ -37,13 +38,15 @@ from abut.solution.state import OPEN
 
 @dataclass(frozen=True)
 class PairState:
-    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all;
-    pressure, weight int H_k, weighted gap and contact of the multipliers that are pressures (of a tie: all)."""
+    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all; limit:
+    of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
+    that are pressures (of a tie: all)."""
 
     pair: Pair
     multipliers: NDArray[np.float64]
     status: NDArray[np.int8]
     slips: NDArray[np.float64]
+    limit: FrictionBound | None
     pressure: NDArray[np.float64]
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
@@ -57,12 +60,15 @@ class PairState:
         gap: NDArray[np.float64],
         status: NDArray[np.int8],
         slips: NDArray[np.float64] | None,
+        factors: NDArray[np.float64],
     ) -> PairState:
-        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet."""
+        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet; factors: of the model's
+        histories."""
         every = slice(None) if pair.tied else pair.normal
         slips = np.zeros((len(pair), 2)) if slips is None else slips
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
-        return cls(pair, multipliers, status, slips, pressure, weight, gap, status[every] != OPEN)
+        limit = pair.friction(factors) if pair.frictional else None
+        return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN)
 
     @cached_property
     def values(self) -> NDArray[np.float64]:
@@ -133,13 +139,13 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
         checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
-        + friction_checks(pair, own.multipliers, own.status, own.slips, around.reference),
+        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips),
+        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit),
     )
 
 

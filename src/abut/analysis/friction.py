@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
 from abut.problem.contact_pairs import Pair
@@ -24,17 +25,18 @@ def traction_values(pair: Pair, multipliers: Vector) -> Vector:
 
 
 def friction_result(
-    pair: Pair, at: Averages, multipliers: Vector, status: NDArray[np.int8], slips: Vector
+    pair: Pair, at: Averages, multipliers: Vector, status: NDArray[np.int8], slips: Vector, limit: FrictionBound | None
 ) -> FrictionResult | None:
-    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; None without friction."""
-    if not pair.frictional:
+    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; limit: at the end of the step; None
+    without friction."""
+    if limit is None:
         return None
     weight, own = pair.space.weight, status[pair.normal]
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     values = traction_values(pair, multipliers)
     shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
     return FrictionResult(
-        coefficient=pair.contact.coefficient,
+        coefficient=float(np.max(limit.coefficient, initial=0.0)),
         traction=np.stack(shown, axis=-1),
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
@@ -74,16 +76,22 @@ def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
 
 
 def friction_checks(
-    pair: Pair, multipliers: Vector, status: NDArray[np.int8], slips: Vector, largest: float
+    pair: Pair,
+    multipliers: Vector,
+    status: NDArray[np.int8],
+    slips: Vector,
+    limit: FrictionBound | None,
+    largest: float,
 ) -> tuple[Check, ...]:
-    """What a solution with friction must meet at every multiplier. largest: pressure, now or in a step before."""
-    if not pair.frictional:
+    """What a solution with friction must meet at every multiplier. limit: at the end of the step, None without
+    friction; largest: pressure, now or in a step before."""
+    if limit is None:
         return ()
-    name, own, coefficient = pair.contact.name, status[pair.normal], pair.contact.coefficient
+    name, own = pair.contact.name, status[pair.normal]
     pressure = np.maximum(multipliers[pair.normal], 0.0)
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     size, way = np.linalg.norm(traction, axis=1), np.linalg.norm(slip, axis=1)
-    bound = coefficient * pressure if np.isfinite(coefficient) else np.where(own != OPEN, np.inf, 0.0)
+    bound = np.where(own != OPEN, np.inf, 0.0) if limit.rough else limit.at(pressure)[0]
     largest = max(largest, float(pressure.max(initial=0.0)), 1e-300)
     slips_now, sticks = own == SLIPPING, own == CLOSED
     power = np.einsum("kd,kd->k", traction, slip)

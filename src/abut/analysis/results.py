@@ -119,7 +119,8 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         [slips.get(pair.contact.name) for pair in system.pairs],
     )  # fmt: skip
     return tuple(
-        contact_result(model.mesh, PairState.of(*own), residual, beside_it) for own, beside_it in zip(found, around)
+        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it)
+        for own, beside_it in zip(found, around)
     )
 
 

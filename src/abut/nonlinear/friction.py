@@ -45,17 +45,19 @@ def _laws(system: Linearised, state: State, slippery: bool) -> list[LawRows]:
     """The same, or without friction where ``slippery``."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(pair, _law(pair, slippery), gap, multipliers, closed, slipping if pair.frictional else None)
+        at_multipliers(
+            pair, _law(pair, system, slippery), gap, multipliers, closed, slipping if pair.frictional else None
+        )
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 
 
-def _law(pair: Pair, slippery: bool) -> Tied | Coulomb | Complementarity:
+def _law(pair: Pair, system: Linearised, slippery: bool) -> Tied | Coulomb | Complementarity:
     if pair.tied:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
-    return Coulomb(pair.stiffness, 0.0 if slippery else pair.contact.coefficient)
+    return Coulomb(pair.stiffness, 0.0 if slippery else pair.friction(system.factors))
 
 
 def solve_friction(
@@ -198,7 +200,7 @@ def next_status(system: Linearised, state: State, increment: Increment) -> Statu
     gaps, multipliers, before = (system.split(own) for own in (system.gap(state), state.multipliers, state.status))
     return system.join(
         [
-            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, gap, own, status, small)
+            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, own, status, small)
             for pair, gap, own, status in zip(system.pairs, gaps, multipliers, before)
         ]
     )
@@ -208,7 +210,7 @@ def _contacts(system: Linearised, values: Vector) -> list[tuple[Pair, Vector]]:
     return [(pair, own) for pair, own in zip(system.pairs, system.split(values)) if not pair.tied]
 
 
-def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
+def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
     normal, own = pair.normal, status[pair.normal]
     depth = -gap[normal] / pair.scale[normal]
     pushed = multipliers[normal] + depth
@@ -216,11 +218,12 @@ def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small:
     result = np.where(closed, CLOSED, OPEN)
     if not pair.frictional:
         return result
-    if np.isfinite(pair.contact.coefficient):
+    limit = pair.friction(factors)
+    if not limit.rough:
         drag = pair.tangential_traction(multipliers)
         trial = pair.tangential_traction(multipliers - gap / pair.scale)
         size = np.linalg.norm(trial, axis=1)
-        excess = size - pair.contact.coefficient * np.maximum(pushed, 0.0)
+        excess = size - limit.at(np.maximum(pushed, 0.0))[0]
         back = (
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.contact.clearance import of_corners, partly_adjusted
 from abut.contact.coupling import Couple, Coupling, CouplingOptions, couple, default_reach, surface_degree
+from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.node_to_segment import node_to_segment
 from abut.contact.opposite import by_target
@@ -132,6 +133,16 @@ class Pair:
             return result
         along = np.where(self.index[:, 1:] >= 0, multipliers[np.maximum(self.index[:, 1:], 0)], 0.0)
         return np.asarray(np.einsum("kb,kbd->kd", along, self.slip.tangents))
+
+    def friction(self, factors: NDArray[np.float64]) -> FrictionBound:
+        """What each function of a pair with friction carries along the tangents, the model's histories being at ``factors``
+        (n_histories,)."""
+        return FrictionBound(np.full(len(self.space), self.contact.coefficient))
+
+    @property
+    def steepest(self) -> NDArray[np.float64]:
+        """The largest coefficient of friction that each function ever has, (n_functions,)."""
+        return np.full(len(self.space), self.contact.coefficient)
 
     @property
     def weight(self) -> NDArray[np.float64]:
