@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.linear.solver import Prepared
+from abut.nonlinear.exact import ROUGH, STRIDE
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
@@ -18,6 +19,7 @@ from abut.nonlinear.iteration import (
     Increment,
     advance,
     largest_pressure,
+    points,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -89,14 +91,15 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
     system, state = course.solver.system, first
     seen: set[bytes] = set()
     fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
+    tolerance, accuracy = tolerated(course.solver), ROUGH
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(course.solver, state, friction_laws(system, state))
+        following = advance(course.solver, state, friction_laws(system, state), accuracy)
         wanted = next_status(system, following, course.increment)
-        changed = int((wanted != state.status).sum())
+        changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
         left = course.add(state, changed, clock)
-        if not changed and (left <= TOLERANCE or (left <= ROUNDING and left > 0.5 * before)):
+        if not changed and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
             return course.found(state)
         better = changed < fewest or (changed == 0 and left < 0.5 * least)
         idle = 0 if better else idle + 1
@@ -104,8 +107,14 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
             return None
         fewest, least = min(fewest, changed), min(least, left)
         before = left if not changed else np.inf
+        accuracy = ROUGH if changed else max(0.3 * tolerance / left, STRIDE)
         seen.add(wanted.tobytes())
     return None
+
+
+def tolerated(solver: Prepared) -> float:
+    """What laws and equilibrium may have left, over the largest pressure and force."""
+    return TOLERANCE if solver.exact else max(TOLERANCE, solver.accurate)
 
 
 def friction_laws(system: Linearised, state: State) -> list[LawRows]:
@@ -165,5 +174,5 @@ def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, statu
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back
         slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
-        result = np.where(closed & slips & (size > small), SLIPPING, result)
+        result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
     return np.asarray(pair.of_functions(result))

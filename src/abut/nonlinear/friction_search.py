@@ -10,7 +10,7 @@ import numpy as np
 from abut.errors import SingularModelError
 from abut.nonlinear.friction_interior import Manner, Programme, begin, iterate, near
 from abut.nonlinear.friction_newton import Course, newton, next_status
-from abut.nonlinear.iteration import Found, largest_pressure
+from abut.nonlinear.iteration import Found, largest_pressure, points
 from abut.solution.state import CLOSED, OPEN, State
 
 BOLD, CAREFUL, CONVEX = Manner(0.95, 1e-3), Manner(0.7, 0.05), Manner(0.95, 1e-3, dilates=True)
@@ -42,7 +42,7 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
     programme = Programme.of(course.solver)
     here = begin(programme, state, manner)
     before = np.where(programme.solver.system.tied, CLOSED, OPEN)
-    few = max(int(FEW * len(before)), 2)
+    few = max(int(FEW * len(programme.normal)), 2)
     short = 0
     for _ in range(limit):
         clock = time.perf_counter()
@@ -50,7 +50,7 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
         if not np.isfinite(here.state.multipliers).all():
             return None
         wanted = next_status(programme.solver.system, here.state.with_status(before), course.increment)
-        changed, before = int((wanted != before).sum()), wanted
+        changed, before = points(programme.solver.system, wanted != before), wanted
         now = here.state.with_status(wanted)
         course.add(now, changed, clock)
         at = near(programme, here)
