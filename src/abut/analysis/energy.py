@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.nonlinear.friction import TOLERANCE
 from abut.problem.linearised import Linearised
 from abut.solution import ContactResult
 from abut.solution.energy import Energy
@@ -74,8 +75,9 @@ def energy(
     for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
         if pair.frictional and slip is not None:
             stepping += 0.5 * float((pair.weight * slip)[pair.tangential] @ (late - early))
-    internal, free = mean("internal"), now.free
-    diagonal = system.stiffness.diagonal()
+    internal, step = mean("internal"), np.abs(now.free - before.free)
+    rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
+    unbalanced = TOLERANCE * max(float(np.abs(now.internal).max()), float(np.abs(now.loads).max())) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
@@ -84,5 +86,5 @@ def energy(
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,
         size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
-        rounding=float(np.finfo(float).eps * (diagonal * np.abs(free)) @ np.abs(free - before.free)),
+        left=float(rounding + unbalanced),
     )
