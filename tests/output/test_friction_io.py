@@ -166,9 +166,9 @@ def test_deck(tmp_path: Path) -> None:
     ("card", "words"),
     [
         ("*FRICTION\n-0.1", "expected a coefficient >= 0"),
-        ("*FRICTION\nmuch", "expected a coefficient >= 0"),
+        ("*FRICTION\nmuch", "expected a number"),
         ("*FRICTION", "its data line is missing"),
-        ("*FRICTION\n0.1\n0.2", "give one"),
+        ("*FRICTION\n0.1\n0.2", "contact pressure is missing"),
         ("*FRICTION, ROUGH\n0.1", "ROUGH"),
     ],
 )

@@ -47,7 +47,7 @@ def friction_result(
     taken = np.where(own != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
     work, each = float(weight @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
-        coefficient=float(np.max(limit.coefficient, initial=0.0)),
+        coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
         traction=np.stack(shown, axis=-1),
         traction_limit=_limit_at_nodes(pair, at, bound),
         slip=_at_nodes(pair, slip),

@@ -18,6 +18,7 @@ from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
@@ -31,7 +32,8 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 @dataclass(frozen=True)
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
-    springs, forces of stresses, of loads, of supports and links; pressures: (n,) of each pair."""
+    springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
+    pressures: (n,) of each pair."""
 
     problem: ContactProblem
     system: Linearised
@@ -42,6 +44,7 @@ class _End:
     internal: NDArray[np.float64]
     loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
+    following: NDArray[np.float64]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -76,13 +79,11 @@ def step_result(
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=assembled.loaded.resultant @ system.factors,
+        load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
-        rigid={
-            body.rigid.body: RigidResult(*body.motion(end.nodal), *body.resultant(by_supports)) for body in held.bodies
-        },
+        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -107,9 +108,13 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         contact_force += pair.rows.T @ pressure
     motion = Motion(state.time, displacement, state.history.of(bodies.name))
     internal = bodies.evaluate(motion, motion).force
-    loads = assembled.loaded.forces @ system.factors
+    following = np.zeros_like(displacement)
+    for term in problem.terms:
+        if isinstance(term, FollowerLoads):
+            following -= term.evaluate(motion, motion).force
+    loads = assembled.loaded.forces @ system.factors + following
     reaction = internal - loads - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction)
+    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following)
 
 
 def _energy(
@@ -129,6 +134,13 @@ def _energy(
     slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
     earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
     return now, energy(system, acted, now, slips, contacts, earlier)
+
+
+def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
+    """Motion of a rigid body, and what moves it."""
+    if finite:
+        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
+    return RigidResult(*body.motion(nodal), *body.resultant(forces))
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:

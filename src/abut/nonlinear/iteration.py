@@ -32,14 +32,16 @@ class Increment:
 
 @dataclass(frozen=True)
 class Found:
-    """What a search ends with. cycling: (n,) bool, multipliers that go in and out for ever, or whose law stays violated;
-    laws: those of all pairs as the last iteration saw them, near any state."""
+    """What a search ends with. reason: why it did not converge, where more can be said than that; cycling: (n,) bool,
+    multipliers that go in and out for ever, or whose law stays violated; laws: those of all pairs as the last iteration
+    saw them, near any state."""
 
     state: State
     iterations: tuple[Iteration, ...]
     converged: bool
     cycling: NDArray[np.bool_]
     laws: Laws
+    reason: str = ""
 
 
 def active_laws(system: Linearised, state: State) -> list[LawRows]:
@@ -132,6 +134,8 @@ def largest_force(system: Linearised, state: State, internal: Vector, increment:
     displacements have been condensed, those that are left see nothing of contact forces that balance each other on a body,
     as round a press fit."""
     push = system.weight * state.multipliers
+    if system.about is not None:
+        return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, 1e-300)
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
     return max(*largest, increment.largest.force, 1e-300)
 
