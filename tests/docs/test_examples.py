@@ -28,16 +28,18 @@ LONG = {"pin-lug", "hertz-sphere"}
 def test_example_runs_and_balances(path: Path) -> None:
     """Supports carry what the loads bring; the contact carries it from body to body (to 1e-9 of the load; of the sizes of
     nodal forces where they cancel round a fit)."""
-    solution = abut.solve(load_job(path).model)
+    model = load_job(path).model
+    solution = abut.solve(model)
     assert solution.converged
     step = solution.steps[-1]
+    tied = [contact.name for contact in model.contacts if contact.kind == "tied"]
     check_expected(path, step)
     size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
     if path.parent.name == "twisted-hub":
         size = max(np.abs(c.contactor_forces).sum() for c in step.contacts)
     balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
     assert np.abs(balance).max() < 1e-9 * size
-    for contact in step.contacts:  # action and reaction: the target gets the opposite, on the same lines of action
+    for contact in (own for own in step.contacts if own.name not in tied):
         assert contact.pressure[np.isfinite(contact.pressure)].min() > -0.1 * contact.max_pressure
     assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
 

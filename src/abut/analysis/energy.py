@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.nonlinear.friction import TOLERANCE
 from abut.problem.linearised import Linearised
 from abut.solution import ContactResult
 from abut.solution.energy import Energy
@@ -21,7 +20,7 @@ Vector = NDArray[np.float64]
 class Acting:
     """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
     internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
-    each pair's multipliers of friction; free: (n_free,) displacements."""
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: what the forces on these have left at most."""
 
     displacement: Vector
     prescribed: Vector
@@ -31,6 +30,7 @@ class Acting:
     pressing: Vector
     tractions: Sequence[Vector]
     free: Vector
+    residual: float = 0.0
 
     @classmethod
     def none(cls, prescribed: Vector, system: Linearised) -> Acting:
@@ -77,7 +77,7 @@ def energy(
             stepping += 0.5 * float((pair.weight * slip)[pair.tangential] @ (late - early))
     internal, step = mean("internal"), np.abs(now.free - before.free)
     rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
-    unbalanced = TOLERANCE * max(float(np.abs(now.internal).max()), float(np.abs(now.loads).max())) * step.sum()
+    unbalanced = max(before.residual, now.residual) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
