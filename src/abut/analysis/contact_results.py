@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
-from abut.analysis.friction import friction_checks, friction_forces, friction_result
+from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -18,6 +18,7 @@ from abut.analysis.statistics import (
     pressure_statistics,
     resultant,
 )
+from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import full_moments, nodal_normals
 from abut.contact.nodal_recovery import (
     Averages,
@@ -37,13 +38,15 @@ from abut.solution.state import OPEN
 
 @dataclass(frozen=True)
 class PairState:
-    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all;
-    pressure, weight int H_k, weighted gap and contact of the multipliers that are pressures (of a tie: all)."""
+    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all; limit:
+    of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
+    that are pressures (of a tie: all)."""
 
     pair: Pair
     multipliers: NDArray[np.float64]
     status: NDArray[np.int8]
     slips: NDArray[np.float64]
+    limit: FrictionBound | None
     pressure: NDArray[np.float64]
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
@@ -57,12 +60,15 @@ class PairState:
         gap: NDArray[np.float64],
         status: NDArray[np.int8],
         slips: NDArray[np.float64] | None,
+        factors: NDArray[np.float64],
     ) -> PairState:
-        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet."""
+        """Of all its multipliers, each (n,); slips: None where nothing has slipped yet; factors: of the model's
+        histories."""
         every = slice(None) if pair.tied else pair.normal
         slips = np.zeros((len(pair), 2)) if slips is None else slips
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
-        return cls(pair, multipliers, status, slips, pressure, weight, gap, status[every] != OPEN)
+        limit = pair.friction(factors) if pair.frictional else None
+        return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN)
 
     @cached_property
     def values(self) -> NDArray[np.float64]:
@@ -101,8 +107,10 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
-def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surroundings) -> ContactResult:
-    """residual: of the contact law."""
+def contact_result(
+    mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
+) -> ContactResult:
+    """residual: of the contact law; earlier: of the step before, None in the first."""
     pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
     forces, others = own.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
@@ -132,14 +140,18 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
-        + friction_checks(pair, own.multipliers, own.status, own.slips, around.reference),
+        checks=certificate(
+            pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
+        )
+        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips),
+        friction=None if at is None else friction_result(
+            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
+        ),
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.energy import Acting
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.results import step_result
 from abut.analysis.step_records import check_order, restored, saved_step
@@ -57,6 +58,7 @@ class Run:
     kind: str
     solver: LinearSolver
     steps: list[Step] = field(default_factory=list)
+    acted: Acting | None = None  # what acted at the end of the last step, with friction
 
     @classmethod
     def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
@@ -129,7 +131,7 @@ class Run:
         )
 
     def _result(self, attempt: Attempt) -> Step:
-        step = step_result(self.assembled, attempt, self.steps)
+        step, self.acted = step_result(self.assembled, attempt, self.steps, self.acted)
         _check_size(self.model, step.displacement, self.told.note)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 

@@ -12,6 +12,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.friction_bound import FrictionBound
+
 TENSION = 30.0  # how much more a point in tension counts than one in compression
 TENSION_START = 1e-3  # of the largest pressure: tension below it counts less, lest Newton chases the last ripples
 Array = NDArray[np.float64]
@@ -89,12 +91,12 @@ class Coulomb:
     """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R3), (R4), (R5).
 
     jump: gap, and slip since the last converged step; traction: pressure, and tangential traction on the contactor.
-    stiffness: as of ``Complementarity``; friction: the coefficient, > 0, infinite where nothing slips.
-    The bound is that of the augmented pressure p - c g and the direction that of t - c v, c the stiffness: Alart and
+    stiffness: as of ``Complementarity``; friction: the coefficient, infinite where nothing slips, or the bound of each
+    point. The bound is that of the augmented pressure p - c g and the direction that of t - c v, c the stiffness: Alart and
     Curnier 1991."""
 
     stiffness: float
-    friction: float
+    friction: float | FrictionBound
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
         """As in ``Law``, c = 2 or 3."""
@@ -106,18 +108,19 @@ class Coulomb:
         by_traction = np.where(closed[:, None, None], 0.0, -soft * np.eye(c))
         own = np.flatnonzero(closed & slips)
         if len(own):
-            gap, slip, pressure, drag = jump[own, 0], jump[own, 1:], traction[own, 0], traction[own, 1:]
-            pushed = np.maximum(pressure - self.stiffness * gap, 0.0)
+            slip, drag = jump[own, 1:], traction[own, 1:]
+            limit = self.friction if isinstance(self.friction, FrictionBound) else FrictionBound(self.friction)
+            bound, slope = limit.at(np.maximum(traction[:, 0] - self.stiffness * jump[:, 0], 0.0))
+            bound, slope = bound[own], slope[own, None, None]
             trial = drag - self.stiffness * slip
             size = np.maximum(np.linalg.norm(trial, axis=1), 1e-300)
             along = trial / size[:, None]
-            bound = self.friction * pushed
             across = np.eye(c - 1) - along[:, :, None] * along[:, None]
             turn = np.minimum(bound / size, 1.0)[:, None, None] * across
             residual[own, 1:] = -soft * (drag - bound[:, None] * along)
-            by_jump[own, 1:] = np.concatenate([-self.friction * along[:, :, None], -turn], axis=2)
+            by_jump[own, 1:] = np.concatenate([-slope * along[:, :, None], -turn], axis=2)
             by_traction[own, 1:] = np.concatenate(
-                [soft * self.friction * along[:, :, None], soft * (turn - np.eye(c - 1))], axis=2
+                [soft * slope * along[:, :, None], soft * (turn - np.eye(c - 1))], axis=2
             )
         return LawResult(residual, by_jump, by_traction, closed)
 

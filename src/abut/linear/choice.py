@@ -43,16 +43,11 @@ def chosen(
             'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
             'couple points; choose "direct" or "auto"'
         )
-    friction = [pair.contact.name for pair in pairs if pair.frictional]
-    if linear == "amg" and friction:
-        raise InputError(
-            f'solve.linear: "amg" does not know friction, which contact \'{friction[0]}\' has; choose "direct" or "auto"'
-        )
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs) and not friction
+    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 

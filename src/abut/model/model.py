@@ -110,7 +110,8 @@ class Model:
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
-        return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
+        friction = (contact.friction_amplitude for contact in self.contacts)
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction]))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
+from abut.nonlinear.exact import ROUGH, STRIDE
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
@@ -21,6 +22,7 @@ from abut.nonlinear.iteration import (
     largest_force,
     largest_pressure,
     part_of,
+    points,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -45,17 +47,19 @@ def _laws(system: Linearised, state: State, slippery: bool) -> list[LawRows]:
     """The same, or without friction where ``slippery``."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(pair, _law(pair, slippery), gap, multipliers, closed, slipping if pair.frictional else None)
+        at_multipliers(
+            pair, _law(pair, system, slippery), gap, multipliers, closed, slipping if pair.frictional else None
+        )
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 
 
-def _law(pair: Pair, slippery: bool) -> Tied | Coulomb | Complementarity:
+def _law(pair: Pair, system: Linearised, slippery: bool) -> Tied | Coulomb | Complementarity:
     if pair.tied:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
-    return Coulomb(pair.stiffness, 0.0 if slippery else pair.contact.coefficient)
+    return Coulomb(pair.stiffness, 0.0 if slippery else pair.friction(system.factors))
 
 
 def solve_friction(
@@ -97,22 +101,30 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
     system, state = search.solver.system, first
     seen: set[bytes] = set()
     before, careful, changed = np.inf, False, np.zeros(len(state.status), dtype=bool)
+    tolerance = tolerated(search.solver)
+    accuracy = ROUGH
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(search.solver, state, friction_laws(system, state))
+        following = advance(search.solver, state, friction_laws(system, state), accuracy)
         if careful:
             following = search.shortened(state, following)
         wanted = next_status(system, following, search.increment)
         changed = wanted != state.status
         state = following.with_status(wanted)
-        left = search.report(state, int(changed.sum()), clock)
-        if not changed.any() and (left <= TOLERANCE or (left <= ROUNDING and left > 0.5 * before)):
+        left = search.report(state, points(system, changed), clock)
+        if not changed.any() and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
             return Found(state, tuple(search.done), True, changed, friction_laws)
         before = left if not changed.any() else np.inf
+        accuracy = ROUGH if changed.any() else max(0.3 * tolerance / left, STRIDE)
         if changed.any():
             careful = careful or wanted.tobytes() in seen
             seen.add(wanted.tobytes())
     return Found(state, tuple(search.done), False, changed, friction_laws)
+
+
+def tolerated(solver: Prepared) -> float:
+    """What laws and equilibrium may have left, over the largest pressure and force."""
+    return TOLERANCE if solver.exact else max(TOLERANCE, solver.accurate)
 
 
 def _without_friction(search: _Search, first: State, limit: int) -> State | None:
@@ -124,12 +136,12 @@ def _without_friction(search: _Search, first: State, limit: int) -> State | None
     for _ in range(limit):
         clock = time.perf_counter()
         try:
-            state = advance(search.solver, state, _laws(system, state, slippery=True))
+            state = advance(search.solver, state, _laws(system, state, slippery=True), ROUGH)
         except SingularModelError:
             return None
         wanted = next_status(system, state, search.increment)
         changed = (wanted != OPEN) != state.closed
-        search.report(state, int(changed.sum()), clock)
+        search.report(state, points(system, changed), clock)
         if not changed.any():
             return state.with_status(wanted)
         state = state.with_status(np.where(slippery & (wanted != OPEN), SLIPPING, wanted))
@@ -198,7 +210,7 @@ def next_status(system: Linearised, state: State, increment: Increment) -> Statu
     gaps, multipliers, before = (system.split(own) for own in (system.gap(state), state.multipliers, state.status))
     return system.join(
         [
-            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, gap, own, status, small)
+            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, own, status, small)
             for pair, gap, own, status in zip(system.pairs, gaps, multipliers, before)
         ]
     )
@@ -208,7 +220,7 @@ def _contacts(system: Linearised, values: Vector) -> list[tuple[Pair, Vector]]:
     return [(pair, own) for pair, own in zip(system.pairs, system.split(values)) if not pair.tied]
 
 
-def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
+def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
     normal, own = pair.normal, status[pair.normal]
     depth = -gap[normal] / pair.scale[normal]
     pushed = multipliers[normal] + depth
@@ -216,16 +228,17 @@ def _wanted(pair: Pair, gap: Vector, multipliers: Vector, status: Status, small:
     result = np.where(closed, CLOSED, OPEN)
     if not pair.frictional:
         return result
-    if np.isfinite(pair.contact.coefficient):
+    limit = pair.friction(factors)
+    if not limit.rough:
         drag = pair.tangential_traction(multipliers)
         trial = pair.tangential_traction(multipliers - gap / pair.scale)
         size = np.linalg.norm(trial, axis=1)
-        excess = size - pair.contact.coefficient * np.maximum(pushed, 0.0)
+        excess = size - limit.at(np.maximum(pushed, 0.0))[0]
         back = (
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back
         slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
-        result = np.where(closed & slips & (size > small), SLIPPING, result)
+        result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
     return np.asarray(pair.of_functions(result))
 
 

@@ -104,15 +104,28 @@ def report(
         for pair, g in zip(system.pairs, gap)
         if not pair.tied
     ]
+    rubbing = any(pair.frictional for pair in system.pairs)
     return Iteration(
         step=increment.number,
         iteration=count,
-        active=int(state.closed.sum()),
+        active=points(system, state.closed),
         changed=changed,
         residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment)),
         contact_residual=_relative(violation, largest_pressure(state, increment)),
         penetration=max(depth, default=0.0),
         seconds=seconds,
+        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
+        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
+    )
+
+
+def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = False) -> int:
+    """How many multipliers (n,) have a flag, of a pair with friction how many points; all pairs, or those of friction."""
+    own = zip(system.pairs, system.split(flags))
+    return sum(
+        int((flag[pair.normal] if pair.frictional else flag).sum())
+        for pair, flag in own
+        if pair.frictional or not of_friction
     )
 
 

@@ -13,7 +13,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.restraint import Restraint
 from abut.solution.state import State
-from abut.types import Array, Operator
+from abut.types import Array, Operator, Sparse
 
 Vector = NDArray[np.float64]
 
@@ -23,6 +23,8 @@ class Rows:
     """The laws of all pairs near the present state, in the unknowns: residual + by_displacement du + by_pressure dp = 0.
 
     ``decoupled`` rows hold nothing but their own pressure. ``symmetric``: all others are minus the rows of the operator.
+    by_gap, by_multiplier: (n, n) derivatives by the weighted gaps and, these apart, by the multipliers; None where a law
+    looks at points.
     """
 
     residual: Vector
@@ -30,6 +32,8 @@ class Rows:
     by_pressure: Operator
     decoupled: NDArray[np.bool_]
     symmetric: bool
+    by_gap: Sparse | None = None
+    by_multiplier: Sparse | None = None
 
     @property
     def fixed(self) -> Vector:
@@ -148,11 +152,14 @@ class Linearised:
                 by_compliance.append(
                     np.zeros((len(pair), len(self.compliance))) if empty else law.by_gap @ self.compliance[here]
                 )
+        at_points = any(law.at_points for law in laws)
         by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
         return Rows(
             residual=np.concatenate([law.residual for law in laws]),
             by_displacement=sp.vstack(by_displacement).tocsr(),
             by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
             decoupled=np.concatenate([law.decoupled for law in laws]),
-            symmetric=not any(law.at_points for law in laws) and all(law.symmetric for law in laws),
+            symmetric=not at_points and all(law.symmetric for law in laws),
+            by_gap=None if at_points else sp.block_diag([law.by_gap for law in laws]).tocsr(),
+            by_multiplier=by_pressure,
         )

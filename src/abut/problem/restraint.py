@@ -196,13 +196,13 @@ def _pushes_and_drags(pair: Pair, moves: NDArray[np.float64], active: NDArray[np
     there = np.ones(len(pair.space), dtype=bool) if active is None else active[pair.normal]
     along = [np.where(at[:, None] >= 0, moved[at], 0.0)[there] for at in pair.index.T]
     push, drags = along[0], along[1:]
-    steep = pair.contact.coefficient
+    steep = pair.steepest[there, None]
     if len(drags) == 1:
         sides = [drags[0], -drags[0]]
     else:
         angles = 2.0 * np.pi * np.arange(EDGES) / EDGES
         sides = [(np.cos(a) * drags[0] + np.sin(a) * drags[1]) / np.cos(np.pi / EDGES) for a in angles]
-    edges = [push, *sides] if np.isinf(steep) else [push, *(push + steep * side for side in sides)]
+    edges = [push, *sides] if np.isinf(steep).any() else [push, *(push + steep * side for side in sides)]
     rows = np.concatenate(edges)
     length = np.linalg.norm(rows, axis=1)
     keep = length > NOTHING
