@@ -18,6 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
 from abut.model.contact import LAWS, Contact
+from abut.model.kinematics import check_kinematics
 from abut.model.probe import Probe, check_probes
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
@@ -32,6 +33,9 @@ class Model:
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
     forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
     one of ``solids`` or ``rigid``.
+
+    ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
+    forces and pressures in the deformed configuration, theory (D1)).
 
     >>> import abut
     >>> from abut.mesh import make
@@ -60,6 +64,7 @@ class Model:
     equations: Sequence[Equation] = ()
     rigid: Sequence[Rigid] = ()
     probes: Sequence[Probe] = ()
+    kinematics: str = "small"
 
     def __post_init__(self) -> None:
         for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes"):
@@ -71,6 +76,7 @@ class Model:
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid})
         self._check_contacts()
         self._check_laws()
+        check_kinematics(self.kinematics, self.solids)
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
@@ -82,7 +88,13 @@ class Model:
     @cached_property
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
-        return Solids(self.mesh, self.materials, self.plane, {solid.body: solid.integration for solid in self.solids})
+        integration = {solid.body: solid.integration for solid in self.solids}
+        return Solids(self.mesh, self.materials, self.plane, integration, self.kinematics)
+
+    @property
+    def finite(self) -> bool:
+        """Whether deformations may be finite."""
+        return self.kinematics == "finite"
 
     @property
     def dim(self) -> int:

@@ -14,6 +14,7 @@ from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
@@ -64,7 +65,11 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     constant = model.deformable.constant
-    bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
+    bodies: Bodies
+    if model.finite:
+        bodies = FiniteBodies(model, loaded)
+    else:
+        bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
         terms=(bodies, DeadLoads(loaded, model.histories)),
