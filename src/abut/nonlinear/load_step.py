@@ -21,7 +21,7 @@ from abut.solution.state import State
 class Attempt:
     """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
     (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
-    bool, multipliers that keep changing."""
+    bool, multipliers that keep changing; reason: why it failed, where that is known."""
 
     number: int
     state: State
@@ -29,6 +29,7 @@ class Attempt:
     iterations: tuple[Iteration, ...]
     cycling: NDArray[np.bool_]
     inside: NDArray[np.bool_]
+    reason: str = ""
 
 
 def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:

@@ -47,6 +47,10 @@ class Linearised:
     (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed,
     theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
     contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
+
+    At large displacements K q is K (q - origin), B q likewise; contact forces are F^T p with the rows ``pushing`` F
+    (n, n_free), K is not ``symmetric``, largest: nodal force there, or what counts as small; forgotten: (n,) multipliers of
+    friction without a past, which carry nothing.
     """
 
     time: float
@@ -61,6 +65,11 @@ class Linearised:
     forces: Vector
     unit: float
     compliance: NDArray[np.float64] | None = None
+    pushing: Operator | None = None
+    origin: Vector | None = None
+    symmetric: bool = True
+    largest: float = 0.0
+    forgotten: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         """Number of multipliers."""
@@ -88,6 +97,11 @@ class Linearised:
         """(n,) int H_k."""
         return self.join([pair.weight for pair in self.pairs])
 
+    @property
+    def columns(self) -> Operator:
+        """(n, n_free): forces by multiplier; the operator where nothing else is said."""
+        return self.operator if self.pushing is None else self.pushing
+
     def same_matrices(self, other: Linearised) -> bool:
         """Whether stiffness, operator and compliance are the very objects of another state's."""
         mine, its = ((s.stiffness, s.operator, s.compliance) for s in (self, other))
@@ -95,27 +109,30 @@ class Linearised:
 
     def internal(self, state: State) -> Vector:
         """K q: nodal forces of stresses on the free displacements; the longest product of all."""
-        return np.asarray(self.stiffness @ state.unknowns)
+        return np.asarray(self.stiffness @ self._moved(state))
+
+    def _moved(self, state: State) -> Vector:
+        return state.unknowns if self.origin is None else state.unknowns - self.origin
 
     def unbalanced(self, state: State, internal: Vector | None = None) -> Vector:
         """K q - B^T p - f; internal: K q where it is known."""
         residual = (self.internal(state) if internal is None else internal) - self.load
         if len(state.multipliers):
-            residual = residual - self.operator.T @ state.multipliers
+            residual = residual - self.columns.T @ state.multipliers
         return np.asarray(residual)
 
     def gap(self, state: State) -> Vector:
         """Weighted gaps of all multipliers, (n,)."""
         if not len(self.offset):
             return self.offset
-        gap = self.offset + self.operator @ state.unknowns
+        gap = self.offset + self.operator @ self._moved(state)
         return np.asarray(gap if self.compliance is None else gap + self.compliance @ state.multipliers)
 
     def rows(self, laws: Sequence[LawRows]) -> Rows:
         """The laws of all pairs in terms of the unknowns."""
         if not self.pairs:
             none = np.zeros(0)
-            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), True)
+            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), self.symmetric)
         by_displacement, by_compliance, first = [], [], 0
         for pair, law in zip(self.pairs, laws):
             here = slice(first, first + len(pair))
@@ -133,5 +150,5 @@ class Linearised:
             by_displacement=sp.vstack(by_displacement).tocsr(),
             by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
             decoupled=np.concatenate([law.decoupled for law in laws]),
-            symmetric=not any(law.at_points for law in laws) and all(law.symmetric for law in laws),
+            symmetric=self.symmetric and not any(law.at_points or not law.symmetric for law in laws),
         )

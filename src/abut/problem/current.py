@@ -1,0 +1,137 @@
+"""Contact at current positions, for large sliding: gaps, slips and forces of a pair with their exact derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling_tangent import coupling_tangent
+from abut.contact.geometry import facet_sizes, nodal_normals, split_at_creases
+from abut.contact.tangential import quarter, turned
+from abut.mesh.surface import Surface
+from abut.problem.contact_pairs import Pair
+from abut.problem.slip_points import SlipPoints, slip_now
+from abut.types import Sparse
+
+Array = NDArray[np.float64]
+KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
+NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
+
+
+@dataclass(frozen=True)
+class ContactNow:
+    """A pair at a state. pair: with surfaces, rows (of the forces) and weights as they are now; gap: (n,) weighted gaps and
+    slips; by_position: (n, dim n_points) their derivative; bending: (dim n_points, dim n_points) derivative of the contact
+    forces; without_history: (n_functions,) whose slip does not count."""
+
+    pair: Pair
+    gap: Array
+    by_position: Sparse
+    bending: Sparse
+    without_history: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
+    None without friction; offset: what is added to the gap now."""
+
+    displacement: Array
+    before: Array
+    points: SlipPoints | None
+    offset: float
+
+
+@dataclass(frozen=True)
+class Current:
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``."""
+
+    pair: Pair
+
+    def at(self, place: Place, multipliers: Array) -> ContactNow:
+        """Gaps, forces and derivatives with multipliers (n,). Theory (G1) to (G6)."""
+        pair = self.pair
+        contactor, target = self.surfaces(place.displacement)
+        options = self._options(place.displacement - place.before)
+        coupling = couple(contactor, target, pair.coupling.degree, options)
+        pressure = pair.space.transfer @ multipliers[pair.normal]
+        by = coupling_tangent(contactor, target, pair.coupling.degree, options, pressure, None)
+        down = pair.space.transfer.T
+        weight = np.asarray(down @ coupling.weight)
+        slope = by.gap if place.offset == 0.0 or by.weight is None else by.gap + place.offset * by.weight
+        now = ContactNow(
+            replace(
+                pair, contactor=contactor, target=target, coupling=coupling, space=replace(pair.space, weight=weight),
+                rows=(down @ coupling.operator).tocsr(),
+            ),
+            np.asarray(down @ coupling.gap + place.offset * weight),
+            (down @ slope).tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
+        )  # fmt: skip
+        return self._with_friction(now, place, options, multipliers) if pair.frictional else now
+
+    def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
+        """Contactor and target at a displacement (dim n_points,)."""
+        points = np.ascontiguousarray(self.pair.contactor.points + displacement.reshape(-1, self.pair.contactor.dim))
+        return replace(self.pair.contactor, points=points), replace(self.pair.target, points=points)
+
+    def points(self, displacement: Array) -> SlipPoints:
+        """The integration points at a displacement, from which the next step's slip counts."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_points=True)
+        surfaces = self.surfaces(displacement)
+        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options))
+
+    def shown(self, displacement: Array) -> Coupling:
+        """With what results ask for beside it."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_sights=True)
+        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options)
+
+    def _options(self, moved: Array) -> CouplingOptions:
+        rule = self.pair.contact.integration
+        nodes = self._nodes
+        way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
+        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
+
+    @cached_property
+    def _nodes(self) -> NDArray[np.int64]:
+        return np.union1d(self.pair.contactor.node_ids, self.pair.target.node_ids)
+
+    @cached_property
+    def _facet(self) -> float:
+        return float(max(facet_sizes(self.pair.contactor).max(), facet_sizes(self.pair.target).max()))
+
+    @cached_property
+    def _anchor(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """A facet and the number of its node where each function sits."""
+        split, _ = split_at_creases(self.pair.contactor)
+        facet, local = np.nonzero(split.nodes >= 0)
+        node, first = np.unique(split.nodes[facet, local], return_index=True)
+        at = first[np.searchsorted(node, self.pair.space.side)]
+        return facet[at], local[at]
+
+    def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
+        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
+        pair, own = self.pair, now.pair
+        assert place.points is not None and pair.slip is not None
+        slip = slip_now(place.points, own.contactor, own.target)
+        down = pair.components[1].transfer.T
+        turn = quarter(own.contactor.points.shape[0])
+        along = pair.components[1].transfer @ multipliers[pair.tangential]
+        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, None)
+        covered = pair.space.plain.T @ place.points.moments(len(own.contactor))
+        normals = -nodal_normals(own.contactor)[self._anchor]
+        return ContactNow(
+            replace(
+                own, rows=sp.vstack([own.rows, down @ own.coupling.operator @ turn]).tocsr(),
+                slip=replace(pair.slip, tangents=turned(normals)[:, None]),
+            ),
+            np.concatenate([now.gap, down @ slip.value[:, 0]]),
+            sp.vstack([now.by_position, down @ slip.by_position[0]]).tocsr(),
+            (now.bending + turn.T @ by.force_tangent).tocsr(),
+            covered < KNOWN * pair.weight[pair.normal],
+        )  # fmt: skip
+
