@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import coupling_tangent
-from abut.contact.geometry import facet_sizes, nodal_normals, split_at_creases
+from abut.contact.geometry import Smoothing, facet_sizes, nodal_normals, smoothing, split_at_creases
 from abut.contact.tangential import quarter, turned
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
@@ -58,9 +58,9 @@ class Current:
         pair = self.pair
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
-        coupling = couple(contactor, target, pair.coupling.degree, options)
+        coupling = couple(contactor, target, pair.coupling.degree, options, across=self._across)
         pressure = pair.space.transfer @ multipliers[pair.normal]
-        by = coupling_tangent(contactor, target, pair.coupling.degree, options, pressure, None)
+        by = coupling_tangent(contactor, target, pair.coupling.degree, options, pressure, across=self._across)
         down = pair.space.transfer.T
         weight = np.asarray(down @ coupling.weight)
         slope = by.gap if place.offset == 0.0 or by.weight is None else by.gap + place.offset * by.weight
@@ -83,18 +83,23 @@ class Current:
         """The integration points at a displacement, from which the next step's slip counts."""
         options = replace(self._options(np.zeros_like(displacement)), keep_points=True)
         surfaces = self.surfaces(displacement)
-        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options))
+        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options, across=self._across))
 
     def shown(self, displacement: Array) -> Coupling:
         """With what results ask for beside it."""
         options = replace(self._options(np.zeros_like(displacement)), keep_sights=True)
-        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options)
+        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
 
     def _options(self, moved: Array) -> CouplingOptions:
         rule = self.pair.contact.integration
         nodes = self._nodes
         way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
         return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
+
+    @cached_property
+    def _across(self) -> Smoothing:
+        """Creases are those of the undeformed contactor: forces do not jump when an angle grows."""
+        return smoothing(self.pair.contactor)
 
     @cached_property
     def _nodes(self) -> NDArray[np.int64]:
@@ -117,13 +122,13 @@ class Current:
         """The same with slips, and forces of the tractions, theory (G4), (G6)."""
         pair, own = self.pair, now.pair
         assert place.points is not None and pair.slip is not None
-        slip = slip_now(place.points, own.contactor, own.target)
+        slip = slip_now(place.points, own.contactor, own.target, self._across)
         down = pair.components[1].transfer.T
         turn = quarter(own.contactor.points.shape[0])
         along = pair.components[1].transfer @ multipliers[pair.tangential]
-        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, None)
+        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, across=self._across)
         covered = pair.space.plain.T @ place.points.moments(len(own.contactor))
-        normals = -nodal_normals(own.contactor)[self._anchor]
+        normals = -nodal_normals(own.contactor, self._across)[self._anchor]
         return ContactNow(
             replace(
                 own, rows=sp.vstack([own.rows, down @ own.coupling.operator @ turn]).tocsr(),

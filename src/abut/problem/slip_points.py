@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.coupling_tangent import normal_derivative
-from abut.contact.geometry import nodal_normals
+from abut.contact.geometry import Smoothing, nodal_normals
 from abut.contact.tangential import turned
 from abut.mesh.surface import Surface
 from abut.types import Sparse
@@ -81,18 +81,18 @@ class SlipNow:
     by_position: tuple[Sparse, ...]
 
 
-def slip_now(points: SlipPoints, contactor: Surface, target: Surface) -> SlipNow:
+def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Smoothing | None = None) -> SlipNow:
     """Theory (G6) at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
     tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
     x, dim = contactor.points, contactor.dim
     mine, its = contactor.nodes[points.facet], target.nodes[points.target_facet]
     difference = _shapes(points.own, mine, len(x)) - _shapes(points.other, its, len(x))
     apart = np.asarray(difference @ x)
-    fields = -nodal_normals(contactor)[points.facet]
+    fields = -nodal_normals(contactor, across)[points.facet]
     sum_ = np.einsum("qj,qja->qa", points.own, fields)
     length = np.linalg.norm(sum_, axis=1)
     normal = sum_ / length[:, None]
-    turning = _normal_change(points, contactor, normal, length)
+    turning = _normal_change(points, contactor, across, normal, length)
     gather = _gather(points, len(contactor))
     moved = [sp.kron(difference, np.eye(dim)[[a]], format="csr") for a in range(dim)]
     if dim == 2:
@@ -113,14 +113,16 @@ def slip_now(points: SlipPoints, contactor: Surface, target: Surface) -> SlipNow
     return SlipNow(np.asarray(gather @ flat), tuple((gather @ change).tocsr() for change in changes))
 
 
-def _normal_change(points: SlipPoints, contactor: Surface, normal: Array, length: Array) -> list[Sparse]:
+def _normal_change(
+    points: SlipPoints, contactor: Surface, across: Smoothing | None, normal: Array, length: Array
+) -> list[Sparse]:
     """Derivative of each component of the unit normal at the points by all positions, (n, dim n_points) each."""
     dim, width = contactor.dim, MAX_FACET_NODES
     n, size = len(points.weight), width * len(contactor)
     column = (width * points.facet[:, None] + np.arange(width)).ravel()
     row = np.repeat(np.arange(n), width)
     weigh = sp.csr_matrix(((points.own / length[:, None]).ravel(), (row, column)), shape=(n, size))
-    nodal = normal_derivative(contactor)
+    nodal = normal_derivative(contactor, across)
     raw = [-(weigh @ nodal[a::dim]) for a in range(dim)]
     along = sum(sp.diags(normal[:, a]) @ raw[a] for a in range(dim))
     return [(raw[a] - sp.diags(normal[:, a]) @ along).tocsr() for a in range(dim)]
