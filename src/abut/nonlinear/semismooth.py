@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clocks
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from abut.nonlinear.iteration import Found, Increment, advance, part_of
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
-from abut.solution import Iteration, Observer
+from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, Largest, State
 
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
@@ -54,7 +54,7 @@ class Step:
     solver: LinearSolver
     increment: Increment
     limit: int
-    observe: Observer
+    observe: Callable[[Iteration], None]
     careful: bool = False
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
