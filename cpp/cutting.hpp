@@ -41,7 +41,7 @@ struct Over {
     const int own = int(c.pieces.size());
     return side < own ? c.pieces[side] : theirs[side - own];
   }
-  const Curve *curve(const Vertex &v) const { return v.side == STRAIGHT ? nullptr : &piece(v.side).curve[v.edge]; }
+  const Curve *curve(const Vertex &v) const { return v.side < 0 ? nullptr : &piece(v.side).curve[v.edge]; }
 };
 
 // What it sees of a target facet from a point of the plane.
@@ -142,6 +142,26 @@ inline void find_hidden(const Over &over, const std::vector<Facet> &targets, con
       });
 }
 
+// Calls visit(polygon) for what of a segment is not hidden by others.
+template <class Visit>
+void each_part(const Over &over, const Segment &own, const std::vector<Segment> &segments, Visit visit) {
+  if (own.behind.empty()) {
+    visit(own.finished);
+    return;
+  }
+  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
+  std::vector<Polygon> left{own.polygon}, next;
+  for (int nearer : own.behind) {
+    next.clear();
+    for (const Polygon &part : left)
+      outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
+    left.swap(next);
+  }
+  for (Polygon &part : left)
+    if (finish(over, part, scale))
+      visit(part);
+}
+
 // What is asked of a target facet: its number, its points' numbers, how often it is divided.
 struct Asked {
   int number;
@@ -154,7 +174,7 @@ inline void cut_facet(const Over &over, const Facet &t, const Asked &asked, doub
   const Contactor3 &c = over.c;
   const std::size_t before = over.theirs.size();
   flatten(
-      {t, asked.subdivide, true},
+      {t, asked.subdivide, true, asked.number},
       [&](const double *eta, int node) {
         if (node >= 0 && c.flat)
           return c.plane.flat(t.x[node]);

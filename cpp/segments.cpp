@@ -59,25 +59,6 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, const 
       });
 }
 
-void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
-                      const Rule &rule, Accumulator &sums) {
-  if (own.behind.empty()) {
-    integrate_part(over, t, own, own.finished, rule, sums);
-    return;
-  }
-  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
-  std::vector<Polygon> left{own.polygon}, next;
-  for (int nearer : own.behind) {
-    next.clear();
-    for (const Polygon &part : left)
-      outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
-    left.swap(next);
-  }
-  for (Polygon &part : left)
-    if (finish(over, part, scale))
-      integrate_part(over, t, own, part, rule, sums);
-}
-
 // Cuts contactor facets and integrates, one after another; one for each thread.
 class Integrator {
 public:
@@ -94,7 +75,8 @@ public:
         },
         [&](const Over &over, const std::vector<Segment> &segments) {
           sum(f, over.c.facet, segments, [&](const Facet &t, const Segment &own, const Rule &rule) {
-            integrate_pieces(over, t, own, segments, rule, sums_);
+            each_part(over, own, segments,
+                      [&](const Polygon &part) { integrate_part(over, t, own, part, rule, sums_); });
           });
         });
   }

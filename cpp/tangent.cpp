@@ -1,6 +1,7 @@
 // The loop over contactor facets for derivatives; see docs/theory/coupling-tangent.md.
 #include "tangent.hpp"
 #include "moving_lines.hpp"
+#include "moving_pieces.hpp"
 #include "parallel.hpp"
 
 namespace abut {
@@ -20,22 +21,37 @@ constexpr std::size_t FEW_MOVING_FACETS = 50; // not worth a thread
 class Differentiator {
 public:
   Differentiator(const Interface &both, TangentLists &lists, const Load &load, const Numbering &numbering)
-      : both_(both), cutter_(both), lines_(lists, both.contactor, both.target, both.options.degree, load, numbering) {}
+      : both_(both), cutter_(both), lines_(lists, both.contactor, both.target, both.options.degree, load, numbering),
+        faces_(lists, both.contactor, both.target, both.options.degree, load, numbering), pieces_(faces_) {}
 
   void run(std::size_t f) {
     cutter_.cut(
-        f,
-        [&](const Facet &c, const std::vector<Segment> &segments) {
-          MovingLine line(c, both_.targets, segments, both_.options.axisymmetric, lines_);
-          sum(f, c, segments, lines_,
-              [&](const Segment &own, const Rule &rule) { line.integrate(own, rule, columns_); });
-        },
-        [&](const Over &, const std::vector<Segment> &) {});
+        f, [&](const Facet &c, const std::vector<Segment> &segments) { run_line(f, c, segments); },
+        [&](const Over &over, const std::vector<Segment> &segments) { run_face(f, over, segments); });
   }
 
 private:
-  template <int D, class Integrate>
-  void sum(std::size_t f, const Facet &c, const std::vector<Segment> &segments, MovingSums<D> &sums,
+  void run_line(std::size_t f, const Facet &c, const std::vector<Segment> &segments) {
+    MovingLine line(c, both_.targets, segments, both_.options.axisymmetric, lines_);
+    sum(
+        f, c, segments, lines_, [] {},
+        [&](const Segment &own, const Rule &rule) { line.integrate(own, rule, columns_); });
+  }
+
+  void run_face(std::size_t f, const Over &over, const std::vector<Segment> &segments) {
+    const MovingPlane plane(over.c);
+    edges_.begin(over, plane, both_.targets, both_.target.surface.nodes);
+    sum(
+        f, over.c.facet, segments, faces_, [&] { pieces_.begin_target(edges_, columns_); },
+        [&](const Segment &own, const Rule &rule) {
+          each_part(over, own, segments, [&](const Polygon &part) {
+            pieces_.integrate(over, plane, both_.targets[own.target], own, part, rule);
+          });
+        });
+  }
+
+  template <int D, class Begin, class Integrate>
+  void sum(std::size_t f, const Facet &c, const std::vector<Segment> &segments, MovingSums<D> &sums, Begin begin,
            Integrate integrate) {
     sums.begin(f, c);
     for (std::size_t i = 0; i < segments.size();) {
@@ -45,6 +61,7 @@ private:
         ++i;
       find_columns(c, segments, first, i);
       sums.begin_target(t, both_.targets[t], columns_);
+      begin();
       for (std::size_t k = first; k < i; ++k)
         integrate(segments[k], rule_of(both_, f, t));
       sums.end_target();
@@ -65,6 +82,9 @@ private:
   const Interface &both_;
   Cutter cutter_;
   MovingSums<2> lines_;
+  MovingSums<3> faces_;
+  MovingPieces pieces_;
+  MovingEdges edges_;
   Columns columns_;
 };
 

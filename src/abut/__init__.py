@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         Pressure,
         Probe,
         Rigid,
+        Rotation,
         Solid,
         SolveOptions,
         Support,
@@ -49,8 +50,8 @@ _HOME = {  # of public names that do not come from abut.model
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
     "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NeoHooke", "NodalForce", "Pressure", "Probe",
-    "Rigid", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-    "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term",
+    "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -234,6 +234,5 @@ def test_too_much_ends_with_words() -> None:
 )
 def test_refused(what: dict[str, Any], words: str) -> None:
     model = arched(0.0)
-    other = replace(model, contacts=[replace(model.contacts[0], **what)])
     with pytest.raises(InputError, match=words):
-        abut.solve(other)
+        abut.solve(replace(model, contacts=[replace(model.contacts[0], **what)]))

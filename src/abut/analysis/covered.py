@@ -59,7 +59,12 @@ def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array)
         pair, coupling=coupling, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
         components=tuple(components), index=index, rows=pair.rows[keep], operator=pair.operator[keep], gap=pair.gap[keep],
         prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
-        slip=None if pair.slip is None else replace(pair.slip, tangents=pair.slip.tangents[functions]),
+        slip=None
+        if pair.slip is None
+        else replace(pair.slip, tangents=pair.slip.tangents[functions], points=pair.slip.points[functions]),
+        values=None
+        if pair.values is None
+        else replace(pair.values, coefficient=pair.values.coefficient[functions]),
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.bodies.stress import averaged, to_nodes
 from abut.errors import Unsound
 from abut.materials.hyperelastic import law
-from abut.mesh.quadrature import cell_rule, stress_rule
+from abut.mesh.quadrature import Rule, cell_rule, stress_rule
 from abut.types import Operator
 
 
@@ -73,7 +73,14 @@ def is_symmetric(solids: Solids) -> bool:
     return "b-bar" not in {solids.integration.get(body, "full") for body in solids.materials}
 
 
-def _integrate(solids: Solids, group: Group, moved: Array, temperature: TemperatureChange, rule=None, **wanted) -> None:
+def _integrate(
+    solids: Solids,
+    group: Group,
+    moved: Array,
+    temperature: TemperatureChange,
+    rule: Rule | None = None,
+    **wanted: object,
+) -> None:
     constants = solids.by_cell(group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()})
     unsound = integrate_hyperelastic(
         group.arrays(solids, rule or cell_rule(group.kind, group.integration)), constants, group.law,

@@ -61,8 +61,6 @@ def coupling_tangent(
     Raises InputError where surfaces or coefficients do not fit together, and for componentwise coupling.
     """
     check_pair(contactor, target)
-    if contactor.dim == 3:
-        raise InputError("derivatives of the coupling: only in 2D")
     _check_load(contactor, options, pressure, traction)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
     across = across or smoothing(contactor)

@@ -18,8 +18,9 @@ from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
 from abut.model.contact import LAWS, Contact
-from abut.model.kinematics import check_kinematics
+from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
+from abut.model.rotation import Rotation, check_rotations
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
@@ -65,9 +66,10 @@ class Model:
     rigid: Sequence[Rigid] = ()
     probes: Sequence[Probe] = ()
     kinematics: str = "small"
+    rotations: Sequence[Rotation] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes"):
+        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
         check_rigid(self.mesh, self.rigid)
@@ -77,6 +79,9 @@ class Model:
         self._check_contacts()
         self._check_laws()
         check_kinematics(self.kinematics, self.solids)
+        check_rotations(self.mesh, self.rotations, self.supports, self.rigid, self.kinematics)
+        if self.finite:
+            check_finite(self.mesh, self.contacts, self.equations, self.rigid, self.supports)
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
@@ -104,8 +109,9 @@ class Model:
     @property
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
-        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
-        return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
+        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
+        friction = (contact.friction_amplitude for contact in self.contacts)
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction]))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver
 from abut.nonlinear.friction import friction_laws, next_status
-from abut.nonlinear.iteration import Found, Increment, advance, part_of
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
@@ -151,9 +151,8 @@ def _balance(step: Step, state: State) -> Balance:
 
 def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
     """Force and pressure, now or in a step before."""
-    pushed = np.abs(system.weight * state.multipliers).max(initial=system.largest)
     pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
-    return Largest(max(float(pushed), increment.largest.force), float(pressure))
+    return Largest(largest_force(system, state, system.load, increment), float(pressure))
 
 
 def _bare(system: Linearised) -> NDArray[np.bool_]:
@@ -179,9 +178,14 @@ def _report(step: Step, here: Balance, begun: float) -> float:
         for pair, gap in zip(here.system.pairs, here.system.split(here.system.gap(here.state)))
         if not pair.tied
     ]
+    system, state = here.system, here.state
+    rubbing = any(pair.frictional for pair in system.pairs)
     row = Iteration(
-        step=step.increment.number, iteration=len(step.done) + 1, active=int(here.state.closed.sum()), changed=int(here.changed.sum()),
-        residual=here.force, contact_residual=here.law, penetration=max(depth, default=0.0), seconds=now - begun,
+        step=step.increment.number, iteration=len(step.done) + 1, active=points(system, state.closed),
+        changed=int(here.changed.sum()), residual=here.force, contact_residual=here.law,
+        penetration=max(depth, default=0.0), seconds=now - begun,
+        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
+        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
     )  # fmt: skip
     step.done.append(row)
     step.observe(row)

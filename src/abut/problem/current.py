@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import coupling_tangent
-from abut.contact.geometry import Smoothing, facet_sizes, nodal_normals, smoothing, split_at_creases
-from abut.contact.tangential import quarter, turned
+from abut.contact.geometry import Smoothing, facet_sizes, smoothing
+from abut.contact.tangential import SlipOperators, quarter, slip_operators
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
-from abut.problem.slip_points import SlipPoints, slip_now
+from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
+from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse
 
 Array = NDArray[np.float64]
@@ -110,33 +111,86 @@ class Current:
         return float(max(facet_sizes(self.pair.contactor).max(), facet_sizes(self.pair.target).max()))
 
     @cached_property
-    def _anchor(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """A facet and the number of its node where each function sits."""
-        split, _ = split_at_creases(self.pair.contactor)
-        facet, local = np.nonzero(split.nodes >= 0)
-        node, first = np.unique(split.nodes[facet, local], return_index=True)
-        at = first[np.searchsorted(node, self.pair.space.side)]
-        return facet[at], local[at]
+    def _anchors(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        return anchors(self.pair.contactor, self.pair.space)
+
+    @cached_property
+    def _frames(self) -> Frames:
+        assert self.pair.slip is not None
+        return Frames.of(self.pair.contactor, self.pair.space, self.pair.slip.tangents)
 
     def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
-        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
+        """The same with slips, and forces of the tractions, theory (G4) to (G6)."""
         pair, own = self.pair, now.pair
-        assert place.points is not None and pair.slip is not None
+        assert place.points is not None
         slip = slip_now(place.points, own.contactor, own.target, self._across)
-        down = pair.components[1].transfer.T
-        turn = quarter(own.contactor.points.shape[0])
-        along = pair.components[1].transfer @ multipliers[pair.tangential]
-        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, across=self._across)
+        rubbed = self._in_plane if own.contactor.dim == 2 else self._in_space
+        made = rubbed(own, slip, options, multipliers)
         covered = pair.space.plain.T @ place.points.moments(len(own.contactor))
-        normals = -nodal_normals(own.contactor, self._across)[self._anchor]
+        assert pair.slip is not None
+        moved = replace(pair.slip, operators=made.operators, tangents=made.tangents)
         return ContactNow(
-            replace(
-                own, rows=sp.vstack([own.rows, down @ own.coupling.operator @ turn]).tocsr(),
-                slip=replace(pair.slip, tangents=turned(normals)[:, None]),
-            ),
-            np.concatenate([now.gap, down @ slip.value[:, 0]]),
-            sp.vstack([now.by_position, down @ slip.by_position[0]]).tocsr(),
-            (now.bending + turn.T @ by.force_tangent).tocsr(),
+            replace(own, rows=sp.vstack([own.rows, made.rows]).tocsr(), slip=moved),
+            np.concatenate([now.gap, made.slip]),
+            sp.vstack([now.by_position, made.by_position]).tocsr(),
+            (now.bending + made.bending).tocsr(),
             covered < KNOWN * pair.weight[pair.normal],
         )  # fmt: skip
 
+    def _in_plane(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+        """2D: forces of a traction are those of a pressure, turned by a right angle at every point."""
+        part = self.pair.components[1].transfer
+        turn = quarter(len(own.contactor.points))
+        along = part @ multipliers[self.pair.tangential]
+        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, across=self._across)
+        turned_rows = (own.coupling.operator @ turn).tocsr()
+        return Rubbing(
+            rows=part.T @ turned_rows, slip=np.asarray(part.T @ slip.value[:, 0]), by_position=part.T @ slip.by_position[0],
+            bending=turn.T @ by.force_tangent, tangents=tangents_2d(own.contactor, self._across, *self._anchors),
+            operators=SlipOperators((turned_rows,), own.coupling.gap[:, None]),
+        )  # fmt: skip
+
+    def _in_space(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+        """3D: two components along tangents that turn with the surface."""
+        pair, x = self.pair, own.contactor.points
+        kept = replace(options, keep_points=True)
+        at = couple(own.contactor, own.target, own.coupling.degree, kept, across=self._across).points
+        assert at is not None
+        operators = slip_operators(at, x)
+        fields = [pair.space.transfer.T @ along for along in operators.along]
+        value = pair.space.transfer.T @ slip.value
+        change = [pair.space.transfer.T @ by for by in slip.by_position]
+        tangents, by_tangent = self._frames.at(own.contactor, self._across)
+        rows, slips, slopes, bending = [], [], [], sp.csr_matrix((x.size, x.size))
+        traction = np.zeros((len(pair.space), 3))
+        for b, by in enumerate(by_tangent):
+            has = pair.index[:, 1 + b] >= 0
+            t = np.where(has, multipliers[np.maximum(pair.index[:, 1 + b], 0)], 0.0)
+            traction += t[:, None] * tangents[:, b]
+            parts = [by[a::3] for a in range(3)]
+            rows.append(sum(sp.diags(tangents[:, b, a]) @ fields[a] for a in range(3)).tocsr()[has])
+            slips.append(np.einsum("nd,nd->n", value, tangents[:, b])[has])
+            slopes.append(
+                sum(sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)).tocsr()[has]
+            )
+            bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
+        by_force = coupling_tangent(
+            own.contactor, own.target, own.coupling.degree, options, np.zeros(len(own.coupling.gap)),
+            pair.space.transfer @ traction, across=self._across,
+        )  # fmt: skip
+        return Rubbing(
+            sp.vstack(rows), np.concatenate(slips), sp.vstack(slopes), bending + by_force.force_tangent, tangents, operators
+        )
+
+
+@dataclass(frozen=True)
+class Rubbing:
+    """What friction adds, m rows. rows: (m, dim n_points) of the forces; slip: (m,) weighted; by_position: its derivative;
+    bending: derivative of the forces; tangents: (n_functions, dim - 1, dim); operators: of the slip, facet by facet."""
+
+    rows: Sparse
+    slip: Array
+    by_position: Sparse
+    bending: Sparse
+    tangents: Array
+    operators: SlipOperators

@@ -9,7 +9,6 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.materials.softest import softest
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.contact_pairs import Pair
@@ -21,7 +20,6 @@ from abut.problem.terms import Motion, Share
 from abut.solution.state import State, at_rest
 
 POINTS = "points"  # whose history is the integration points of the last step
-FAINT = 1e-5  # strain whose nodal forces count as small
 BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
 
@@ -53,9 +51,8 @@ class FiniteProblem(ContactProblem):
 
     def ahead(self, before: State, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G9)."""
-        there = self.displacement(before)
-        change = self.held.prescribed @ (weights(self.model.histories, time) - weights(self.model.histories, before.time))
-        return self._near(before, replace(before, time=time), there, np.asarray(change))
+        there, now = self.displacement(before), replace(before, time=time)
+        return self._near(before, now, there, self.displacement(now) - there)
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
@@ -81,29 +78,35 @@ class FiniteProblem(ContactProblem):
     def _near(self, before: State, now: State, here: Array, change: Array) -> Linearised:
         """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
         time."""
-        held, factors = self.held, weights(self.model.histories, now.time)
+        factors = weights(self.model.histories, now.time)
+        there = weights(self.model.histories, before.time) if change.any() else factors
+        held = self.held.near(now.unknowns, there)
         shares, contacts = self._forces(before, now.time, here), self._contacts(before, now, here, now)
         stiff = [share.tangent for share in shares if share.tangent is not None]
         bending = sum((contact.bending for contact in contacts), sp.csr_matrix((len(here),) * 2))
-        force = np.sum([share.force for share in shares], axis=0)
+        whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
-            force = force + sum(tangent.internal(change) for tangent in stiff) - bending @ change
+            whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
         stiffness = self.springs.added_to(sum(tangent.reduce(held) for tangent in stiff) - held.reduce(bending))
-        empty = sp.csr_matrix((0, self.n_free))
-        operator = sp.vstack([empty, *(own.by_position @ held.free for own in contacts)]).tocsr()
-        pushing = sp.vstack([empty, *(own.pair.rows @ held.free for own in contacts)]).tocsr()
-        load = -(held.free.T @ force) - self.springs.forces(now.unknowns)
-        gap = np.concatenate([np.zeros(0), *(own.gap + own.by_position @ change for own in contacts)])
-        pairs = [
-            replace(own.pair, operator=own.by_position @ held.free, gap=own.gap)  # what results and rows look at
-            for own in contacts
-        ]
-        largest = max((float(np.abs(share.force).max(initial=0.0)) for share in shares), default=0.0)
+        rows = [own.pair.rows for own in contacts]
+        if self.held.turns is not None:
+            pushed = sum(own.T @ p for own, p in zip(rows, self._split(now.multipliers)))
+            stiffness = stiffness + self.held.turns.bending(now.unknowns, there, whole - pushed)
+        force = held.free.T @ whole
+        about = self._expansion(shares, now.unknowns, force, stiffness)
+        assert about is not None
+        operators = [(own.by_position @ held.free).tocsr() for own in contacts]
+        pairs = [replace(own.pair, operator=by, gap=own.gap) for own, by in zip(contacts, operators)]
+        gap = np.concatenate([own.gap + own.by_position @ change for own in contacts])
+        load = -about.unbalanced
         return Linearised(
-            now.time, factors, stiffness, load, pairs, operator, gap, self.motions, self.restraint, load,
-            unit_of(stiffness), pushing=pushing, origin=now.unknowns, symmetric=False,
-            largest=max(largest, self._faint), forgotten=self._idle(contacts),
+            now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
+            unit_of(stiffness), about=replace(about, symmetric=False),
+            pushing=sp.vstack([own @ held.free for own in rows]).tocsr(), forgotten=self._idle(contacts),
         )  # fmt: skip
+
+    def _split(self, values: Array) -> list[Array]:
+        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
 
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
         """(n,) multipliers of friction whose slip does not count in this step."""
@@ -115,22 +118,11 @@ class FiniteProblem(ContactProblem):
             parts.append(mask)
         return np.concatenate(parts)
 
-    @property
-    def _faint(self) -> float:
-        """A small nodal force, against which others are judged while all are zero."""
-        mesh = self.model.mesh
-        material = softest(mesh, self.model.materials, np.arange(mesh.n_cells))
-        size = float(np.ptp(mesh.points, axis=0).max()) / len(mesh.points) ** (1.0 / mesh.dim)
-        return FAINT * (0.0 if material is None else material.modulus) * size ** (mesh.dim - 1)
-
     def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
-        marks = before.history.of(POINTS)
-        result, first = [], 0
-        for pair, kind in zip(self.pairs, self.moving):
-            own = at.multipliers[first : first + len(pair)]
-            first += len(pair)
+        marks, result = before.history.of(POINTS), []
+        for pair, kind, own in zip(self.pairs, self.moving, self._split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
                 continue
