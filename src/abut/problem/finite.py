@@ -47,12 +47,12 @@ class FiniteProblem(ContactProblem):
     def linearise(self, before: State, now: State) -> Linearised:
         """As in ``Problem``."""
         here = self.displacement(now)
-        return self._near(before, now, here, np.zeros_like(here))
+        return self._expanded(before, now, here, np.zeros_like(here))
 
     def ahead(self, before: State, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G9)."""
         there, now = self.displacement(before), replace(before, time=time)
-        return self._near(before, now, there, self.displacement(now) - there)
+        return self._expanded(before, now, there, self.displacement(now) - there)
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
@@ -75,7 +75,7 @@ class FiniteProblem(ContactProblem):
         }
         return replace(state, history=state.history.with_term(POINTS, points))
 
-    def _near(self, before: State, now: State, here: Array, change: Array) -> Linearised:
+    def _expanded(self, before: State, now: State, here: Array, change: Array) -> Linearised:
         """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
         time."""
         factors = weights(self.model.histories, now.time)
