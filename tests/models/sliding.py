@@ -52,3 +52,23 @@ def turned(angle: float) -> NDArray[np.float64]:
     """(2, 2) rotation, against the clock."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s], [s, c]])
+
+
+def pressed_in_space(friction: float, cell: str = "hex8", **options: Any) -> abut.Model:
+    """The same in 3D: a cushion pressed into a plate and slid along and across it."""
+    lower = make.box([0, 2], [0, 1], [0, 0.8], cells=[5, 3, 2], cell=cell)
+    upper = make.box([0.3, 1.1], [0.2, 0.8], [0.8, 1.4], cells=[3, 2, 2], cell=cell)
+
+    def cushion(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        rise = 0.2 * (1.4 - x[:, 2]) * ((x[:, 0] - 0.7) ** 2 + (x[:, 1] - 0.5) ** 2)
+        return np.column_stack([x[:, :2], x[:, 2] + rise])
+
+    return abut.Model(
+        make.join({"lower": lower, "upper": bent(upper, cushion)}), kinematics="finite",
+        solids=[abut.Solid("lower", SOFT), abut.Solid("upper", SOFT)],
+        supports=[
+            abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", z=-0.06, amplitude=FIRST),
+            abut.Support("upper.top", x=0.4, y=0.1, amplitude=THEN),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)], **options,
+    )  # fmt: skip
