@@ -14,9 +14,14 @@ import abut
 from abut.contact.coupling import CouplingOptions, couple
 from abut.errors import InputError
 from abut.mesh import make
+from abut.linear.choice import Direct
+from abut.nonlinear.iteration import advance
+from abut.nonlinear.large_steps import extrapolated
+from abut.nonlinear.semismooth import laws_of
+from abut.problem.current import Place
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.solution import Solution
-from abut.solution.state import State
+from abut.solution.state import CLOSED, OPEN, State
 
 ANGLE = np.deg2rad(70.0)
 
@@ -54,17 +59,47 @@ def test_tangent_is_the_derivative(friction: float, cell: str) -> None:
 
 def test_prescribed_displacements_ahead() -> None:
     """What is prescribed until a later time, carried by the tangent: against differences in time at the same unknowns."""
-    problem = finite(arched(0.3))
-    before = replace(problem.start(), time=0.5)
-    here = problem.linearise(before, before)
+    problem = finite(patch(0.4))  # it prescribes the ends of the interface, too
+    pressed = np.random.default_rng(1).uniform(0.0, 50.0, problem.operator.shape[0])
+    before = replace(problem.start(), multipliers=pressed)
 
     def error(step: float) -> float:
-        ahead, there = problem.ahead(before, 0.5 + step), problem.linearise(before, replace(before, time=0.5 + step))
-        state, later = before, replace(before, time=0.5 + step)
-        return float(np.abs(ahead.unbalanced(state) - there.unbalanced(later)).max())
+        later = replace(before, time=step)
+        ahead, there = problem.ahead(before, later.time), problem.linearise(before, later)
+        force, gap = ahead.unbalanced(before) - there.unbalanced(later), ahead.gap(before) - there.gap(later)
+        return float(np.abs(force).max() + 100.0 * np.abs(gap).max())
 
-    assert np.abs(here.unbalanced(before)).max() > 0.0
     assert error(5e-4) < 0.3 * error(1e-3)  # of second order
+
+
+def test_a_long_way_into_the_target_is_seen() -> None:
+    """A trial state that overlaps by more than two facets, as a first step may: what moved so far is looked for so far."""
+    problem = finite(arched(0.0))
+    model, before = problem.model, problem.start()
+    moved = np.zeros_like(model.mesh.points)
+    moved[model.mesh.nodes_of("upper.bottom"), 1] = -0.95
+    trial = replace(before, unknowns=problem.held.free.T @ moved.ravel(), time=0.1)
+    own = problem.moving[0].at(Place(problem.displacement(trial), problem.displacement(before), None, 0.0), before.multipliers)
+    middle = own.gap / problem.pairs[0].weight
+    assert middle.min() < -0.8
+
+
+def test_extrapolation() -> None:
+    """Twice as far as the last step went: displacements and tractions on a line, pressures no less than none, what is open
+    stays open."""
+    problem = finite(arched(0.3))
+    n = len(problem.pairs[0].space)
+    first = replace(problem.start(), time=0.1)
+    two = replace(first, time=0.2, unknowns=first.unknowns + 1.0)
+    one, p, t = np.zeros(2 * n), np.zeros(2 * n), slice(n, 2 * n)
+    one[:3], p[:3] = [3.0, 3.0, 1.0], [1.0, 4.0, 0.0]
+    p[t] = 0.5
+    status = np.where(np.arange(2 * n) % n < 2, CLOSED, OPEN).astype(np.int8)
+    guess = extrapolated(problem, replace(first, multipliers=one), replace(two, multipliers=p, status=status), 0.4)
+    assert guess.time == 0.4
+    assert np.allclose(guess.unknowns, 3.0)
+    assert np.allclose(guess.multipliers[:4], [0.0, 6.0, 0.0, 0.0])
+    assert np.allclose(guess.multipliers[n : n + 3], [1.5, 1.5, 0.5])
 
 
 def test_momentum() -> None:
@@ -180,7 +215,8 @@ def test_sliding_with_friction() -> None:
     assert [check for check in solution.certificate if not check.passed and check.name not in coarse] == []
 
 
-def test_contact_found_again() -> None:
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_contact_found_again(friction: float) -> None:
     """A block that leaves the edge of the other one keeps its multipliers, open where nothing is opposite; back again,
     without friction, it carries what it did."""
     there = abut.Amplitude(((0.0, 0.0), (0.2, 0.0), (0.6, 1.0), (1.0, 0.0)))
@@ -192,14 +228,34 @@ def test_contact_found_again() -> None:
             abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=1.05, amplitude=there),
             abut.Support("upper.top", y=-0.02, amplitude=abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0)))),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
     )  # fmt: skip
     solution = abut.solve(model)
     assert solution.converged
     force = {round(step.factor, 9): step.contacts[0] for step in solution.steps}
     assert force[0.6].multipliers < force[0.2].multipliers
     assert force[0.6].force[1] < 0.8 * force[0.2].force[1]
-    assert np.allclose(force[1.0].force, force[0.2].force, rtol=1e-7, atol=1e-9)
+    if friction:
+        assert force[0.6].force[0] < 0.0 < force[1.0].force[0]
+    else:
+        assert np.allclose(force[1.0].force, force[0.2].force, rtol=1e-7, atol=1e-9)
+
+
+def test_no_past_no_traction() -> None:
+    """A multiplier that nothing was opposite to in the last step carries no friction in this one; its pressure stays."""
+    problem = finite(arched(0.3))
+    before = replace(problem.start(), time=0.2)
+    pair = problem.pairs[0]
+    state = before.with_status(np.full(len(pair), CLOSED))
+    state = replace(state, multipliers=np.where(np.arange(len(pair)) < len(pair.space), 2.0, 0.4))
+    system = problem.linearise(before, state)
+    assert system.forgotten is not None
+    assert not system.forgotten.any()
+    mask = np.arange(len(pair)) == pair.tangential.start + 2
+    system = replace(system, forgotten=mask)
+    after = advance(Direct().prepare(system, None), state, laws_of(system, state))
+    assert np.abs(after.multipliers[mask]).max() < 1e-14
+    assert (after.multipliers[~mask] != 0.0).all()
 
 
 def test_restart_goes_on_the_same_way() -> None:
