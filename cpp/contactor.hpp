@@ -103,7 +103,7 @@ private:
   void go_on(double *xi, const double *step, double *last) const {
     const double size = last[0] * last[0] + last[1] * last[1];
     const double ratio = size > 0 ? (step[0] * last[0] + step[1] * last[1]) / size : 1;
-    const bool leads = std::abs(ratio) < 0.5;
+    const bool leads = ratio < 0.9 && ratio > -5;
     for (int a = 0; a < 2; ++a) {
       xi[a] += leads ? ratio / (1 - ratio) * step[a] : 0;
       last[a] = leads ? 0 : step[a];
