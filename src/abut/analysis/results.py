@@ -74,6 +74,7 @@ def step_result(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
+        reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=assembled.bodies.stress(end.motion),
