@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver
-from abut.nonlinear.friction import friction_laws, next_status
+from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.laws import LawRows
