@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -30,6 +30,7 @@ from abut.contact.nodal_recovery import (
 )
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult, PressureStatistics, Resultant
@@ -123,8 +124,8 @@ def contact_result(
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
-        contactor=pair.contactor,
-        target=pair.target,
+        contactor=_undeformed(mesh, pair.contactor),
+        target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
         area=own.area,
@@ -155,6 +156,11 @@ def contact_result(
     )
 
 
+def _undeformed(mesh: Mesh, surface: Surface) -> Surface:
+    """The surface where it was at the outset, as results show it."""
+    return surface if surface.points is mesh.points else replace(surface, points=mesh.points)
+
+
 def _statistics(
     mesh: Mesh,
     own: PairState,
@@ -171,7 +177,7 @@ def _statistics(
     ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
-        resultant(mesh.points[ids], forces[ids], mesh.axisymmetric, none),
+        resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 

@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from abut.analysis.certificate import Surroundings
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.contact_results import PairState, contact_result
+from abut.analysis.covered import covered
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.nonlinear.friction import TOLERANCE
+from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.finite import FiniteProblem
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
@@ -72,6 +74,7 @@ def step_result(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
+        reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=assembled.bodies.stress(end.motion),
@@ -103,6 +106,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
     displacement = problem.springs.without_motions(problem.displacement(state))
     system = problem.linearise(state, state)
+    if isinstance(problem, FiniteProblem):
+        system, state = covered(problem, system, state, displacement)
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -156,7 +161,8 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
         constant, varying = offsets(model, pair.contact)
-        overlap = overlaps(pair, end.nodal, constant + float(varying @ system.factors))
+        moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
+        overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
         around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)

@@ -88,6 +88,7 @@ class Step:
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
+    reason: str = ""  # why it did not converge, where more can be said
     energy: Energy | None = None  # of a converged step of a model with friction
 
     @property
