@@ -109,7 +109,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "auto": "contact detection: find the pairs of bodies whose facets face each other",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
-        "friction": 'Coulomb\'s coefficient, or "rough" where nothing slips; left out: none',
+        "friction": "Coulomb's coefficient, or pairs of pressure and coefficient (linear between, constant outside), or "
+        '"rough" where nothing slips; left out: none',
+        "friction_amplitude": "pairs of time (0 to 1) and factor of the coefficient; left out: it is constant",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
     "IntegrationTable": {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
 from abut.job.key_descriptions import describe
@@ -37,6 +37,25 @@ Points = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]],
     Field(
         description="pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
+    ),
+]
+
+
+# Checked by the model's own record, which says once what is wrong where a choice of types would say it for each.
+Friction = Annotated[
+    Any,
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "minimum": 0},
+                {"const": "rough", "type": "string"},
+                {
+                    "type": "array",
+                    "minItems": 1,
+                    "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+                },
+            ]
+        }
     ),
 ]
 
@@ -188,7 +207,8 @@ class ContactTable(Table):
         Contact.adjust
     )
     amplitude: Points | None = None
-    friction: Number | Literal["rough"] = 0.0
+    friction: Friction = 0.0
+    friction_amplitude: Points | None = None
 
 
 class ProbeTable(Table):

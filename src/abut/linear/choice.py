@@ -26,6 +26,10 @@ from abut.problem.problem import ContactProblem, Problem
 def choose(linear: str, problem: ContactProblem) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. Raises InputError
     where "amg" cannot serve the problem."""
+    if problem.model.finite:
+        if linear == "amg":
+            raise InputError('solve.linear: "amg" is for kinematics "small"; choose "direct" or "auto"')
+        return "direct"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.held.coupled)
 
 
@@ -70,7 +74,8 @@ class Direct:
             return dense(system)
         pairs = system.pairs
         moved = np.asarray(system.operator @ system.motions)
-        return SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
+        made = SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
+        return replace(made, repeated=previous.repeated) if isinstance(previous, SaddlePoint) else made
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""

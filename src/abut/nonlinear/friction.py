@@ -22,6 +22,7 @@ from abut.nonlinear.iteration import (
     largest_force,
     largest_pressure,
     part_of,
+    points,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -110,7 +111,7 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
         wanted = next_status(system, following, search.increment)
         changed = wanted != state.status
         state = following.with_status(wanted)
-        left = search.report(state, int(changed.sum()), clock)
+        left = search.report(state, points(system, changed), clock)
         if not changed.any() and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
             return Found(state, tuple(search.done), True, changed, friction_laws)
         before = left if not changed.any() else np.inf
@@ -140,7 +141,7 @@ def _without_friction(search: _Search, first: State, limit: int) -> State | None
             return None
         wanted = next_status(system, state, search.increment)
         changed = (wanted != OPEN) != state.closed
-        search.report(state, int(changed.sum()), clock)
+        search.report(state, points(system, changed), clock)
         if not changed.any():
             return state.with_status(wanted)
         state = state.with_status(np.where(slippery & (wanted != OPEN), SLIPPING, wanted))
@@ -237,7 +238,7 @@ def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, statu
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back
         slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
-        result = np.where(closed & slips & (size > small), SLIPPING, result)
+        result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
     return np.asarray(pair.of_functions(result))
 
 

@@ -29,11 +29,12 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
-from abut.contact.tangential import slip_operators
+from abut.contact.tangential import SlipOperators, slip_operators
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
+from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
 from abut.problem.friction_rows import Slip, friction_rows
@@ -98,6 +99,7 @@ class Pair:
     planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
     slip: Slip | None = None  # with friction
+    values: FrictionValues | None = None  # the same: its coefficient
 
     @property
     def tied(self) -> bool:
@@ -137,12 +139,14 @@ class Pair:
     def friction(self, factors: NDArray[np.float64]) -> FrictionBound:
         """What each function of a pair with friction carries along the tangents, the model's histories being at ``factors``
         (n_histories,)."""
-        return FrictionBound(np.full(len(self.space), self.contact.coefficient))
+        assert self.values is not None
+        return self.values.bound(factors)
 
     @property
     def steepest(self) -> NDArray[np.float64]:
         """The largest coefficient of friction that each function ever has, (n_functions,)."""
-        return np.full(len(self.space), self.contact.coefficient)
+        assert self.values is not None
+        return self.values.steepest
 
     @property
     def weight(self) -> NDArray[np.float64]:
@@ -259,10 +263,10 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         return own_pair
     assert coupling.points is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(slim, slip_operators(coupling.points), held)
+    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), held)
 
 
-def _with_friction(own: Pair, operators: tuple[Sparse, ...], held: Supports) -> Pair:
+def _with_friction(model: Model, own: Pair, operators: SlipOperators, held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
     made = friction_rows(own.contactor, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)
@@ -272,6 +276,7 @@ def _with_friction(own: Pair, operators: tuple[Sparse, ...], held: Supports) -> 
         own, rows=made.rows, operator=(made.rows @ held.free).tocsr(), prescribed=prescribed,
         gap=np.concatenate([own.gap, np.zeros(more)]), scale=weight / own.stiffness, index=made.index,
         components=made.components, slip=made.slip, points=None,
+        values=friction_values(model, own.contact, made.slip.points),
     )  # fmt: skip
 
 
@@ -321,7 +326,7 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    return changed if own.slip is None else _with_friction(changed, own.slip.operators, held)
+    return changed if own.slip is None else _with_friction(model, changed, own.slip.operators, held)
 
 
 def _couple(

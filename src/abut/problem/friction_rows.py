@@ -8,9 +8,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.geometry import side_normals
+from abut.contact.function_places import places
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.tangential import frames
+from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
@@ -19,11 +19,12 @@ from abut.types import Sparse
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
-    dim) unit, at the node of each function of the pressure."""
+    """What makes tangential rows. operators: facet by facet; tangents: (n_functions, dim - 1, dim) unit, at the place of each
+    function of the pressure, ``points`` (n_functions, dim)."""
 
-    operators: tuple[Sparse, ...]
+    operators: SlipOperators
     tangents: NDArray[np.float64]
+    points: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -38,16 +39,16 @@ class FrictionRows:
 
 
 def friction_rows(
-    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
+    contactor: Surface, space: PressureSpace, normal: Sparse, operators: SlipOperators, held: Supports
 ) -> FrictionRows:
     """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
     as at a plane of symmetry, there is no traction along it."""
     dim, n = contactor.dim, len(space)
-    _, at = side_normals(contactor)
-    normals = -at[space.side]  # from target to contactor
+    points, outward = places(contactor, space)
     axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
-    tangents, free = frames(normals, np.stack(axes, axis=1))
-    fields = [(space.transfer.T @ own).tocsr() for own in operators]
+    moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
+    tangents, free = frames(-outward, moves)
+    fields = [(space.transfer.T @ own).tocsr() for own in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
     rows, components = [normal], [space]
@@ -59,4 +60,4 @@ def friction_rows(
         components.append(only(space, keep))
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
-    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents))
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, tangents, points))

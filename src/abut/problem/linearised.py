@@ -43,6 +43,17 @@ class Rows:
 
 
 @dataclass(frozen=True)
+class Expansion:
+    """A state of finite deformation that a problem is linearised about. at: (n_free,) displacements; unbalanced: (n_free,)
+    forces of stresses less loads there; reference: size of forces against which that is judged; symmetric: the stiffness."""
+
+    at: Vector
+    unbalanced: Vector
+    reference: float
+    symmetric: bool
+
+
+@dataclass(frozen=True)
 class Linearised:
     """K q - B^T p = f, theory (F6), and weighted gaps g = B q + C p + g0, theory (F9), near a state: exactly where
     the problem is constant, so that K, B and C are the same objects at every state and a linear solver keeps its factors.
@@ -50,7 +61,8 @@ class Linearised:
     factors: (n_histories,) of the histories at ``time``; stiffness K: (n_free, n_free); load f: (n_free,); operator B:
     (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed,
     theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
-    contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
+    contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation;
+    about: under finite deformation, else None.
     """
 
     time: float
@@ -65,6 +77,7 @@ class Linearised:
     forces: Vector
     unit: float
     compliance: NDArray[np.float64] | None = None
+    about: Expansion | None = None
 
     def __len__(self) -> int:
         """Number of multipliers."""
@@ -92,6 +105,11 @@ class Linearised:
         """(n,) int H_k."""
         return self.join([pair.weight for pair in self.pairs])
 
+    @property
+    def symmetric(self) -> bool:
+        """Whether the stiffness is."""
+        return self.about is None or self.about.symmetric
+
     def same_matrices(self, other: Linearised) -> bool:
         """Whether stiffness, operator and compliance are the very objects of another state's."""
         mine, its = ((s.stiffness, s.operator, s.compliance) for s in (self, other))
@@ -103,7 +121,10 @@ class Linearised:
 
     def unbalanced(self, state: State, internal: Vector | None = None) -> Vector:
         """K q - B^T p - f; internal: K q where it is known."""
-        residual = (self.internal(state) if internal is None else internal) - self.load
+        if self.about is not None:  # K q would lose digits: a turn moves points far without forces
+            residual = self.about.unbalanced + self.stiffness @ (state.unknowns - self.about.at)
+        else:
+            residual = (self.internal(state) if internal is None else internal) - self.load
         if len(state.multipliers):
             residual = residual - self.operator.T @ state.multipliers
         return np.asarray(residual)
