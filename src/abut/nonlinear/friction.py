@@ -13,6 +13,7 @@ from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import ROUGH, STRIDE
+from abut.nonlinear.friction_foresight import advanced, foreseen
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
@@ -102,10 +103,10 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
     seen: set[bytes] = set()
     before, careful, changed = np.inf, False, np.zeros(len(state.status), dtype=bool)
     tolerance = tolerated(search.solver)
-    accuracy = ROUGH
+    accuracy, foresees, fewest = ROUGH, True, len(state.status) + 1
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(search.solver, state, friction_laws(system, state), accuracy)
+        following = advanced(search.solver, state, friction_laws, search.increment, accuracy)
         if careful:
             following = search.shortened(state, following)
         wanted = next_status(system, following, search.increment)
@@ -119,6 +120,9 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
         if changed.any():
             careful = careful or wanted.tobytes() in seen
             seen.add(wanted.tobytes())
+            foresees, fewest = foresees and not careful and changed.sum() < fewest, changed.sum()
+            if foresees:
+                state = state.with_status(foreseen(search.solver, state, wanted))
     return Found(state, tuple(search.done), False, changed, friction_laws)
 
 
