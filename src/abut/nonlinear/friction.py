@@ -103,7 +103,7 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
     seen: set[bytes] = set()
     before, careful, changed = np.inf, False, np.zeros(len(state.status), dtype=bool)
     tolerance = tolerated(search.solver)
-    accuracy, foresees, fewest = ROUGH, True, len(state.status) + 1
+    accuracy, foresees, last = ROUGH, False, 0
     for _ in range(limit):
         clock = time.perf_counter()
         following = advanced(search.solver, state, friction_laws, search.increment, accuracy)
@@ -120,9 +120,10 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
         if changed.any():
             careful = careful or wanted.tobytes() in seen
             seen.add(wanted.tobytes())
-            foresees, fewest = foresees and not careful and changed.sum() < fewest, changed.sum()
+            foresees = not careful and not (foresees and changed.sum() >= last)  # not twice in a row where it misled
+            last = changed.sum()
             if foresees:
-                state = state.with_status(foreseen(search.solver, state, wanted))
+                state = state.with_status(foreseen(search.solver, following, wanted))
     return Found(state, tuple(search.done), False, changed, friction_laws)
 
 

@@ -34,12 +34,15 @@ def advanced(solver: Prepared, state: State, laws: Laws, increment: Increment, a
 
 def foreseen(solver: Prepared, state: State, wanted: NDArray[np.int8]) -> NDArray[np.int8]:
     """The status (n,) to go on with where the laws ask for ``wanted``: closed where half spaces without friction close, and
-    stuck where that is new. What of it slips only a solution tells."""
+    stuck where that is new. What of it slips only a solution tells. ``wanted`` itself where half spaces foresee that no more
+    closes than in ``state``, and the laws ask for more."""
     pairs, split = solver.system.pairs, solver.system.split
     beside = solver.system.join([_beside(pair) for pair in pairs]).astype(bool)
     gap = solver.system.gap(state)
     closed = split(solver.foresee(gap, state.multipliers, (wanted != OPEN) | beside, beside))
-    return solver.system.join([_with(*own) for own in zip(pairs, split(wanted), closed)])
+    result = solver.system.join([_with(*own) for own in zip(pairs, split(wanted), closed)])
+    few, many = (int((own != OPEN).sum()) for own in (result, wanted))
+    return wanted if few <= int(state.closed.sum()) < many else result
 
 
 def _beside(pair: Pair) -> NDArray[np.bool_]:
