@@ -109,14 +109,14 @@ def _slips(rows: Rows, index: NDArray[np.int64]) -> _Slips:
     seen, main = np.linalg.eigh(gaps[:, 1:, 1:])
     main = np.where(there[:, :, None], main, 0.0)
     give = np.einsum("kai,kab,kbi->ki", main, own[:, 1:, 1:], main)
-    give = np.where(give < 0.0, give, -1.0)
-    along = seen > -STRAIGHT
-    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / give, 0.0)
-    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / give, 0.0)
-    row, i = np.nonzero(~along & (np.abs(main).max(axis=1) > 0.5 / index.shape[1]))
+    along = (seen > -STRAIGHT) & (give < 0.0)
+    by = np.where(along, give, -1.0)
+    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / by, 0.0)
+    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / by, 0.0)
+    row, i = np.nonzero((seen <= -STRAIGHT) & (np.abs(main).max(axis=1) > 0.0))
     yields = -seen[row, i]
     turned = np.einsum("ka,ka->k", main[row, :, i], left[row]) / yields
-    across = _Across(row, main[row, :, i], turned, -give[row, i] / yields)
+    across = _Across(row, main[row, :, i], turned, np.maximum(-give[row, i], 0.0) / yields)
     known, drag = (np.einsum("kai,ki->ka", main, values) for values in (known, drag))
     return _Slips(index[:, 0], number, drag, known, across)
 
