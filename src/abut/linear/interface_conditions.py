@@ -78,7 +78,7 @@ def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Condit
 
 def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
     """That of pull S push^T - corner: what is closed or sticks component by component, springs across the slip by themselves,
-    theory (V24); where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of it."""
+    theory (V25); where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of it."""
     m = int(few.single.sum())
     if few.corner[:m].count_nonzero():
 
