@@ -108,6 +108,9 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
+FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
+
+
 def contact_result(
     mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
 ) -> ContactResult:
@@ -144,7 +147,9 @@ def contact_result(
         checks=certificate(
             pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
         )
-        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
+        + friction_checks(
+            pair, own.multipliers, own.status, own.slips, own.limit, max(around.reference, FAINT * around.beside)
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
