@@ -31,7 +31,7 @@ def test_example_runs_and_balances(path: Path) -> None:
     assert solution.converged
     step = solution.steps[-1]
     check_expected(path, step)
-    size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
+    size = max([np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts)])
     balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
     assert np.abs(balance).max() < 1e-9 * size
     for contact in step.contacts:  # action and reaction: the target gets the opposite, on the same lines of action
