@@ -88,7 +88,7 @@ class Contact:
                 f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
                 "complementarity and pressure auto; leave them out, or use segment-to-segment"
             )
-        if self.law == LAWS[1] and self.pressure.startswith("dual"):
+        if self.law == LAWS[1] and self.pressure.startswith("dual") and not self.frictional:
             raise InputError(
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
@@ -116,9 +116,12 @@ class Contact:
             return
         if self.kind == "tied":
             raise InputError(f"{where}: friction: a tie holds in all directions; leave friction or kind out")
-        if self.method != METHODS[0] or self.law != LAWS[0]:
+        if self.method != METHODS[0]:
+            raise InputError(f"{where}: friction: goes with method segment-to-segment; leave the other one out")
+        if not isinstance(self.law, str):
             raise InputError(
-                f"{where}: friction: goes with method segment-to-segment and law complementarity; leave out the others"
+                f"{where}: friction: a law of your own looks at the gap and the pressure alone; leave friction out, or take "
+                f"law {' or '.join(LAWS)}"
             )
 
     def _check_friction_amplitude(self, where: str) -> None:

@@ -57,7 +57,12 @@ def _law(pair: Pair, system: Linearised, slippery: bool) -> Tied | Coulomb | Com
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
-    return Coulomb(pair.stiffness, 0.0 if slippery else pair.friction(system.factors))
+    return Coulomb(pair.stiffness, 0.0) if slippery else coulomb(pair, system)
+
+
+def coulomb(pair: Pair, system: Linearised) -> Coulomb:
+    """The law of a pair with friction."""
+    return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
 def solve_friction(
