@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ def test_tends_to_coulomb() -> None:
         assert all(check.passed for check in solution.certificate)
         far.append(np.abs(solution.displacement - exact.displacement).max() / np.abs(exact.displacement).max())
     assert far[0] < 2e-3
-    assert all(after < 0.35 * before for before, after in zip(far, far[1:]))
+    assert all(after < 0.35 * before for before, after in pairwise(far))
     assert far[-1] < 1e-5
     status = [solution.contacts[0].friction.status for solution in (exact, solution)]
     assert np.array_equal(*status)

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.laws import TENSION_START, Complementarity, ConstraintFunction, Tied
-from abut.errors import SingularModelError
 from abut.contact.smooth_friction import SmoothCoulomb
+from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.friction import coulomb, friction_laws, next_status
 from abut.nonlinear.iteration import (
