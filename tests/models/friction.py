@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
+from abut.materials.material import Evaluated, OwnMaterial
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
 from models.patch import POISSON, ROTATION
@@ -207,3 +208,19 @@ def profile(solution: abut.Solution) -> tuple[Array, Array, Array, Cattaneo]:
     drag = (along * np.sign(along.sum())).ravel()
     exact = Cattaneo(abs(float(contact.force[1])), abs(float(contact.force[0])))
     return x[order], drag[order], contact.friction.status[:, :2].ravel()[order], exact
+
+
+@dataclass(frozen=True)
+class Hooke(OwnMaterial):
+    """Linear elasticity as a user's own material: Newton's method goes round again where it need not."""
+
+    young: float = 1e4
+    poisson: float = 0.3
+    modulus: float = 1e4
+
+    def evaluate(self, strain: np.ndarray, history: np.ndarray) -> Evaluated:
+        shear = self.young / (2.0 * (1.0 + self.poisson))
+        first = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
+        normal = np.array([1.0, 1, 1, 0, 0, 0])
+        matrix = first * np.outer(normal, normal) + shear * np.diag([2.0, 2, 2, 1, 1, 1])
+        return strain @ matrix, np.broadcast_to(matrix, (len(strain), 6, 6)), history

@@ -257,7 +257,7 @@ def test_no_friction_is_the_contact_without() -> None:
 def test_steps_are_halved_and_grow_again() -> None:
     def attempt(time: float, converged: bool) -> Attempt:
         none = np.zeros(0, bool)
-        return Attempt(1, replace(at_rest(0, 0), time=time), converged, (), none, none)
+        return Attempt(1, replace(at_rest(0, 0), time=time), converged, (), none, none, time)
 
     schedule = Automatic([0.5, 1.0])
     assert schedule.next(None) == 0.5

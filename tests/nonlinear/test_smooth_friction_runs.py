@@ -83,6 +83,12 @@ def test_rough_and_over_time() -> None:
     assert fading.contacts[0].force[0] == pytest.approx(0.0, abs=1e-9 * fading.contacts[0].force[1])
 
 
+def test_multigrid_is_refused() -> None:
+    model = with_law(pushed())
+    with pytest.raises(InputError, match="friction by Coulomb's law alone"):
+        abut.solve(replace(model, solve=abut.SolveOptions(linear="amg")))
+
+
 class Own:
     def evaluate(self, jump: np.ndarray, traction: np.ndarray, state: object) -> object:
         raise NotImplementedError

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import abut
@@ -15,9 +14,8 @@ from abut import write
 from abut.diagnosis.examine import check
 from abut.errors import InputError
 from abut.job import load_job
-from abut.materials.material import Evaluated, OwnMaterial
 from models.decks import BRICKS, PAIR, load
-from models.friction import FRICTION, on_a_slope, pushed
+from models.friction import FRICTION, Hooke, on_a_slope, pushed
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pushed-block" / "job.toml"
 DECK = BRICKS + PAIR.replace("HARD\n", "HARD\n*FRICTION\n0.25, 1.E4\n")
@@ -111,22 +109,6 @@ def test_what_friction_alone_holds_is_not_free() -> None:
     assert not [finding for finding in check(on_a_slope(0.2)).findings if finding.severity in ("error", "warning")]
     beyond = [finding.what for finding in check(on_a_slope(0.4)).findings if finding.severity == "error"]
     assert any("friction only up to its coefficient" in text for text in beyond)
-
-
-@dataclass(frozen=True)
-class Hooke(OwnMaterial):
-    """Linear elasticity as a user's own material: Newton's method goes round again where it need not."""
-
-    young: float = 1e4
-    poisson: float = 0.3
-    modulus: float = 1e4
-
-    def evaluate(self, strain: np.ndarray, history: np.ndarray) -> Evaluated:
-        shear = self.young / (2.0 * (1.0 + self.poisson))
-        first = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
-        normal = np.array([1.0, 1, 1, 0, 0, 0])
-        matrix = first * np.outer(normal, normal) + shear * np.diag([2.0, 2, 2, 1, 1, 1])
-        return strain @ matrix, np.broadcast_to(matrix, (len(strain), 6, 6)), history
 
 
 def test_materials_of_ones_own() -> None:

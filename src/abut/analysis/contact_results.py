@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
-from abut.analysis.friction import friction_checks, friction_forces, friction_result
+from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -107,8 +107,10 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
-def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surroundings) -> ContactResult:
-    """residual: of the contact law."""
+def contact_result(
+    mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
+) -> ContactResult:
+    """residual: of the contact law; earlier: of the step before, None in the first."""
     pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
     forces, others = own.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
@@ -138,14 +140,18 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
+        checks=certificate(
+            pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
+        )
         + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit),
+        friction=None if at is None else friction_result(
+            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
+        ),
     )
 
 

@@ -9,18 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
+from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.contact_results import PairState, contact_result
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
+from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, RigidResult, Step
+from abut.solution import ContactResult, Energy, RigidResult, Step
 from abut.solution.state import State
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
@@ -28,8 +31,9 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 
 @dataclass(frozen=True)
 class _End:
-    """A model at the end of a load step. displacement, internal, reaction: (dim n_points,) without rigid motions on springs,
-    forces of stresses, forces of supports and links; pressures: (n,) of each pair."""
+    """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
+    springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
+    pressures: (n,) of each pair."""
 
     problem: ContactProblem
     system: Linearised
@@ -38,15 +42,20 @@ class _End:
     displacement: NDArray[np.float64]
     pressures: list[NDArray[np.float64]]
     internal: NDArray[np.float64]
+    loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
+    following: NDArray[np.float64]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
         return self.displacement.reshape(-1, self.problem.model.dim)
 
 
-def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) -> Step:
-    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others.
+def step_result(
+    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acting | None = None
+) -> tuple[Step, Acting | None]:
+    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others,
+    and with friction what acts there, for the energy of the next step; acted: the same of the step before.
 
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
@@ -55,8 +64,10 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
+    acting, balance = _energy(end, acted, contacts, before) if attempt.converged else (None, None)
+    strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
-    return Step(
+    step = Step(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
@@ -68,21 +79,21 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=assembled.loaded.resultant @ system.factors,
+        load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
-        rigid={
-            body.rigid.body: RigidResult(*body.motion(end.nodal), *body.resultant(by_supports)) for body in held.bodies
-        },
+        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
         rounding=_rounding(system, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
-        strained=_strained(system, end.displacement, end.internal),
+        strained=strained,
+        energy=balance if strained else None,
     )
+    return step, acting
 
 
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
@@ -97,8 +108,39 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         contact_force += pair.rows.T @ pressure
     motion = Motion(state.time, displacement, state.history.of(bodies.name))
     internal = bodies.evaluate(motion, motion).force
-    reaction = internal - assembled.loaded.forces @ system.factors - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, reaction)
+    following = np.zeros_like(displacement)
+    for term in problem.terms:
+        if isinstance(term, FollowerLoads):
+            following -= term.evaluate(motion, motion).force
+    loads = assembled.loaded.forces @ system.factors + following
+    reaction = internal - loads - contact_force
+    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following)
+
+
+def _energy(
+    end: _End, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
+) -> tuple[Acting | None, Energy | None]:
+    """What acts at the end of a step, and the energy over it; None without friction."""
+    system, held = end.system, end.problem.held
+    if not any(pair.frictional for pair in system.pairs):
+        return None, None
+    now = Acting(
+        end.displacement, held.prescribed @ system.factors, end.internal, end.loads, end.reaction,
+        pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
+    )  # fmt: skip
+    if acted is None:
+        acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
+    history = end.state.history.of(CONTACTS)
+    slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
+    earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
+    return now, energy(system, acted, now, slips, contacts, earlier)
+
+
+def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
+    """Motion of a rigid body, and what moves it."""
+    if finite:
+        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
+    return RigidResult(*body.motion(nodal), *body.resultant(forces))
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
@@ -118,9 +160,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         system.pairs, end.pressures, system.split(system.gap(end.state)), system.split(end.state.status),
         [slips.get(pair.contact.name) for pair in system.pairs],
     )  # fmt: skip
+    earlier = before[-1].contacts if before else [None] * len(system.pairs)
     return tuple(
-        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it)
-        for own, beside_it in zip(found, around)
+        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it, one_before)
+        for own, beside_it, one_before in zip(found, around, earlier)
     )
 
 

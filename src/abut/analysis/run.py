@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.energy import Acting
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.results import step_result
 from abut.analysis.step_records import check_order, restored, saved_step
@@ -57,6 +58,7 @@ class Run:
     kind: str
     solver: LinearSolver
     steps: list[Step] = field(default_factory=list)
+    acted: Acting | None = None  # what acted at the end of the last step, with friction
 
     @classmethod
     def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
@@ -107,12 +109,12 @@ class Run:
 
         def halves(attempt: Attempt, time: float) -> None:
             self.told.note(
-                f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations: it goes to time "
-                f"{time:.6g} first, not to {attempt.state.time:.6g}"
+                f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations{_why(attempt)}: it goes to "
+                f"time {time:.6g} first, not to {attempt.time:.6g}"
             )
 
-        friction = any(pair.frictional for pair in problem.pairs)
-        schedule: Schedule = Automatic(times, first.time) if friction else Fixed(times)
+        halve = self.model.finite or any(pair.frictional for pair in problem.pairs)
+        schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
         control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
         for attempt in march(problem, first, schedule, self.solver, control, len(self.steps) + 1):
             self.clock.mark("solve")
@@ -129,7 +131,7 @@ class Run:
         )
 
     def _result(self, attempt: Attempt) -> Step:
-        step = step_result(self.assembled, attempt, self.steps)
+        step, self.acted = step_result(self.assembled, attempt, self.steps, self.acted)
         _check_size(self.model, step.displacement, self.told.note)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
@@ -140,12 +142,17 @@ class Run:
             self.keep(self.so_far(complete=False), saved_step(attempt, self.kind))
             self.clock.mark("writing")
         else:
-            self.told.note(f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations")
+            count = len(attempt.iterations)
+            self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
         self.told.note(f"step {number}: {reason}: going on with the direct solver")
         self.solver, self.kind = linear_solver("direct", self.assembled.problem, self.team), "direct"
         return self.solver
+
+
+def _why(attempt: Attempt) -> str:
+    return f" ({attempt.reason})" if attempt.reason else ""
 
 
 def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:
@@ -157,7 +164,7 @@ def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[
             f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}: check the "
             "units of Young's moduli, loads and mesh, and that supports constrain every body"
         )
-    if largest > extent:
+    if largest > extent and not model.finite:
         note(
             f"displacements of {largest:.2g} exceed the model size {extent:.2g}: check units (displacements must be small)"
         )

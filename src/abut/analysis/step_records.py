@@ -30,4 +30,4 @@ def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> Non
 def restored(saved: Saved) -> Attempt:
     """The load step as it was when it converged."""
     none = np.zeros(len(saved.state.status), dtype=bool)
-    return Attempt(saved.number, saved.state, True, saved.iterations, none, saved.inside)
+    return Attempt(saved.number, saved.state, True, saved.iterations, none, saved.inside, saved.state.time)

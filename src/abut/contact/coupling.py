@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from abut._core import couple_surfaces, plan_facets
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.contact.geometry import by_kind, facet_sizes, is_plane, nodal_normals, turning_within
+from abut.contact.geometry import Smoothing, by_kind, facet_sizes, is_plane, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance, rule_tables
 from abut.errors import InputError
 from abut.mesh.surface import Surface
@@ -138,6 +138,7 @@ def couple(
     degree: int,
     options: CouplingOptions = CouplingOptions(),
     only: NDArray[np.bool_] | None = None,
+    across: Smoothing | None = None,
 ) -> Coupling:
     """Divide the contactor into segments by the target, projected along the contactor's continuous normal, and integrate
     (paper, section 4).
@@ -145,14 +146,21 @@ def couple(
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.contact.merging``.
+    across: where the contactor's normals are averaged, as decided in another configuration; else as it is now.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
-    _check(contactor, target)
+    check_pair(contactor, target)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
-    raw = _cut(contactor, target, degree, facets, options)
+    raw = couple_surfaces(
+        **cutting_arguments(contactor, target, facets, options, across),
+        degree=degree,
+        vectorial=not options.componentwise,
+        keep_points=options.keep_points,
+        sights=options.keep_sights,
+    )
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
-    offset, n_points = _columns(contactor, target)
+    offset, n_points = point_columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], MAX_FACET_NODES * len(contactor), n_points, 0)
     target_part = _matrix(raw["target"], MAX_FACET_NODES * len(contactor), n_points, offset)
     return Coupling(
@@ -173,7 +181,8 @@ def couple(
 Couple = Callable[[Surface, Surface, int, CouplingOptions], Coupling]  # ``couple``, or what has it done by others
 
 
-def _check(contactor: Surface, target: Surface) -> None:
+def check_pair(contactor: Surface, target: Surface) -> None:
+    """Raises InputError where two surfaces do not fit together."""
     if contactor.dim != target.dim:
         raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
     if contactor.axisymmetric != target.axisymmetric:
@@ -183,38 +192,40 @@ def _check(contactor: Surface, target: Surface) -> None:
             raise InputError(f"surface '{surface.name}' has no facets")
 
 
-def _cut(contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions) -> Json:
-    """What the compiled core makes of some facets of the contactor."""
+def cutting_arguments(
+    contactor: Surface,
+    target: Surface,
+    facets: NDArray[np.int64],
+    options: CouplingOptions,
+    across: Smoothing | None,
+) -> Json:
+    """What the compiled core is told about the cutting and the rules for some facets of the contactor."""
     tables = rule_tables(options.rule)
-    normals = nodal_normals(contactor)
+    normals = nodal_normals(contactor, across)
     part = contactor if len(facets) == len(contactor) else contactor.part(facets)
     turning = turning_within(part, normals[facets])
     order_c, split_c = _plan(part, tables, options.points, turning)
     order_t, split_t = _plan(target, tables, options.points, _turning_of_target(target))
     if options.points == "auto":
         order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
-    return couple_surfaces(
-        points_c=part.points,
-        kinds_c=part.kinds,
-        nodes_c=part.nodes,
-        normals=np.ascontiguousarray(normals[facets]),
-        points_t=target.points,
-        kinds_t=target.kinds,
-        nodes_t=target.nodes,
-        rules=tables,
-        order_c=order_c.astype(np.int32),
-        order_t=order_t,
-        subdivide_c=split_c,
-        subdivide_t=split_t,
-        degree=degree,
-        vectorial=not options.componentwise,
-        keep_points=options.keep_points,
-        sights=options.keep_sights,
-        axisymmetric=contactor.axisymmetric,
-        reach=default_reach(contactor, target) if options.reach is None else options.reach,
-        rounding=no_gap(contactor, target, options.adjust),
-        hidden=options.hidden,
-    )
+    return {
+        "points_c": part.points,
+        "kinds_c": part.kinds,
+        "nodes_c": part.nodes,
+        "normals": np.ascontiguousarray(normals[facets]),
+        "points_t": target.points,
+        "kinds_t": target.kinds,
+        "nodes_t": target.nodes,
+        "rules": tables,
+        "order_c": order_c.astype(np.int32),
+        "order_t": order_t,
+        "subdivide_c": split_c,
+        "subdivide_t": split_t,
+        "axisymmetric": contactor.axisymmetric,
+        "reach": default_reach(contactor, target) if options.reach is None else options.reach,
+        "rounding": no_gap(contactor, target, options.adjust),
+        "hidden": options.hidden,
+    }
 
 
 def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
@@ -259,7 +270,7 @@ def _turning_of_target(target: Surface) -> NDArray[np.float64]:
         return np.zeros(len(target))
 
 
-def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
+def point_columns(contactor: Surface, target: Surface) -> tuple[int, int]:
     """Number of the target's first point among the columns, and how many points there are."""
     if contactor.points is target.points:
         return 0, len(contactor.points)
@@ -275,7 +286,7 @@ def _matrix(entries: tuple[Array, ...], rows: int, n_points: int, offset: int) -
 
 def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> IntegrationPoints:
     n, dim = raw["point_normal"].shape
-    offset, n_points = _columns(contactor, target)
+    offset, n_points = point_columns(contactor, target)
     operator = sp.csr_matrix((n, dim * n_points))
     for surface, name, sign, first in ((contactor, "contactor", 1.0, 0), (target, "target", -1.0, offset)):
         facet = raw[f"point_{name}_facet"]

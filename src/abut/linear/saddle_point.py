@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -94,15 +94,20 @@ def factorise(stiffness: Sparse, operator: Sparse, rows: Rows) -> Solve:
 @dataclass(frozen=True)
 class SaddlePoint:
     """As ``abut.linear.solver.Prepared``: the whole system factorised anew for every set of rows. predict: as
-    ``foresee``."""
+    ``foresee``; repeated: where a finite deformation changes the values of the stiffness only."""
 
     system: Linearised
     predict: Predict
     exact: bool = True
     accurate: float = ACCURATE
+    repeated: direct.Repeated = field(default_factory=direct.Repeated)
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``."""
+        if self.system.about is not None and len(pressure) == 0:
+            symmetric, matrix = self.system.symmetric, self.system.stiffness
+            matrix = store_diagonal(sp.triu(matrix, format="csr") if symmetric else matrix)
+            return self.repeated.solve(matrix, -residual, symmetric=symmetric), pressure
         return newton_step(self.system.stiffness, self.system.operator, rows, residual, pressure)
 
     def factorise(self, rows: Rows) -> Solve:

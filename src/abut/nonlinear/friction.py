@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
+from abut.nonlinear.exact import ROUGH, STRIDE
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
@@ -21,6 +22,7 @@ from abut.nonlinear.iteration import (
     largest_force,
     largest_pressure,
     part_of,
+    points,
     report,
 )
 from abut.problem.contact_pairs import Pair
@@ -104,22 +106,30 @@ def _newton(search: _Search, first: State, limit: int) -> Found:
     system, state = search.solver.system, first
     seen: set[bytes] = set()
     before, careful, changed = np.inf, False, np.zeros(len(state.status), dtype=bool)
+    tolerance = tolerated(search.solver)
+    accuracy = ROUGH
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(search.solver, state, friction_laws(system, state))
+        following = advance(search.solver, state, friction_laws(system, state), accuracy)
         if careful:
             following = search.shortened(state, following)
         wanted = next_status(system, following, search.increment)
         changed = wanted != state.status
         state = following.with_status(wanted)
-        left = search.report(state, int(changed.sum()), clock)
-        if not changed.any() and (left <= TOLERANCE or (left <= ROUNDING and left > 0.5 * before)):
+        left = search.report(state, points(system, changed), clock)
+        if not changed.any() and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
             return Found(state, tuple(search.done), True, changed, friction_laws)
         before = left if not changed.any() else np.inf
+        accuracy = ROUGH if changed.any() else max(0.3 * tolerance / left, STRIDE)
         if changed.any():
             careful = careful or wanted.tobytes() in seen
             seen.add(wanted.tobytes())
     return Found(state, tuple(search.done), False, changed, friction_laws)
+
+
+def tolerated(solver: Prepared) -> float:
+    """What laws and equilibrium may have left, over the largest pressure and force."""
+    return TOLERANCE if solver.exact else max(TOLERANCE, solver.accurate)
 
 
 def _without_friction(search: _Search, first: State, limit: int) -> State | None:
@@ -131,12 +141,12 @@ def _without_friction(search: _Search, first: State, limit: int) -> State | None
     for _ in range(limit):
         clock = time.perf_counter()
         try:
-            state = advance(search.solver, state, _laws(system, state, slippery=True))
+            state = advance(search.solver, state, _laws(system, state, slippery=True), ROUGH)
         except SingularModelError:
             return None
         wanted = next_status(system, state, search.increment)
         changed = (wanted != OPEN) != state.closed
-        search.report(state, int(changed.sum()), clock)
+        search.report(state, points(system, changed), clock)
         if not changed.any():
             return state.with_status(wanted)
         state = state.with_status(np.where(slippery & (wanted != OPEN), SLIPPING, wanted))

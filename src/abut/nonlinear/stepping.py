@@ -57,7 +57,7 @@ class Automatic:
             return None
         whole = goal - max((time for time in self._times if time < goal), default=self._begin)
         if attempt is not None and not attempt.converged:
-            self._share = 0.5 * (attempt.state.time - self._from) / whole
+            self._share = 0.5 * (attempt.time - self._from) / whole
         if self._share < self._smallest:
             return None
         reached = self._from + self._share * whole

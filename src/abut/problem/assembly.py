@@ -14,8 +14,10 @@ from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.finite_bodies import FiniteBodies
+from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import regularise
-from abut.problem.loads import Loads, loads
+from abut.problem.loads import Loads, followers, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
@@ -64,10 +66,14 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     constant = model.deformable.constant
-    bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
+    bodies: Bodies
+    if model.finite:
+        bodies = FiniteBodies(model, loaded)
+    else:
+        bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
-        terms=(bodies, DeadLoads(loaded, model.histories)),
+        terms=(bodies, DeadLoads(loaded, model.histories), *([FollowerLoads(model)] if followers(model) else [])),
         held=held,
         pairs=every,
         operator=stacked(every, n_free),

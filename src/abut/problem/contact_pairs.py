@@ -29,7 +29,7 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
-from abut.contact.tangential import slip_operators
+from abut.contact.tangential import SlipOperators, slip_operators
 from abut.errors import InputError
 from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
@@ -263,10 +263,10 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         return own_pair
     assert coupling.points is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(model, slim, slip_operators(coupling.points), held)
+    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), held)
 
 
-def _with_friction(model: Model, own: Pair, operators: tuple[Sparse, ...], held: Supports) -> Pair:
+def _with_friction(model: Model, own: Pair, operators: SlipOperators, held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
     made = friction_rows(own.contactor, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)

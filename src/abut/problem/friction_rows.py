@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.function_places import places
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.tangential import frames
+from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
@@ -19,10 +19,10 @@ from abut.types import Sparse
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; tangents: (n_functions, dim - 1,
-    dim) unit, at the place of each function of the pressure, ``points`` (n_functions, dim)."""
+    """What makes tangential rows. operators: facet by facet; tangents: (n_functions, dim - 1, dim) unit, at the place of each
+    function of the pressure, ``points`` (n_functions, dim)."""
 
-    operators: tuple[Sparse, ...]
+    operators: SlipOperators
     tangents: NDArray[np.float64]
     points: NDArray[np.float64]
 
@@ -39,7 +39,7 @@ class FrictionRows:
 
 
 def friction_rows(
-    contactor: Surface, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
+    contactor: Surface, space: PressureSpace, normal: Sparse, operators: SlipOperators, held: Supports
 ) -> FrictionRows:
     """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold the contactor's node along a tangent,
     as at a plane of symmetry, there is no traction along it."""
@@ -48,7 +48,7 @@ def friction_rows(
     axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
     moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
     tangents, free = frames(-outward, moves)
-    fields = [(space.transfer.T @ own).tocsr() for own in operators]
+    fields = [(space.transfer.T @ own).tocsr() for own in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
     rows, components = [normal], [space]

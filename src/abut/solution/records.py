@@ -14,6 +14,7 @@ from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.offset import smallest_offset
 from abut.solution.contacts import Check, ContactResult
+from abut.solution.energy import Energy
 from abut.solution.progress import Iteration
 from abut.solution.state import State
 
@@ -87,6 +88,7 @@ class Step:
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
+    energy: Energy | None = None  # of a converged step of a model with friction
 
     @property
     def balance_error(self) -> float:
@@ -187,6 +189,10 @@ class Solution:
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
+            if step.energy is not None:
+                model.append(Check("", "energy balance", step.energy.error, step.energy.limit,
+                                   "work of loads and supports less what is stored and what friction takes, over the "
+                                   "work of all nodal forces by size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 key = check.contact, check.name
                 if check.last or key not in worst or _worse(check, worst[key]):
