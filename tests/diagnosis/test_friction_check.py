@@ -98,7 +98,7 @@ def found(model: abut.Model) -> tuple[Uniqueness, np.ndarray]:
 
 
 def test_bounds_of_a_single_node() -> None:
-    """Klarbring 1990: one solution if and only if the coefficient is below k_tt / |k_nt|; and theory (R24)."""
+    """Klarbring 1990: one solution if and only if the coefficient is below k_tt / |k_nt|; and theory (R14)."""
     result, stiffness = found(corner(2))
     assert stiffness.shape == (2, 2)
     tangential, both, normal = stiffness[0, 0], stiffness[0, 1], stiffness[1, 1]
@@ -127,10 +127,16 @@ def test_a_coefficient_that_is_too_large() -> None:
 
 
 def test_bounds_are_for_what_they_know() -> None:
-    """Not beside contacts without friction, nor for bodies that friction alone holds, nor for rough surfaces."""
+    """Not beside contacts without friction, nor for bodies that friction alone holds, rough surfaces and tables."""
     model = pushed()
     other = abut.Contact("upper.right", "lower.top", name="other")
-    for own in (on_a_slope(0.2), with_friction(model, "rough"), replace(model, contacts=[])):
+    table = ((0.0, 0.3), (1.0, 0.2))
+    for own in (
+        on_a_slope(0.2),
+        with_friction(model, "rough"),
+        with_friction(model, table),
+        replace(model, contacts=[]),
+    ):
         held = supports(own)
         assert uniqueness(own, held, pairs(own, held)) is None
     built = pairs(model, supports(model))

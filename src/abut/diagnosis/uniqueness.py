@@ -29,9 +29,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Uniqueness:
-    """certain: below this coefficient there is one solution in each load step, whatever the loads, theory (R24); 0 where
-    contact alone holds a body; critical: the smallest coefficient at which there are infinitely many for some loads, while
-    all contact is closed and slips one way, theory (R25); infinite where there is none."""
+    """certain: below this coefficient there is one solution in each load step, whatever the loads, theory (R13), (R14); 0
+    where contact alone holds a body; critical: the smallest coefficient at which there are infinitely many for some loads,
+    while all contact is closed and slips one way, theory (R15); infinite where there is none."""
 
     certain: float
     critical: float
@@ -39,9 +39,9 @@ class Uniqueness:
 
 def uniqueness(model: Model, held: Supports, pairs: Sequence[Pair]) -> Uniqueness | None:
     """For all pairs with friction together; None where the model is too large for it, has materials or contacts of other
-    kinds (ties do), no coefficient at all, or bodies that friction alone holds."""
+    kinds (ties do), a coefficient over pressure or none at all, or bodies that friction alone holds."""
     rubs = [pair for pair in pairs if pair.frictional]
-    others = [pair for pair in pairs if not (pair.tied or (pair.frictional and np.isfinite(pair.steepest).all()))]
+    others = [pair for pair in pairs if not (pair.tied or _plain(pair))]
     small = held.free.shape[1] <= MOST[model.dim] and sum(map(len, pairs)) <= MULTIPLIERS
     if not rubs or others or not small or not model.deformable.constant:
         return None
@@ -57,6 +57,12 @@ def uniqueness(model: Model, held: Supports, pairs: Sequence[Pair]) -> Uniquenes
     normal = sp.vstack([pair.operator[pair.normal] for pair in rubs]).tocsr()
     critical = _critical(_held(stiffness, normal), normal, _slips(rubs))
     return Uniqueness(0.0 if free_motions(supports).shape[1] else _certain(stiffness, normal, rubs), critical)
+
+
+def _plain(pair: Pair) -> bool:
+    """Whether there is friction, with a coefficient that does not depend on the pressure."""
+    values = pair.values if pair.frictional else None
+    return values is not None and values.curve is None and bool(np.isfinite(values.coefficient).all())
 
 
 def _held(stiffness: sp.csr_matrix, rows: sp.csr_matrix) -> sp.csr_matrix:

@@ -46,8 +46,8 @@ def chosen(
     smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
     if linear == "amg" and smooth:
         raise InputError(
-            f"solve.linear: \"amg\" knows friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint function "
-            'for it; choose "direct" or "auto", or law "complementarity"'
+            f"solve.linear: \"amg\" knows friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
+            'function for it; choose "direct" or "auto", or law "complementarity"'
         )
     if linear != "auto":
         return linear

@@ -44,7 +44,8 @@ class Contact:
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
-    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
+    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
+    that of friction by its square root);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
     a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, a function of position,
     points (n, dim) -> (n,), taken in the undeformed mesh, pairs of pressure and coefficient, linear between and constant
