@@ -16,6 +16,7 @@ from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
 from abut.model.conditions import weights
 from abut.model.offset import offsets
+from abut.nonlinear.friction import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.follower_loads import FollowerLoads
@@ -64,7 +65,7 @@ def step_result(
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
-    acting, balance = _energy(end, acted, contacts, before) if attempt.converged else (None, None)
+    acting, balance = _energy(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
     step = Step(
@@ -118,15 +119,18 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
 
 
 def _energy(
-    end: _End, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
+    end: _End, attempt: Attempt, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acting | None, Energy | None]:
-    """What acts at the end of a step, and the energy over it; None without friction."""
+    """What acts at the end of a step, and the energy over it; None without friction, where it did not converge, and where
+    the operator changes with the displacements."""
     system, held = end.system, end.problem.held
-    if not any(pair.frictional for pair in system.pairs):
+    if not attempt.converged or end.problem.model.finite or not any(pair.frictional for pair in system.pairs):
         return None, None
+    largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
         end.displacement, held.prescribed @ system.factors, end.internal, end.loads, end.reaction,
         pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE),
     )  # fmt: skip
     if acted is None:
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)

@@ -14,7 +14,7 @@ from abut.contact.laws import TENSION_START, Complementarity, ConstraintFunction
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction import coulomb, friction_laws, next_status
+from abut.nonlinear.friction_newton import coulomb, friction_laws, next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,
