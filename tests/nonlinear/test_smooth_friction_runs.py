@@ -47,6 +47,35 @@ def test_patch_in_3d(slides: bool) -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+@pytest.mark.long
+def test_tends_to_coulomb_in_3d() -> None:
+    """Pushed askew by its top, until a third of it slips, each point in a direction of its own."""
+    parts = {
+        "lower": make.box([0, 4], [0, 3], [0, 1], [8, 6, 2], "hex8"),
+        "upper": make.box([1, 3], [0.5, 2.5], [1, 2], [5, 5, 3], "hex8"),
+    }
+    model = abut.Model(
+        make.join(parts),
+        [abut.Solid(name, abut.LinearElastic(1e4, 0.3)) for name in parts],
+        [
+            abut.Support("lower.bottom", x=0, y=0, z=0),
+            abut.Support("upper.top", x=0.012, y=0.006, amplitude=abut.Amplitude([(0.3, 0), (1, 1)])),
+        ],
+        [abut.Pressure("upper.top", 100.0, amplitude=abut.Amplitude([(0, 0), (0.3, 1)]))],
+        [abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        solve=abut.SolveOptions(times=[0.3, 0.65, 1.0]),
+    )
+    exact, far = abut.solve(model), []
+    assert exact.contacts[0].friction.slipping_area > 1.0
+    assert exact.contacts[0].friction.sticking_area > 1.0
+    for epsilon in (1e-8, 1e-12):
+        solution = abut.solve(with_law(model, epsilon=epsilon))
+        assert solution.converged
+        assert all(check.passed for check in solution.certificate)
+        far.append(np.abs(solution.displacement - exact.displacement).max() / np.abs(exact.displacement).max())
+    assert far[1] < 0.1 * far[0] < 1e-4
+
+
 def test_laws_side_by_side() -> None:
     """The constraint function with friction and without, Coulomb's law, a tie: all slides in the end."""
     parts = {name: make.rectangle([0, 1], [i, i + 1], cells=[3 + i, 3]) for i, name in enumerate("abcde")}

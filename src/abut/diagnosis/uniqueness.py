@@ -18,7 +18,7 @@ from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair
 from abut.problem.rigid_modes import free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
 
-MOST = {2: 30_000, 3: 8_000}  # free displacements by dimension, and multipliers, up to which this costs about a second
+MOST = {2: 30_000, 3: 8_000}  # free displacements by dimension, and multipliers, up to which this costs a few seconds
 MULTIPLIERS = 800
 STIFF = 1e4  # of what holds ties, and gaps that stay closed, over the stiffness
 DIRECTIONS = 8  # of slip in 3D, over half a turn
@@ -106,8 +106,7 @@ def _critical(stiffness: sp.csr_matrix, normal: sp.csr_matrix, slips: Sequence[s
         raise SingularModelError("contact cannot close")
     result = np.inf
     for slip in slips:
-        across = np.asarray(normal @ direct.factorized(stiffness)(np.asarray(slip.T.todense())))
-        found = scipy.linalg.eigvals(across, own)
+        found = scipy.linalg.eigvals(np.asarray(slip @ yields).T, own)
         real = np.abs(found[np.abs(found.imag) <= REAL * np.abs(found)].real)
         result = min(result, 1.0 / max(float(real.max(initial=0.0)), 1e-300))
     return result if result < 1e100 else np.inf
