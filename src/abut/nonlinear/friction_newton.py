@@ -140,6 +140,11 @@ def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
+    return coulomb(pair, system)
+
+
+def coulomb(pair: Pair, system: Linearised) -> Coulomb:
+    """The law of a pair with friction."""
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
