@@ -10,4 +10,5 @@ NB_MODULE(_core, m) {
   abut::bind_interface(m);
   abut::bind_sparse(m);
   abut::bind_strength(m);
+  abut::bind_tangent(m);
 }

@@ -75,4 +75,5 @@ void bind_integrate(nb::module_ &m);
 void bind_interface(nb::module_ &m);
 void bind_sparse(nb::module_ &m);
 void bind_strength(nb::module_ &m);
+void bind_tangent(nb::module_ &m);
 } // namespace abut

@@ -70,25 +70,29 @@ public:
   }
 
   // Calls call.operator()<Kinematics>() with the kinematics of these cells.
-  template <class Call> void with_kinematics(Call call) const {
+  template <template <int, bool> class Kinematics, class Call> void with_kinematics(Call call) const {
     if (axisymmetric)
-      call.template operator()<SmallStrain<2, true>>();
+      call.template operator()<Kinematics<2, true>>();
     else if (dim() == 2)
-      call.template operator()<SmallStrain<2, false>>();
+      call.template operator()<Kinematics<2, false>>();
     else
-      call.template operator()<SmallStrain<3, false>>();
+      call.template operator()<Kinematics<3, false>>();
   }
 
-  template <class Material> void integrate(const State &state, const Material &material, const Results &results) const {
+  template <template <int, bool> class Kinematics, class Material>
+  Unsound integrate(const State &state, const Material &material, const Results &results) const {
     const Cells cells = view();
     nb::gil_scoped_release release;
     const std::size_t parts = cells.count < FEW_CELLS ? 1 : thread_count();
-    with_kinematics([&]<class Kinematics>() {
+    std::vector<Unsound> unsound(parts);
+    with_kinematics<Kinematics>([&]<class Own>() {
       run_parts(parts, [&](std::size_t part) {
         const Rows own{std::int32_t(rows() * part / parts), std::int32_t(rows() * (part + 1) / parts)};
-        abut::integrate<Kinematics>(cells, state, material, results, own);
+        unsound[part] = abut::integrate<Own>(cells, state, material, results, own);
       });
     });
+    return *std::min_element(unsound.begin(), unsound.end(),
+                             [](const Unsound &a, const Unsound &b) { return a.cell < b.cell; });
   }
 
 private:
@@ -107,7 +111,7 @@ static nb::ndarray<nb::numpy, double> strains(const CellArrays &cells, Matrix<do
   {
     nb::gil_scoped_release release;
     const std::size_t parts = cells.count() < FEW_CELLS ? 1 : thread_count();
-    cells.with_kinematics([&]<class Kinematics>() {
+    cells.with_kinematics<SmallStrain>([&]<class Kinematics>() {
       run_parts(parts, [&](std::size_t part) {
         point_strains<Kinematics>(cells.view(), state, result.data(), cells.count() * part / parts,
                                   cells.count() * (part + 1) / parts);
@@ -125,8 +129,8 @@ static void integrate_isotropic(const CellArrays &cells, Matrix<double> moduli, 
     throw nb::value_error("cells and materials disagree");
   if ((force || nodal) && !displacement)
     throw nb::value_error("forces and stresses need displacements");
-  cells.integrate(cells.state(displacement, thermal), Isotropic{moduli.data(), plane_stress},
-                  cells.results(force, tangent, nodal));
+  cells.integrate<SmallStrain>(cells.state(displacement, thermal), Isotropic{moduli.data(), plane_stress},
+                               cells.results(force, tangent, nodal));
 }
 
 static void integrate_given(const CellArrays &cells, std::optional<Matrix<double>> stresses,
@@ -138,8 +142,27 @@ static void integrate_given(const CellArrays &cells, std::optional<Matrix<double
     throw nb::value_error("integration points and what is given there disagree");
   if (((force || nodal) && !stresses) || (tangent && !tangents))
     throw nb::value_error("forces need stresses, and the stiffness needs tangents");
-  cells.integrate(State{}, Given{stresses ? stresses->data() : nullptr, tangents ? tangents->data() : nullptr},
-                  cells.results(force, tangent, nodal));
+  cells.integrate<SmallStrain>(State{},
+                               Given{stresses ? stresses->data() : nullptr, tangents ? tangents->data() : nullptr},
+                               cells.results(force, tangent, nodal));
+}
+
+static std::optional<std::tuple<std::size_t, double>>
+integrate_hyperelastic(const CellArrays &cells, Matrix<double> constants, int law, bool plane_stress,
+                       Matrix<double> displacement, std::optional<Matrix<double>> thermal,
+                       std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Nodal> nodal,
+                       std::optional<Output<1>> energy) {
+  if (constants.shape(0) != cells.count() || constants.shape(1) != 2 || (energy && energy->shape(0) != cells.count()))
+    throw nb::value_error("cells and materials or energies disagree");
+  if (law < 0 || law > int(Law::ISOCHORIC))
+    throw nb::value_error("no such law");
+  Results results = cells.results(force, tangent, nodal);
+  results.energy = energy ? energy->data() : nullptr;
+  const Unsound unsound = cells.integrate<FiniteStrain>(
+      cells.state(displacement, thermal), Hyperelastic{constants.data(), Law(law), plane_stress}, results);
+  if (unsound.cell == SIZE_MAX)
+    return std::nullopt;
+  return std::make_tuple(unsound.cell, unsound.determinant);
 }
 
 void bind_integrate(nb::module_ &m) {
@@ -165,6 +188,15 @@ void bind_integrate(nb::module_ &m) {
         nb::arg("tangents").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(), nb::arg("nodal").noconvert() = nb::none(),
         "The same with stresses (cells q, 6) and tangents (cells q, 6, 6) at the integration points.");
+  m.def("integrate_hyperelastic", &integrate_hyperelastic, nb::arg("cells"), nb::arg("constants").noconvert(),
+        nb::arg("law"), nb::arg("plane_stress"), nb::arg("displacement").noconvert(),
+        nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
+        nb::arg("tangent").noconvert() = nb::none(), nb::arg("nodal").noconvert() = nb::none(),
+        nb::arg("energy").noconvert() = nb::none(),
+        "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses at the nodes, "
+        "and "
+        "energy (cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
+        "incomplete.");
 }
 
 } // namespace abut

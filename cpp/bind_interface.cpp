@@ -1,23 +1,8 @@
 // Segments and coupling for Python; arguments are checked there.
-#include "bind.hpp"
-#include "segments.hpp"
+#include "bind_surfaces.hpp"
 #include <nanobind/stl/vector.h>
 
 namespace abut {
-
-static SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes) {
-  if (nodes.shape(0) != kinds.shape(0) || nodes.shape(1) != MAX_FACET_NODES)
-    throw nb::value_error("nodes must be (facets, MAX_FACET_NODES)");
-  return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
-}
-
-static RuleTable table(Tensor3<double> rules) {
-  if (rules.shape(0) != 4)
-    throw nb::value_error("rules must be (4, count, width)");
-  const std::size_t step = rules.shape(1) * rules.shape(2);
-  const double *data = rules.data();
-  return {rules.shape(1), rules.shape(2), data, data + step, data + 2 * step, data + 3 * step};
-}
 
 static nb::tuple plan_facets(Matrix<double> points, Vector<std::uint8_t> kinds, Matrix<std::int32_t> nodes,
                              Tensor3<double> rules, Tensor3<double> exact, Vector<double> tolerance,

@@ -38,6 +38,8 @@ struct Curve {
 
 constexpr int MAX_CLIP = 24; // vertices of a clipped polygon: a quadrilateral cut by four lines has at most eight
 constexpr int STRAIGHT = -1; // side of an edge that belongs to no piece: a straight cut
+// Side of a straight cut along the chord of an edge of piece `side`, and back.
+constexpr int along_chord(int side) { return -2 - side; }
 
 // A vertex and the edge that leaves it: `side` the piece that the edge belongs to, `edge` its number there.
 struct Vertex {

@@ -28,7 +28,7 @@ struct Contactor3 {
     for (int i = 0; i < map.terms; ++i)
       map.c[i][0] = position.c[i][0], map.c[i][1] = position.c[i][1];
     flatten(
-        {f, m, false},
+        {f, m, false, 0},
         [&](const double *xi, int) {
           double x[3];
           facet.position.at(xi, x);
@@ -47,20 +47,28 @@ struct Contactor3 {
     });
   }
 
-  // Foot in the plane of the contactor point whose normal line meets v; outside the facet the normal of the nearest
-  // point of the facet is used. See theory (S5).
+  // Foot in the plane of the contactor point whose normal line meets v: theory (S5).
   Point2 carry(const double *v) const {
+    double xi[2];
+    return flat ? plane.flat(v) : foot(v, xi).p;
+  }
+
+  // The foot, and the contactor point's reference coordinates xi: outside the facet those of its nearest point, whose
+  // normal is used. Not `upright` where the normal leans too much.
+  struct Foot {
+    Point2 p;
+    bool upright;
+  };
+  Foot foot(const double *v, double *xi) const {
     const Point2 start = plane.flat(v);
-    if (flat)
-      return start;
     const double height = plane.height(v);
-    double xi[2], x[3], n[3], dx[2][3], dn[2][3];
+    double x[3], n[3], dx[2][3], dn[2][3], last[2] = {0, 0};
     facet.centre(xi);
     Point2 p = start;
     for (int i = 0; i < 12; ++i) {
       position.at(xi, x, dx), direction.at(xi, n, dn);
       if (leaning(n))
-        return p;
+        return {p, false};
       // How much of the way from the facet's point along its normal is missing to v.
       const double t = (height - x[2]) / n[2];
       double s[2][2];
@@ -70,22 +78,38 @@ struct Contactor3 {
       const Point2 d{x[0] + t * n[0] - start.x, x[1] + t * n[1] - start.y}, a{s[0][0], s[0][1]}, b{s[1][0], s[1][1]};
       const double det = cross2(a, b), before[2] = {xi[0], xi[1]};
       if (det == 0)
-        return p;
+        return {p, true};
       xi[0] -= cross2(d, b) / det, xi[1] -= cross2(a, d) / det;
-      facet.clamp(xi);
+      const bool cut = facet.clamp(xi);
+      const double step[2] = {xi[0] - before[0], xi[1] - before[1]};
+      cut ? go_on(xi, step, last) : void(last[0] = last[1] = 0);
       position.at(xi, x), direction.at(xi, n);
       if (leaning(n))
-        return p;
+        return {p, false};
       p = start - (height - x[2]) / n[2] * Point2{n[0], n[1]};
-      if (std::abs(xi[0] - before[0]) + std::abs(xi[1] - before[1]) < SETTLED)
-        return p;
+      if (std::abs(step[0]) + std::abs(step[1]) < (cut ? SETTLED_AT_RIM : SETTLED))
+        break;
     }
-    return p;
+    return {p, true};
   }
+
+  Polynomial<3> position, direction; // of the facet and its normals, in the plane's frame
 
 private:
   static constexpr double SETTLED = 1e-7; // of the reference domain: what Newton's next step leaves is rounding
-  Polynomial<3> position, direction;      // in the plane's frame
+  static constexpr double SETTLED_AT_RIM = 1e-10;
+
+  // Steps that are cut off at the rim shrink by a factor only, so the point goes on to where they lead: Aitken.
+  void go_on(double *xi, const double *step, double *last) const {
+    const double size = last[0] * last[0] + last[1] * last[1];
+    const double ratio = size > 0 ? (step[0] * last[0] + step[1] * last[1]) / size : 1;
+    const bool leads = ratio < 0.9 && ratio > -5;
+    for (int a = 0; a < 2; ++a) {
+      xi[a] += leads ? ratio / (1 - ratio) * step[a] : 0;
+      last[a] = leads ? 0 : step[a];
+    }
+    facet.clamp(xi);
+  }
 
   static bool leaning(const double *n) { return !(n[2] > 0.1 * std::sqrt(dot(n, n, 3))); }
   void to_frame(const Polynomial<3> &from, Polynomial<3> &to) const {

@@ -68,13 +68,16 @@ inline void halve(const Piece &piece, std::vector<Piece> &out) {
     if (cross2(piece.p[i] - piece.p[(i + 3) % 4], piece.p[(i + 1) % 4] - piece.p[i]) < 0)
       reflex = i;
   for (int half = 0; half < 2; ++half) {
-    const int a = reflex, b = (reflex + (half == 0 ? 1 : 2)) % 4, c = (reflex + (half == 0 ? 2 : 3)) % 4;
+    const int from[3] = {reflex, (reflex + (half == 0 ? 1 : 2)) % 4, (reflex + (half == 0 ? 2 : 3)) % 4};
+    const int cut = half == 0 ? 2 : 0; // the edge along the diagonal
     Piece part;
-    part.size = 3;
-    part.p[0] = piece.p[a], part.p[1] = piece.p[b], part.p[2] = piece.p[c];
-    part.curve[0] = half == 0 ? piece.curve[a] : make_curve(piece.p[a], piece.p[b], nullptr);
-    part.curve[1] = piece.curve[b];
-    part.curve[2] = half == 0 ? make_curve(piece.p[c], piece.p[a], nullptr) : piece.curve[c];
+    part.size = 3, part.facet = piece.facet;
+    for (int i = 0; i < 3; ++i)
+      part.p[i] = piece.p[from[i]], part.corner[i] = piece.corner[from[i]];
+    for (int i = 0; i < 3; ++i) {
+      part.curve[i] = i == cut ? make_curve(part.p[i], part.p[(i + 1) % 3], nullptr) : piece.curve[from[i]];
+      part.middle[i] = piece.middle[from[i]], part.bend[i] = i != cut && piece.bend[from[i]];
+    }
     if (signed_area(part.p, 3) > 0)
       out.push_back(part);
   }
@@ -85,6 +88,7 @@ struct Division {
   const Facet &facet;
   int m;
   bool reverse;
+  int number; // of the facet
 
   // Reference coordinates of the grid's points, which lie at whole i, j.
   void grid(double i, double j, double *xi) const {
@@ -96,17 +100,20 @@ struct Division {
   template <class Map> void add(const double (*corner)[2], int size, Map to_plane, std::vector<Piece> &out) const {
     const bool curved = quadratic(facet.kind);
     Piece piece;
-    piece.size = size;
+    piece.size = size, piece.facet = number;
     Point2 middle[4];
-    double xi[2];
+    auto put = [&](double i, double j, int node, Piece::Place &place) {
+      grid(i, j, place.xi);
+      place.node = m == 1 ? node : -1;
+      return to_plane(place.xi, place.node);
+    };
     for (int i = 0; i < size; ++i) {
       const int k = reverse ? size - 1 - i : i, next = reverse ? (k + size - 1) % size : (k + 1) % size;
-      grid(corner[k][0], corner[k][1], xi);
-      piece.p[i] = to_plane(xi, m == 1 ? k : -1);
-      if (!curved)
-        continue;
-      grid(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]), xi);
-      middle[i] = to_plane(xi, m == 1 ? size + (reverse ? next : k) : -1);
+      piece.p[i] = put(corner[k][0], corner[k][1], k, piece.corner[i]);
+      piece.bend[i] = curved;
+      if (curved)
+        middle[i] = put(0.5 * (corner[k][0] + corner[next][0]), 0.5 * (corner[k][1] + corner[next][1]),
+                        size + (reverse ? next : k), piece.middle[i]);
     }
     if (signed_area(piece.p, size) <= 0)
       return;

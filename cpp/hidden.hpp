@@ -81,14 +81,14 @@ inline Polygon only_on_chord(const Polygon &polygon, int side, int edge, Point2 
     const bool before = way * (first - from) > TOUCHING, beyond = way * (to - last) > TOUCHING;
     const bool on = std::min(way * to, way * last) - std::max(way * from, way * first) > TOUCHING;
     if (!on) {
-      next.push({p, STRAIGHT, 0});
+      next.push({p, along_chord(side), edge});
       continue;
     }
     if (before)
-      next.push({p, STRAIGHT, 0});
+      next.push({p, along_chord(side), edge});
     next.push({before ? (first == 0 ? a : b) : p, side, edge});
     if (beyond)
-      next.push({last == 1 ? b : a, STRAIGHT, 0});
+      next.push({last == 1 ? b : a, along_chord(side), edge});
   }
   return next;
 }

@@ -1,6 +1,7 @@
 // The one loop over cells and integration points: strain by the kinematics, stress and tangent by the material, and
 // what they add up to.
 #pragma once
+#include "finite_strain.hpp"
 #include "kinematics.hpp"
 #include "materials.hpp"
 #include <algorithm>
@@ -24,6 +25,14 @@ struct Results {
   const double *extrapolation = nullptr; // (n, rule) from the integration points of a cell to its nodes
   double *total = nullptr;               // (points, 6) stresses of the cells at their nodes
   double *count = nullptr;               // (points,) how many cells these are of
+  double *energy = nullptr;              // (cells,) of finite strains
+};
+
+// The first cell, in their order, that has no sound deformation, and the determinant of the deformation gradient there;
+// where that is positive, plane stress found no stretch out of the plane.
+struct Unsound {
+  std::size_t cell = SIZE_MAX;
+  double determinant = 0;
 };
 
 // Points first .. last - 1, whose results a thread owns: it computes all cells that reach into them, so that each is
@@ -33,6 +42,33 @@ struct Rows {
   bool has(std::int32_t i) const { return i >= first && i < last; }
 };
 
+// Nodal values (n,) of a cell at point q.
+inline double at_point(const Cells &cells, std::size_t q, const double *values) {
+  double sum = 0;
+  for (std::size_t i = 0; i < cells.n; ++i)
+    sum += cells.shapes[q * cells.n + i] * values[i];
+  return sum;
+}
+
+// A material at a point that heat stretches freely by ``stretch``, theory (D5): its strain is the elastic one.
+template <class Material>
+typename Material::Tangent heated(const Material &material, const Point &point, double stretch, double *strain,
+                                  double *stress) {
+  const double square = stretch * stretch;
+  if (stretch != 1)
+    for (int s = 0; s < STRAINS; ++s)
+      strain[s] = (strain[s] - (s < 3) * (square - 1) / 2) / square;
+  auto result = material.evaluate(point, strain, stress);
+  if (stretch != 1) {
+    for (int s = 0; s < STRAINS; ++s)
+      stress[s] *= stretch;
+    for (double &c : result.c)
+      c /= stretch;
+    result.energy *= stretch * square;
+  }
+  return result;
+}
+
 // Strain at point q that stresses: less what the temperature makes. thermal (n,) of the cell, or null.
 template <class Kinematics>
 void mechanical_strain(const Kinematics &kinematics, const Cells &cells, std::size_t q, const double *u,
@@ -40,9 +76,7 @@ void mechanical_strain(const Kinematics &kinematics, const Cells &cells, std::si
   kinematics.strain(q, u, strain);
   if (!thermal)
     return;
-  double free = 0;
-  for (std::size_t i = 0; i < cells.n; ++i)
-    free += cells.shapes[q * cells.n + i] * thermal[i];
+  const double free = at_point(cells, q, thermal);
   for (int a = 0; a < 3; ++a)
     strain[a] -= free;
 }
@@ -70,21 +104,27 @@ public:
         x(n * dim), u(n * dim), stress(cells.rule * STRAINS), tangent(cells.rule), force(n * dim),
         block(results.stiffness ? n * n * dim * dim : 0) {}
 
-  void run() {
+  // Ends at the first cell without a sound deformation, and says which.
+  Unsound run() {
     for (std::size_t c = 0; c < cells.count; ++c) {
       own = cells.nodes + c * n;
       if (std::none_of(own, own + n, [&](std::int32_t i) { return rows.has(i); }))
         continue;
       gather(cells.points, own, n, dim, x.data());
       kinematics.place(x.data());
-      evaluate(c);
+      if constexpr (Kinematics::finite) {
+        if (const double determinant = evaluate_finite(c); std::isfinite(determinant))
+          return {c, determinant};
+      } else
+        evaluate(c);
       if (results.force)
         add_force();
-      if (results.total)
-        add_nodal_stress();
       if (results.stiffness)
         add_stiffness();
+      if (results.total)
+        add_nodal_stress();
     }
+    return {};
   }
 
 private:
@@ -106,6 +146,28 @@ private:
     }
   }
 
+  // Not a number where all is sound, else the determinant of the deformation gradient.
+  double evaluate_finite(std::size_t c) {
+    double determinant, strain[STRAINS], energy = 0;
+    gather(state.displacement, own, n, dim, u.data());
+    if (!kinematics.deform(u.data(), determinant))
+      return std::isfinite(determinant) ? determinant : 0;
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      kinematics.strain(q, strain);
+      const double stretch = 1 + (state.thermal ? at_point(cells, q, state.thermal + c * n) : 0);
+      double *const at = &stress[q * STRAINS];
+      tangent[q] = heated(material, Point{c, c * cells.rule + q, rows.has(own[0])}, stretch, strain, at);
+      if (!tangent[q].sound)
+        return kinematics.determinant(q);
+      if (material.plane_stress)
+        kinematics.thicken(q, stretch * std::sqrt(1 + 2 * strain[2]));
+      energy += kinematics.reference_volume(q) * tangent[q].energy;
+    }
+    if (results.energy && rows.has(own[0]))
+      results.energy[c] = energy;
+    return std::nan("");
+  }
+
   void add_force() {
     std::fill(force.begin(), force.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
@@ -116,6 +178,9 @@ private:
   }
 
   void add_nodal_stress() {
+    if constexpr (Kinematics::finite)
+      for (std::size_t q = 0; q < cells.rule; ++q)
+        kinematics.to_cauchy(q, &stress[q * STRAINS]);
     for (std::size_t i = 0; i < n; ++i) {
       if (!rows.has(own[i]))
         continue;
@@ -132,8 +197,12 @@ private:
   void add_stiffness() {
     std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
-      kinematics.add_stiffness(q, tangent[q], block.data());
-    kinematics.finish(tangent[0], block.data());
+      if constexpr (Kinematics::finite)
+        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], block.data());
+      else
+        kinematics.add_stiffness(q, tangent[q], block.data());
+    if constexpr (!Kinematics::finite)
+      kinematics.finish(tangent[0], block.data());
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
         scatter(i);
@@ -168,8 +237,8 @@ private:
 };
 
 template <class Kinematics, class Material>
-void integrate(const Cells &cells, const State &state, const Material &material, const Results &results, Rows rows) {
-  Integration<Kinematics, Material>(cells, state, material, results, rows).run();
+Unsound integrate(const Cells &cells, const State &state, const Material &material, const Results &results, Rows rows) {
+  return Integration<Kinematics, Material>(cells, state, material, results, rows).run();
 }
 
 } // namespace abut

@@ -27,6 +27,7 @@ struct Cells {
 template <int dim, bool axisymmetric> class SmallStrain {
 public:
   static constexpr int DIM = dim;
+  static constexpr bool finite = false;
 
   explicit SmallStrain(const Cells &cells)
       : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),

@@ -127,6 +127,25 @@ template <int W> struct Polynomial {
       for (int a = 0; a < W; ++a)
         slope[0][a] += 2 * x * y * y * c[8][a], slope[1][a] += 2 * x * x * y * c[8][a];
   }
+
+  // Second derivatives xx, xy, yy.
+  void second(const double *xi, double (*value)[W]) const {
+    const double x = xi[0], y = xi[1];
+    for (int a = 0; a < W; ++a) {
+      value[0][a] = value[2][a] = 0;
+      value[1][a] = terms > 3 ? c[3][a] : 0;
+      if (terms > 4)
+        value[0][a] += 2 * c[4][a], value[2][a] += 2 * c[5][a];
+      if (terms > 6) {
+        value[0][a] += 2 * y * c[6][a], value[2][a] += 2 * x * c[7][a];
+        value[1][a] += 2 * x * c[6][a] + 2 * y * c[7][a];
+      }
+      if (terms > 8) {
+        value[0][a] += 2 * y * y * c[8][a], value[2][a] += 2 * x * x * c[8][a];
+        value[1][a] += 4 * x * y * c[8][a];
+      }
+    }
+  }
 };
 
 } // namespace abut

@@ -1,12 +1,8 @@
 // The 2D and 3D loops over contactor facets; see docs/theory/segments.md for the construction.
 #include "segments.hpp"
 #include "accumulator.hpp"
-#include "contactor.hpp"
-#include "hidden.hpp"
-#include "horizon.hpp"
-#include "lines.hpp"
+#include "cutting.hpp"
 #include "parallel.hpp"
-#include "tree.hpp"
 
 namespace abut {
 
@@ -28,140 +24,6 @@ Facet SurfaceView::facet(std::size_t f) const {
 }
 
 namespace {
-
-constexpr std::size_t FEW_FACETS = 500; // not worth a thread
-
-Box box_of(const Hull &hull, int dim) {
-  Box box;
-  for (int i = 0; i < hull.size; ++i)
-    box.add(hull.x[i], dim);
-  return box;
-}
-
-// All that lies within reach of a contactor facet along its normals.
-Box swept_box(const Facet &c, double reach) {
-  const Hull hull(c, c.x), normals(c, c.normals);
-  Box box = box_of(hull, c.dim);
-  for (int i = 0; i < hull.size; ++i)
-    for (int side = -1; side <= 1; side += 2) {
-      double far[3];
-      for (int a = 0; a < c.dim; ++a)
-        far[a] = hull.x[i][a] + side * reach * normals.x[i][a];
-      box.add(far, c.dim);
-    }
-  box.inflate(1e-9 * box.diagonal(c.dim), c.dim);
-  return box;
-}
-
-// A contactor facet and the target pieces that lie over it, in its mean plane.
-struct Over {
-  const Contactor3 &c;
-  std::vector<Piece> &theirs;
-
-  const Piece &piece(int side) const {
-    const int own = int(c.pieces.size());
-    return side < own ? c.pieces[side] : theirs[side - own];
-  }
-  const Curve *curve(const Vertex &v) const { return v.side == STRAIGHT ? nullptr : &piece(v.side).curve[v.edge]; }
-};
-
-// What it sees of a target facet from a point of the plane.
-struct Sight3 {
-  const Contactor3 &c;
-  Spot<2> own;
-  Spot<3> other;
-  double x[3], tangent[2][3], n[3], nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
-
-  Sight3(const Contactor3 &facet, const double *xi, const double *eta) : c(facet) { begin(xi, eta); }
-  void begin(const double *xi, const double *eta) { own.begin(xi), other.begin(eta); }
-  // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
-  double look(const Facet &t, Point2 p) {
-    if (!c.locate(p, own))
-      return HUGE_VAL;
-    c.facet.position.at(own.xi, x, tangent);
-    if (c.flat)
-      std::copy(c.plane.n, c.plane.n + 3, n);
-    else
-      c.facet.normal(own.xi, n);
-    if (!project(t, x, n, other))
-      return HUGE_VAL;
-    return (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1] + (other.x[2] - x[2]) * n[2];
-  }
-  void find_shapes(const Facet &t) { c.facet.values(own.xi, nc), t.values(other.xi, nt); }
-};
-
-// Moves vertices where two curves cross on to both; false for a polygon without area.
-bool finish(const Over &over, Polygon &polygon, double scale) {
-  if (polygon.size < 3)
-    return false;
-  Point2 corner[MAX_CLIP];
-  for (int i = 0; i < polygon.size; ++i) {
-    Vertex &v = polygon.v[i];
-    const Vertex &before = polygon.v[(i + polygon.size - 1) % polygon.size];
-    const Curve *in = over.curve(before), *out = over.curve(v);
-    if (in && out && before.side != v.side && !(in->straight && out->straight))
-      polish(*in, *out, v.p);
-    corner[i] = v.p;
-  }
-  return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
-}
-
-double scale_of(const Piece &piece) {
-  double scale = 0;
-  for (int i = 0; i < piece.size; ++i)
-    scale += std::abs(cross2(piece.p[i] - piece.p[0], piece.p[(i + 1) % piece.size] - piece.p[0]));
-  return scale;
-}
-
-void cut_pieces(const Over &over, const Facet &t, Segment own, double reach, std::vector<Segment> &out) {
-  const Piece &mine = over.piece(own.mine), &theirs = over.piece(own.theirs);
-  Polygon subject;
-  for (int i = 0; i < mine.size; ++i)
-    subject.push({mine.p[i], own.mine, i});
-  own.polygon = clip_convex(subject, theirs.p, theirs.size, own.theirs);
-  own.finished = own.polygon;
-  if (!finish(over, own.finished, scale_of(mine)))
-    return;
-  over.c.facet.centre(own.xi), t.centre(own.eta);
-  Sight3 at(over.c, own.xi, own.eta);
-  if (!(std::abs(at.look(t, own.finished.middle())) <= reach))
-    return;
-  double y[3], tangent[2][3], facing[3];
-  t.position.at(at.other.xi, y, tangent);
-  cross(tangent[0], tangent[1], facing);
-  if (dot(facing, at.n, 3) >= -EDGE_ON * std::sqrt(dot(facing, facing, 3)))
-    return;
-  std::copy(at.own.xi, at.own.xi + 2, own.xi), std::copy(at.other.xi, at.other.xi + 2, own.eta);
-  out.push_back(own);
-}
-
-void find_hidden(const Over &over, const std::vector<Facet> &targets, const std::int32_t *nodes,
-                 std::vector<Segment> &segments) {
-  find_hidden<Point2>(
-      segments, nodes,
-      [&](const Segment &a, const Segment &b, Point2 &middle) {
-        if (a.mine != b.mine)
-          return false;
-        Box boxes[2];
-        const Segment *both[2] = {&a, &b};
-        for (int k = 0; k < 2; ++k)
-          for (int i = 0; i < both[k]->polygon.size; ++i)
-            boxes[k].add(&both[k]->polygon.v[i].p.x, 2);
-        if (!boxes[0].meets(boxes[1], 2))
-          return false;
-        const Piece &other = over.piece(b.theirs);
-        const Polygon common = clip_convex(a.polygon, other.p, other.size, b.theirs);
-        Point2 corner[MAX_CLIP];
-        for (int i = 0; i < common.size; ++i)
-          corner[i] = common.v[i].p;
-        middle = common.middle();
-        return common.size > 2 && signed_area(corner, common.size) > TOUCHING * scale_of(over.piece(a.mine));
-      },
-      [&](const Segment &own, Point2 middle) {
-        Sight3 at(over.c, own.xi, own.eta);
-        return std::abs(at.look(targets[own.target], middle));
-      });
-}
 
 void integrate_part(const Over &over, const Facet &t, const Segment &own, const Polygon &polygon, const Rule &rule,
                     Accumulator &sums) {
@@ -197,158 +59,48 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, const 
       });
 }
 
-void integrate_pieces(const Over &over, const Facet &t, const Segment &own, const std::vector<Segment> &segments,
-                      const Rule &rule, Accumulator &sums) {
-  if (own.behind.empty()) {
-    integrate_part(over, t, own, own.finished, rule, sums);
-    return;
-  }
-  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
-  std::vector<Polygon> left{own.polygon}, next;
-  for (int nearer : own.behind) {
-    next.clear();
-    for (const Polygon &part : left)
-      outside_of(part, over.piece(segments[nearer].theirs), segments[nearer].theirs, least, next);
-    left.swap(next);
-  }
-  for (Polygon &part : left)
-    if (finish(over, part, scale))
-      integrate_part(over, t, own, part, rule, sums);
-}
-
-// What is asked of a target facet: its number, its points' numbers, how often it is divided.
-struct Asked {
-  int number;
-  const std::int32_t *points;
-  int subdivide;
-};
-
-void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reach, Carried &carried,
-               std::vector<Segment> &out) {
-  const Contactor3 &c = over.c;
-  const std::size_t before = over.theirs.size();
-  flatten(
-      {t, asked.subdivide, true},
-      [&](const double *eta, int node) {
-        if (node >= 0 && c.flat)
-          return c.plane.flat(t.x[node]);
-        if (node >= 0)
-          return carried.find(asked.points[node], [&] { return c.carry(t.x[node]); });
-        double y[3];
-        t.position.at(eta, y);
-        return c.carry(y);
-      },
-      over.theirs);
-  const int own = int(c.pieces.size());
-  for (int mine = 0; mine < own; ++mine)
-    for (std::size_t theirs = before; theirs < over.theirs.size(); ++theirs) {
-      Box a, b;
-      for (int i = 0; i < c.pieces[mine].size; ++i)
-        a.add(&c.pieces[mine].p[i].x, 2);
-      for (int i = 0; i < over.theirs[theirs].size; ++i)
-        b.add(&over.theirs[theirs].p[i].x, 2);
-      if (!a.meets(b, 2))
-        continue;
-      Segment segment;
-      segment.target = asked.number, segment.mine = mine, segment.theirs = own + int(theirs);
-      cut_pieces(over, t, segment, reach, out);
-    }
-}
-
-// What all threads share: both surfaces, the target's facets, their hulls and the tree of their boxes.
-struct Interface {
-  const Planned &contactor, &target;
-  const RuleTable &rules;
-  const Options &options;
-  std::vector<Facet> targets;
-  std::vector<Hull> hulls;
-  Tree tree;
-};
-
 // Cuts contactor facets and integrates, one after another; one for each thread.
-class Cutter {
+class Integrator {
 public:
-  Cutter(const Interface &both, Coupling &out, Lists &lists)
-      : both_(both), sums_(out, lists, both.options, both.contactor.surface.dim) {}
+  Integrator(const Interface &both, Coupling &out, Lists &lists)
+      : both_(both), cutter_(both), sums_(out, lists, both.options, both.contactor.surface.dim) {}
 
   void run(std::size_t f) {
-    const SurfaceView &contactor = both_.contactor.surface;
-    const Facet c = contactor.facet(f);
-    find(c);
-    if (found_.empty())
-      return;
-    segments_.clear(), pieces_.clear();
-    sums_.begin(f, c);
-    contactor.dim == 2 ? run_line(f, c) : run_facet(f, c);
-    sums_.end(contactor.facet_nodes(f));
+    cutter_.cut(
+        f,
+        [&](const Facet &c, const std::vector<Segment> &segments) {
+          sum(f, c, segments, [&](const Facet &t, const Segment &own, const Rule &rule) {
+            integrate_line(c, t, own, segments, rule, both_.options.axisymmetric, sums_);
+          });
+        },
+        [&](const Over &over, const std::vector<Segment> &segments) {
+          sum(f, over.c.facet, segments, [&](const Facet &t, const Segment &own, const Rule &rule) {
+            each_part(over, own, segments,
+                      [&](const Polygon &part) { integrate_part(over, t, own, part, rule, sums_); });
+          });
+        });
   }
 
 private:
-  // The target facets that the contactor facet may see within reach.
-  void find(const Facet &c) {
-    const double reach = both_.options.reach;
-    const Horizon horizon(c, reach);
-    both_.tree.query(swept_box(c, reach), found_, [&](const Box &box) { return horizon.may_see(box); });
-    std::erase_if(found_, [&](int t) { return !horizon.may_see(both_.hulls[t]); });
-  }
-
-  void run_line(std::size_t f, const Facet &c) {
-    for (int t : found_)
-      cut_line(c, both_.targets[t], t, both_.options.reach, segments_);
-    if (!both_.options.hidden)
-      find_hidden(c, both_.targets, both_.target.surface.nodes, segments_);
-    each(f, [&](const Facet &t, const Segment &own, const Rule &rule) {
-      integrate_line(c, t, own, segments_, rule, both_.options.axisymmetric, sums_);
-    });
-  }
-
-  void run_facet(std::size_t f, const Facet &c) {
-    const Contactor3 own(c, both_.contactor.subdivisions[f]);
-    const Planned &target = both_.target;
-    const Over over{own, pieces_};
-    carried_.begin();
-    for (int t : found_)
-      cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, both_.options.reach,
-                carried_, segments_);
-    if (!both_.options.hidden)
-      find_hidden(over, both_.targets, target.surface.nodes, segments_);
-    each(f, [&](const Facet &t, const Segment &own, const Rule &rule) {
-      integrate_pieces(over, t, own, segments_, rule, sums_);
-    });
-  }
-
-  // Segments of one target facet follow each other.
-  template <class Integrate> void each(std::size_t f, Integrate integrate) {
-    for (std::size_t i = 0; i < segments_.size();) {
-      const int t = segments_[i].target;
-      sums_.begin_target(t, both_.targets[t].nodes);
-      const Rule rule = both_.rules.rule(std::max(both_.contactor.points[f], both_.target.points[t]));
-      for (; i < segments_.size() && segments_[i].target == t; ++i)
-        integrate(both_.targets[t], segments_[i], rule);
-      sums_.end_target(both_.target.surface.facet_nodes(t));
-    }
+  template <class Integrate>
+  void sum(std::size_t f, const Facet &c, const std::vector<Segment> &segments, Integrate integrate) {
+    sums_.begin(f, c);
+    Rule rule{};
+    by_target(
+        segments,
+        [&](int t) {
+          sums_.begin_target(t, both_.targets[t].nodes);
+          rule = rule_of(both_, f, t);
+        },
+        [&](const Segment &own) { integrate(both_.targets[own.target], own, rule); },
+        [&](int t) { sums_.end_target(both_.target.surface.facet_nodes(t)); });
+    sums_.end(both_.contactor.surface.facet_nodes(f));
   }
 
   const Interface &both_;
+  Cutter cutter_;
   Accumulator sums_;
-  std::vector<int> found_;
-  std::vector<Piece> pieces_;
-  std::vector<Segment> segments_;
-  Carried carried_;
 };
-
-Interface interface(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options) {
-  const SurfaceView &surface = target.surface;
-  std::vector<Facet> targets(surface.facets);
-  std::vector<Hull> hulls(surface.facets);
-  std::vector<Box> boxes(surface.facets);
-  for (std::size_t t = 0; t < surface.facets; ++t) {
-    targets[t] = surface.facet(t);
-    hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
-  }
-  Tree tree(std::move(boxes), surface.dim);
-  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree)};
-}
 
 } // namespace
 
@@ -362,9 +114,9 @@ Coupling couple(const Planned &contactor, const Planned &target, const RuleTable
   const std::size_t parts = facets < FEW_FACETS ? 1 : thread_count();
   std::vector<Lists> lists(parts);
   run_parts(parts, [&](std::size_t part) {
-    Cutter cutter(both, out, lists[part]);
+    Integrator integrator(both, out, lists[part]);
     for (std::size_t f = facets * part / parts; f < facets * (part + 1) / parts; ++f)
-      cutter.run(f);
+      integrator.run(f);
   });
   for (Lists &part : lists) {
     append(out.lists.contactor, part.contactor), append(out.lists.target, part.target);

@@ -35,9 +35,16 @@ struct RuleTable {
 
 // A facet flattened into a plane: one convex polygon, or several where edges are curved or the facet is not convex.
 struct Piece {
-  int size;
+  // A point of the facet: its reference coordinates, and which node it is (-1: none).
+  struct Place {
+    double xi[2];
+    int node;
+  };
+  int size, facet;
   Point2 p[4];
   std::array<Curve, 4> curve;
+  Place corner[4], middle[4]; // middles of edges where they `bend`: on facets of second order, along their own lines
+  bool bend[4];
 };
 
 // What is asked of the integration.

@@ -30,8 +30,6 @@ AGREES = 0.01  # largest difference of displacement over the largest displacemen
 IGNORABLE = (
     "NLGEOM",
     "PERTURBATION",
-    "FRICTION",
-    "CHANGE FRICTION",
     "MODEL CHANGE",
     "CHANGE SURFACE BEHAVIOR",
     *PROCEDURES,

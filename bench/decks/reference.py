@@ -1,10 +1,10 @@
 """What CalculiX answers for a deck with stiff contact.
 
 abut's contact has no penetration, and it refuses what it does not do unless told to ignore it (``abut run --ignore``). So a
-deck is edited before CalculiX runs it: what abut ignores is taken out (NLGEOM, friction, steps that are not static),
-contact pressure becomes linear over penetration with a stiffness that is raised tenfold until the displacements stay (to
-``SETTLED``), and all displacements are written at the end of each step. Where the deck's kind of contact does not settle,
-CalculiX's mortar contact is tried. Everything else is left as it is.
+deck is edited before CalculiX runs it: what abut ignores is taken out (NLGEOM, steps that are not static), contact pressure
+becomes linear over penetration, and friction over slip while it sticks, with a stiffness that is raised tenfold until the
+displacements stay (to ``SETTLED``), and all displacements are written at the end of each step. Where the deck's kind of
+contact does not settle, CalculiX's mortar contact is tried. Everything else is left as it is.
 """
 
 from __future__ import annotations
@@ -128,6 +128,8 @@ def edit(cards: Sequence[Card], stiffness: float, ignore: Collection[str] = (), 
                 )
             elif card.name == "FRICTION" and tied:  # a tied interaction takes its tangential stiffness from here
                 card = replace(card, data=(f"1.e30, {stiffness:.6e}",))
+            elif card.name == "FRICTION":
+                card = replace(card, data=(f"{card.data[0].split(',')[0]}, {stiffness:.6e}",))
             elif card.name in (*OUTPUT, "CONTROLS", *ignore):
                 continue
             elif card.name == "STEP":

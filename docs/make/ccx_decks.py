@@ -41,6 +41,8 @@ REMARKS = {
     "refined below",
     "changesurfbeh": "tied in both steps, since the change is left out",
     "contact4": "one element on one: four multipliers of dual-P1 against eight of P2, with which it agrees; refined below",
+    "fricloop": "one facet on another, pressed in the first step: friction at its four corners, where abut has it, holds it "
+    "from widening more than friction all over it; see below",
     "plate": "as contact4",
     "punch1": "a round punch, three facets wide: pressure up to the edge of facets whose neighbours are open; 17 % with P2, "
     "12 % with the constraint function; refined below",

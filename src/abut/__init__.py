@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from abut.analysis import solve
     from abut.detection import FoundContact, add_surfaces, find_contacts
     from abut.materials.elastic import LinearElastic
+    from abut.materials.hyperelastic import NeoHooke
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
         Pressure,
         Probe,
         Rigid,
+        Rotation,
         Solid,
         SolveOptions,
         Support,
@@ -42,14 +44,14 @@ _HOME = {  # of public names that do not come from abut.model
     "solve": "abut.analysis", "write": "abut.output.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.solution",
     "write_report": "abut.report", "plot": "abut.output.pyvista_export", "to_pyvista": "abut.output.pyvista_export",
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
-    "find_contacts": "abut.detection",
+    "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
 }  # fmt: skip
 
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
-    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NodalForce", "Pressure", "Probe",
-    "Rigid", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-    "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NeoHooke", "NodalForce", "Pressure", "Probe",
+    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term",
+    "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

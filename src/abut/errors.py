@@ -30,6 +30,10 @@ class ConvergenceError(AbutError, RuntimeError):
     exit_status = 3
 
 
+class Unsound(ConvergenceError):
+    """A trial state that no body can take, as where a cell turns inside out; a smaller load step may get by."""
+
+
 class SingularModelError(AbutError, RuntimeError):
     """The model has no unique solution: free rigid-body mode or over-constraint."""
 

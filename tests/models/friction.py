@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
+from abut.materials.material import Evaluated, OwnMaterial
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
 from models.patch import POISSON, ROTATION
@@ -207,3 +208,40 @@ def profile(solution: abut.Solution) -> tuple[Array, Array, Array, Cattaneo]:
     drag = (along * np.sign(along.sum())).ravel()
     exact = Cattaneo(abs(float(contact.force[1])), abs(float(contact.force[0])))
     return x[order], drag[order], contact.friction.status[:, :2].ravel()[order], exact
+
+
+def rubbed(n: int = 4, cell: str = "hex8") -> abut.Model:
+    """A block pressed askew on a wider one, its top moved along both axes, back and to the other side: some of it opens,
+    some sticks, some slips."""
+    parts = {
+        "lower": make.box([0, 4], [0, 4], [0, 2], cells=[n + 1, n + 1, n // 2], cell=cell),
+        "upper": make.box([1, 3], [1, 3], [2, 3], cells=[n, n, n // 2], cell=cell),
+    }
+    down, along = abut.Amplitude([(0, 0), (0.25, 1)]), abut.Amplitude([(0.25, 0), (0.5, 1), (1, -1)])
+    return abut.Model(
+        make.join(parts),
+        [abut.Solid(name, abut.LinearElastic(1e4, POISSON)) for name in parts],
+        [
+            abut.Support("lower.bottom", x=0, y=0, z=0),
+            abut.Support("upper.top", z=lambda x: -0.015 + 0.02 * (x[:, 0] - 1.0), amplitude=down),
+            abut.Support("upper.top", x=0.006, y=0.003, amplitude=along),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        solve=abut.SolveOptions(times=[0.25, 0.5, 0.75, 1.0]),
+    )
+
+
+@dataclass(frozen=True)
+class Hooke(OwnMaterial):
+    """Linear elasticity as a user's own material: Newton's method goes round again where it need not."""
+
+    young: float = 1e4
+    poisson: float = 0.3
+    modulus: float = 1e4
+
+    def evaluate(self, strain: np.ndarray, history: np.ndarray) -> Evaluated:
+        shear = self.young / (2.0 * (1.0 + self.poisson))
+        first = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
+        normal = np.array([1.0, 1, 1, 0, 0, 0])
+        matrix = first * np.outer(normal, normal) + shear * np.diag([2.0, 2, 2, 1, 1, 1])
+        return strain @ matrix, np.broadcast_to(matrix, (len(strain), 6, 6)), history

@@ -49,7 +49,7 @@ def test_pressing_alone_drags_nothing() -> None:
     """Two equal cylinders: tractions stay far below what friction carries, and a contactor that is flat or round sees the
     same as its mirror."""
     for upper in (False, True):
-        x, drag, contact = tractions(cylinders("quad4", upper, 8, [(1.0, 0.0)]))
+        _, drag, contact = tractions(cylinders("quad4", upper, 8, [(1.0, 0.0)]))
         assert np.abs(drag).max() < 0.05 * FRICTION * contact.max_pressure
         assert np.abs(drag + drag[::-1]).max() < 1e-6 * contact.max_pressure
 

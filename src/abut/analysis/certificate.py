@@ -54,16 +54,17 @@ def certificate(
     residual: float,
     share: NDArray[np.float64] | None = None,
     around: Surroundings = Surroundings(),
+    balanced: tuple[float, float] | None = None,
 ) -> tuple[Check, ...]:
     """All checks of one pair.
 
     values: (9 n_facets,) facet-wise pressure coefficients, (9 n_facets, dim) those of a tie's traction;
     nodal: (n_facets, 9) reported pressure at the facets' nodes; share: the same of the covered share of each node's
     support, all of it by default; penetration: largest, a length; residual: of the contact law, relative to the largest
-    pressure.
+    pressure; balanced: errors of force and moment of all that acts, by default of the pressure (or tie) alone.
     """
     case = _Case.of(pair, values, nodal, share, around)
-    checks = [*_balanced(case)]
+    checks = [*_balanced(case, balance(pair, values) if balanced is None else balanced)]
     if not pair.tied:
         checks += [*_gaps(case, penetration), *_pressure(case, residual)]
     if pair.contact.method == "segment-to-segment":
@@ -115,8 +116,8 @@ class _Case:
         return Check(self.pair.contact.name, what, float(value), limit, meaning, last)
 
 
-def _balanced(case: _Case) -> Iterator[Check]:
-    force, moment = balance(case.pair, case.values)
+def _balanced(case: _Case, errors: tuple[float, float]) -> Iterator[Check]:
+    force, moment = errors
     yield case.check("force balance", force, BALANCE, "force on the contactor plus force on the target, over the force")
     if not case.pair.tied:
         yield case.check("moment balance", moment, BALANCE, "the same of moments, over force times extent")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
-from abut.analysis.friction import friction_checks, friction_forces, friction_result
+from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -30,6 +30,7 @@ from abut.contact.nodal_recovery import (
 )
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult, PressureStatistics, Resultant
@@ -107,8 +108,13 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
-def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surroundings) -> ContactResult:
-    """residual: of the contact law."""
+FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
+
+
+def contact_result(
+    mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
+) -> ContactResult:
+    """residual: of the contact law; earlier: of the step before, None in the first."""
     pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
     forces, others = own.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
@@ -121,8 +127,8 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
-        contactor=pair.contactor,
-        target=pair.target,
+        contactor=_undeformed(mesh, pair.contactor),
+        target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
         area=own.area,
@@ -138,15 +144,26 @@ def contact_result(mesh: Mesh, own: PairState, residual: float, around: Surround
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(pair, own.values, nodal, own.penetration, residual, share, around)
-        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
+        checks=certificate(
+            pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
+        )
+        + friction_checks(
+            pair, own.multipliers, own.status, own.slips, own.limit, max(around.reference, FAINT * around.beside)
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit),
+        friction=None if at is None else friction_result(
+            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
+        ),
     )
+
+
+def _undeformed(mesh: Mesh, surface: Surface) -> Surface:
+    """The surface where it was at the outset, as results show it."""
+    return surface if surface.points is mesh.points else replace(surface, points=mesh.points)
 
 
 def _statistics(
@@ -165,7 +182,7 @@ def _statistics(
     ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
-        resultant(mesh.points[ids], forces[ids], mesh.axisymmetric, none),
+        resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 

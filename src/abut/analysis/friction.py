@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
+from abut.contact.smooth_friction import slip_of
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
@@ -15,7 +17,9 @@ from abut.solution.state import CLOSED, OPEN, SLIPPING
 CONE = 1e-6  # traction beyond the bound, over the largest pressure
 OPPOSED = 1e-6  # power that slip in another direction than the traction's would need, over the largest
 STUCK = 1e-6  # slip that sticking points may have left, as a pressure over the largest
+FAINT = 1e-3  # traction over the largest pressure from which down its work is not looked at by itself
 WORK = 1e-6  # friction that gives work back, over the largest of one multiplier
+PRESSED = 1e-6  # bound over the largest below which no share of it is told
 Vector = NDArray[np.float64]
 
 
@@ -25,26 +29,69 @@ def traction_values(pair: Pair, multipliers: Vector) -> Vector:
 
 
 def friction_result(
-    pair: Pair, at: Averages, multipliers: Vector, status: NDArray[np.int8], slips: Vector, limit: FrictionBound | None
+    pair: Pair,
+    at: Averages,
+    multipliers: Vector,
+    status: NDArray[np.int8],
+    slips: Vector,
+    limit: FrictionBound | None,
+    earlier: FrictionResult | None = None,
 ) -> FrictionResult | None:
-    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; limit: at the end of the step; None
-    without friction."""
+    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; limit: at the end of the step; earlier:
+    of the step before, None in the first; None without friction."""
     if limit is None:
         return None
     weight, own = pair.space.weight, status[pair.normal]
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     values = traction_values(pair, multipliers)
     shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
+    size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], own)
+    taken = np.where(own != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
+    work, each = float(weight @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
-        coefficient=float(np.max(limit.coefficient, initial=0.0)),
+        coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
         traction=np.stack(shown, axis=-1),
+        traction_limit=_limit_at_nodes(pair, at, bound),
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
         status=_status_at_nodes(pair, own),
         sticking_area=float(weight[own == CLOSED].sum()),
         slipping_area=float(weight[own == SLIPPING].sum()),
-        work=-float((weight * np.einsum("kd,kd->k", traction, slip))[own != OPEN].sum()),
+        work=work,
+        total_work=work + (0.0 if earlier is None else earlier.total_work),
+        work_per_area=each,
+        total_work_per_area=each + (0.0 if earlier is None else earlier.total_work_per_area),
+        force=tangential_forces(pair, multipliers)[pair.contactor.node_ids].sum(axis=0),
+        force_by_area=float(weight @ size),
+        force_limit=float(weight @ bound),
+        largest_share=_largest_share(size, bound),
     )
+
+
+def _bound(limit: FrictionBound, pressure: Vector, status: NDArray[np.int8]) -> Vector:
+    """The largest traction that each function can carry, (n_functions,); rough ones any while they are in contact."""
+    if limit.rough:
+        return np.where(status != OPEN, np.inf, 0.0)
+    return limit.at(np.maximum(pressure, 0.0))[0]
+
+
+def _limit_at_nodes(pair: Pair, at: Averages, bound: Vector) -> Vector:
+    """The bound (n_functions,) at the facets' nodes, averaged as the traction is, (n_facets, 9)."""
+    rough = bool(np.isinf(bound).any())
+    shown = at_facet_nodes(at.surface, at.of(pair.space.transfer @ np.where(np.isfinite(bound), bound, 1.0)))
+    return np.where(shown > 0.0, np.inf, shown) if rough else shown
+
+
+def _largest_share(size: Vector, bound: Vector) -> float:
+    """Of the bound, where it is more than rounding."""
+    some = np.isfinite(bound) & (bound > PRESSED * bound[np.isfinite(bound)].max(initial=0.0))
+    return float((size[some] / bound[some]).max()) if some.any() else float("nan")
+
+
+def tangential_forces(pair: Pair, multipliers: Vector) -> Vector:
+    """Nodal forces of friction alone on all points, (n_points, dim)."""
+    own = pair.rows[pair.tangential].T @ multipliers[pair.tangential]
+    return np.asarray(own).reshape(-1, pair.contactor.dim)
 
 
 def _at_nodes(pair: Pair, values: Vector) -> Vector:
@@ -75,6 +122,38 @@ def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
     return np.where(mine, force, 0.0), np.where(mine, 0.0, force)
 
 
+def _creep(pair: Pair, size: Vector, bound: Vector) -> Vector:
+    """Slip (n_functions,) that the constraint function leaves to points that stick under tractions of that size, twice over
+    for what is left of its residual; none with Coulomb's law itself."""
+    if not pair.smooth:
+        return np.zeros(len(size))
+    epsilon = float(np.sqrt(pair.contact.epsilon))
+    return 2.0 * slip_of(size, np.where(np.isfinite(bound), bound, 0.0), epsilon) / pair.stiffness
+
+
+def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | None:
+    """Relative errors of force and moment between the two sides with pressure and traction; None without friction.
+
+    Across a gap g a traction acts on one line on the contactor and on another on the target: of the moments, this couple
+    g N x t is left out, theory (R9)."""
+    if pair.slip is None:
+        return None
+    dim, ids = pair.contactor.dim, pair.contactor.node_ids
+    force, points = np.asarray(pair.rows.T @ multipliers).reshape(-1, dim), pair.contactor.points
+    size = max(0.5 * float(np.abs(force).sum()), 1e-300)
+    turn = 0.0
+    if not pair.contactor.axisymmetric:
+        arms = pair.space.transfer.T @ pair.slip.operators.arms
+        along = pair.tangential_traction(multipliers)
+        if dim == 2:  # turned normals are square to N and of unit length at every point
+            along = np.einsum("kd,kd->k", along, pair.slip.tangents[:, 0])[:, None]
+        couple = (arms * along).sum(axis=0) if dim == 2 else np.cross(arms, along).sum(axis=0)
+        extent = float(np.ptp(points[ids], axis=0).max())
+        moment = cross(points - points[ids].mean(axis=0), force).sum(axis=0)
+        turn = float(np.abs(moment - couple).max()) / (size * extent)
+    return float(np.abs(force.sum(axis=0)).max()) / size, turn
+
+
 def friction_checks(
     pair: Pair,
     multipliers: Vector,
@@ -91,12 +170,13 @@ def friction_checks(
     pressure = np.maximum(multipliers[pair.normal], 0.0)
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     size, way = np.linalg.norm(traction, axis=1), np.linalg.norm(slip, axis=1)
-    bound = np.where(own != OPEN, np.inf, 0.0) if limit.rough else limit.at(pressure)[0]
+    bound = _bound(limit, pressure, own)
     largest = max(largest, float(pressure.max(initial=0.0)), 1e-300)
     slips_now, sticks = own == SLIPPING, own == CLOSED
     power = np.einsum("kd,kd->k", traction, slip)
     against = (size * way + power)[slips_now]
-    most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, 1e-300)
+    faint = FAINT * largest * float(way[own != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
+    most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
     work = -(power * pair.space.weight)[own != OPEN]
     unit = max(float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
     values = (
@@ -104,7 +184,7 @@ def friction_checks(
          "tangential traction beyond the coefficient times the pressure, over the largest pressure"),
         ("slip direction", float(against.max(initial=0.0)) / most, OPPOSED,
          "power that is missing because slip is not opposite to the traction, over the largest"),
-        ("sticking", float(way[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
+        ("sticking", float((way - _creep(pair, size, bound))[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
          "slip of sticking points in the step, as a pressure over the largest pressure"),
         ("friction work", max(-float(work.min(initial=0.0)), 0.0) / unit, WORK,
          "work that friction gives back at a point in the step, over the largest that it takes"),

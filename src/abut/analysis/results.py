@@ -9,18 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
+from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.contact_results import PairState, contact_result
+from abut.analysis.covered import covered
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
+from abut.model.conditions import weights
 from abut.model.offset import offsets
+from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.finite import FiniteProblem
+from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
@@ -28,8 +34,9 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 
 @dataclass(frozen=True)
 class _End:
-    """A model at the end of a load step. displacement, internal, reaction: (dim n_points,) without rigid motions on springs,
-    forces of stresses, forces of supports and links; pressures: (n,) of each pair."""
+    """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
+    springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
+    pressures: (n,) of each pair."""
 
     problem: ContactProblem
     system: Linearised
@@ -38,15 +45,20 @@ class _End:
     displacement: NDArray[np.float64]
     pressures: list[NDArray[np.float64]]
     internal: NDArray[np.float64]
+    loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
+    following: NDArray[np.float64]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
         return self.displacement.reshape(-1, self.problem.model.dim)
 
 
-def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) -> Step:
-    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others.
+def step_result(
+    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acting | None = None
+) -> tuple[Step, Acting | None]:
+    """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others,
+    and with friction what acts there, for the energy of the next step; acted: the same of the step before.
 
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
@@ -55,11 +67,14 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
+    acting, balance = _energy(end, attempt, acted, contacts, before)
+    strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
-    return Step(
+    step = Step(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
+        reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=assembled.bodies.stress(end.motion),
@@ -68,21 +83,22 @@ def step_result(assembled: Assembled, attempt: Attempt, before: Sequence[Step]) 
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=assembled.loaded.resultant @ system.factors,
+        load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
-        rigid={
-            body.rigid.body: RigidResult(*body.motion(end.nodal), *body.resultant(by_supports)) for body in held.bodies
-        },
+        flips=_flips(system, attempt),
+        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
         rounding=_rounding(system, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
-        strained=_strained(system, end.displacement, end.internal),
+        strained=strained,
+        energy=balance if strained else None,
     )
+    return step, acting
 
 
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
@@ -91,14 +107,50 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
     displacement = problem.springs.without_motions(problem.displacement(state))
     system = problem.linearise(state, state)
+    if isinstance(problem, FiniteProblem):
+        system, state = covered(problem, system, state, displacement)
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
         contact_force += pair.rows.T @ pressure
     motion = Motion(state.time, displacement, state.history.of(bodies.name))
     internal = bodies.evaluate(motion, motion).force
-    reaction = internal - assembled.loaded.forces @ system.factors - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, reaction)
+    following = np.zeros_like(displacement)
+    for term in problem.terms:
+        if isinstance(term, FollowerLoads):
+            following -= term.evaluate(motion, motion).force
+    loads = assembled.loaded.forces @ system.factors + following
+    reaction = internal - loads - contact_force
+    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following)
+
+
+def _energy(
+    end: _End, attempt: Attempt, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
+) -> tuple[Acting | None, Energy | None]:
+    """What acts at the end of a step, and the energy over it; None without friction, where it did not converge, and where
+    the operator changes with the displacements."""
+    system, held = end.system, end.problem.held
+    if not attempt.converged or end.problem.model.finite or not any(pair.frictional for pair in system.pairs):
+        return None, None
+    largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
+    now = Acting(
+        end.displacement, held.prescribed @ system.factors, end.internal, end.loads, end.reaction,
+        pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE),
+    )  # fmt: skip
+    if acted is None:
+        acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
+    history = end.state.history.of(CONTACTS)
+    slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
+    earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
+    return now, energy(system, acted, now, slips, contacts, earlier)
+
+
+def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
+    """Motion of a rigid body, and what moves it."""
+    if finite:
+        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
+    return RigidResult(*body.motion(nodal), *body.resultant(forces))
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
@@ -110,7 +162,8 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
         constant, varying = offsets(model, pair.contact)
-        overlap = overlaps(pair, end.nodal, constant + float(varying @ system.factors))
+        moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
+        overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
         around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
@@ -118,9 +171,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         system.pairs, end.pressures, system.split(system.gap(end.state)), system.split(end.state.status),
         [slips.get(pair.contact.name) for pair in system.pairs],
     )  # fmt: skip
+    earlier = before[-1].contacts if before else [None] * len(system.pairs)
     return tuple(
-        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it)
-        for own, beside_it in zip(found, around)
+        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it, one_before)
+        for own, beside_it, one_before in zip(found, around, earlier)
     )
 
 
@@ -132,6 +186,19 @@ def _cycling(system: Linearised, attempt: Attempt) -> dict[str, NDArray[np.int64
             rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return cycling
+
+
+def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
+    """The nodes of each contact with friction whose status keeps changing, and between what."""
+    if attempt.between is None:
+        return {}
+    flips = {}
+    for pair, between, changing in zip(system.pairs, system.split(attempt.between), system.split(attempt.cycling)):
+        own = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
+        if own.any():
+            bits = between[pair.normal][own, None] >> np.arange(3) & 1
+            flips[pair.contact.name] = Flips(pair.space.node[own].astype(np.int64), bits.astype(bool))
+    return flips
 
 
 def _strained(system: Linearised, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:

@@ -6,6 +6,9 @@ from abut.benchmarks import (
     beam,
     contrast,
     convergence,
+    finite_beams,
+    finite_rubber,
+    finite_uniform,
     fits,
     friction,
     friction_balls,
@@ -33,5 +36,8 @@ BENCHMARKS: dict[str, Benchmark] = {
         *beam.BENCHMARKS,
         *stability.BENCHMARKS,
         *convergence.BENCHMARKS,
+        *finite_uniform.BENCHMARKS,
+        *finite_beams.BENCHMARKS,
+        *finite_rubber.BENCHMARKS,
     )
 }

@@ -3,7 +3,7 @@ thickness in 2D, all round if axisymmetric."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,6 +12,7 @@ from abut._core import block_pattern, integrate_given, integrate_isotropic
 from abut.bodies.evaluation import History, evaluate
 from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.materials.elastic import LinearElastic, lame
+from abut.materials.hyperelastic import at_rest
 from abut.mesh.quadrature import cell_rule
 from abut.types import Operator, Sparse
 
@@ -28,11 +29,13 @@ class Response:
 
 def stiffness(solids: Solids) -> Sparse:
     """Stiffness matrix of all bodies at rest, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; for constant
-    materials the tangent everywhere."""
-    values = _no_values(solids)
+    materials the tangent everywhere. Finite strains begin with the same one."""
+    if solids.kinematics == "finite":
+        solids = replace(solids, kinematics="small", materials={b: at_rest(m) for b, m in solids.materials.items()})
+    values = no_values(solids)
     for group in solids.groups():
         _add(solids, group, None, UNHEATED, None, None, values)
-    return _matrix(solids, values)
+    return matrix_of(solids, values)
 
 
 def internal_force(
@@ -60,13 +63,13 @@ def respond(
 
     Raises InputError for a material that returns arrays of other shapes than it should."""
     force = np.zeros(solids.points.shape)
-    values = _no_values(solids) if tangent else None
+    values = no_values(solids) if tangent else None
     moved = np.ascontiguousarray(displacement, dtype=float)
     after: dict[str, list[Array]] = {}
     for group in solids.groups():
         after.setdefault(group.body, []).extend(_add(solids, group, moved, temperature, history, force, values))
     new = {body: np.concatenate(parts) for body, parts in after.items() if body}
-    return Response(force.ravel(), _matrix(solids, values) if values is not None else None, new)
+    return Response(force.ravel(), matrix_of(solids, values) if values is not None else None, new)
 
 
 def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:
@@ -114,11 +117,11 @@ def moduli(solids: Solids, group: Group) -> Array:
     )
 
 
-def _no_values(solids: Solids) -> Array:
+def no_values(solids: Solids) -> Array:
     return np.zeros(len(solids.pattern[1]) * solids.mesh.dim**2)
 
 
-def _matrix(solids: Solids, values: Array) -> Sparse:
+def matrix_of(solids: Solids, values: Array) -> Sparse:
     indptr, indices = block_pattern(*solids.pattern, solids.mesh.dim)
     if len(values) < 2**31:
         indptr = indptr.astype(np.int32)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut._core import Cells, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import law
 from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import Rule, cell_rule
@@ -25,12 +26,13 @@ class Solids:
     """Bodies of a mesh and what they are made of; bodies without a material have no stiffness.
 
     plane: "strain", "stress" or "axisymmetric" (as the mesh then is) in 2D; integration: by body, as in ``Solid``,
-    "full" for those not named, theory (E1), (E2), (E3)."""
+    "full" for those not named, theory (E1), (E2), (E3); kinematics: as in ``Model``."""
 
     mesh: Mesh
     materials: Mapping[str, Material]
     plane: str | None = None
     integration: Mapping[str, str] = field(default_factory=dict)
+    kinematics: str = "small"
 
     @cached_property
     def points(self) -> Array:
@@ -48,7 +50,7 @@ class Solids:
     @property
     def constant(self) -> bool:
         """Whether forces are linear in displacements: ``stiffness`` is then all there is to know."""
-        return all(material.constant for material in self.materials.values())
+        return self.kinematics == "small" and all(material.constant for material in self.materials.values())
 
     @cached_property
     def body_of(self) -> NDArray[np.int32]:
@@ -60,8 +62,9 @@ class Solids:
 
     def groups(self) -> Iterator[Group]:
         """All cells that have a material."""
-        keys = {body: ("" if isinstance(m, LinearElastic) else body, self.integration.get(body, "full"))
-                for body, m in self.materials.items()}  # fmt: skip
+        keys = {
+            body: (*self._kernel(body, m), self.integration.get(body, "full")) for body, m in self.materials.items()
+        }
         distinct = sorted(set(keys.values()))
         number = np.array([-1, *(distinct.index(key) for key in keys.values())])
         used = dict.fromkeys(distinct, 0)
@@ -70,9 +73,16 @@ class Solids:
             for i in np.unique(own[own >= 0]).tolist():
                 rows = np.flatnonzero(own == i)
                 nodes = np.ascontiguousarray(block.nodes[rows], dtype=np.int32)
-                body, integration = distinct[i]
-                yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]])
+                body, law, integration = distinct[i]
+                yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]], law)
                 used[distinct[i]] += len(rows) * len(cell_rule(block.kind, integration)[1])
+
+    def _kernel(self, body: str, material: Material) -> tuple[str, int]:
+        """``body`` and ``law`` of its group."""
+        if self.kinematics == "small":
+            return "" if isinstance(material, LinearElastic) else body, 0
+        known = law(material)
+        return ("", known[0]) if known is not None else (body, 0)
 
     def by_cell(self, group: Group, values: Mapping[str, tuple[float, ...]]) -> Array:
         """A row for every cell of a group, from those of all bodies."""
@@ -83,7 +93,7 @@ class Solids:
 class Group:
     """Cells of one type that are integrated alike: nodes (n, n_nodes), cells (n,) their numbers. body: whose material is
     evaluated in Python; empty for linear elastic bodies, which go together. first: row of its first point in the history of
-    its body."""
+    its body. law: of finite strains, for the compiled core."""
 
     kind: str
     nodes: NDArray[np.int32]
@@ -91,6 +101,7 @@ class Group:
     body: str
     integration: str
     first: int
+    law: int = 0
 
     def arrays(self, solids: Solids, rule: Rule) -> Cells:
         """These cells with an integration rule, for the compiled core."""

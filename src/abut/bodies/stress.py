@@ -40,17 +40,17 @@ def stress_sums(
             rule = stress_rule(group.kind)
             integrate_isotropic(
                 group.arrays(solids, rule), moduli(solids, group), solids.plane == "stress", moved,
-                temperature.strain(solids, group), nodal=(_to_nodes(group.kind, rule[0]), total, count),
+                temperature.strain(solids, group), nodal=(to_nodes(group.kind, rule[0]), total, count),
             )  # fmt: skip
             continue
         rule = cell_rule(group.kind, group.integration)
-        nodal = _to_nodes(group.kind, rule[0]), total, count
+        nodal = to_nodes(group.kind, rule[0]), total, count
         for cells, (stress, _, _) in evaluate(solids, group, rule, moved, temperature, history):
             integrate_given(cells, stress, nodal=nodal)
     return total, count
 
 
-def _to_nodes(kind: str, xi: NDArray[np.float64]) -> Array:
+def to_nodes(kind: str, xi: NDArray[np.float64]) -> Array:
     """Least-squares linear extrapolation from points xi to the nodes, (nodes, q)."""
     where = reference_nodes(kind)
     terms = np.concatenate([np.ones((len(xi), 1)), xi], axis=1) if len(xi) > 2 else np.ones((len(xi), 1))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rich.status import Status
 
 HEAD = "step  iter   active  changed   residual    contact  penetration   seconds"
+HEAD_FRICTION = HEAD.replace("  changed", "   sticks    slips  changed")
 LONG = 2.0  # expected seconds from which on a stage is announced where there is no live line
 PATIENCE = 5.0  # seconds of silence after which a line says what goes on
 REFRESH = 0.25
@@ -48,12 +49,9 @@ class Progress:
         else:
             if item.step != self._step:
                 self._step = item.step
-                self.line(HEAD)
+                self.line(HEAD if item.slipping is None else HEAD_FRICTION)
             self._iteration = item.iteration
-            self.line(
-                f"{item.step:4d}  {item.iteration:4d}  {item.active:7d}  {item.changed:7d}  {item.residual:9.2e}  "
-                f"{item.contact_residual:9.2e}    {item.penetration:9.2e}  {item.seconds:8.2f}"
-            )
+            self.line(_table_row(item))
 
     def line(self, text: str) -> None:
         """Print a line above the live one."""
@@ -137,6 +135,15 @@ class Progress:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _table_row(item: Iteration) -> str:
+    """An iteration below the head of the table; with friction two columns more."""
+    friction = "" if item.slipping is None else f"{item.sticking:7d}  {item.slipping:7d}  "
+    return (
+        f"{item.step:4d}  {item.iteration:4d}  {item.active:7d}  {friction}{item.changed:7d}  {item.residual:9.2e}  "
+        f"{item.contact_residual:9.2e}    {item.penetration:9.2e}  {item.seconds:8.2f}"
+    )
 
 
 def _duration(seconds: float) -> str:

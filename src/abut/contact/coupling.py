@@ -8,7 +8,7 @@ pressure spaces of ``abut.contact.pressure_space`` are combinations of these row
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from abut._core import couple_surfaces, plan_facets
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.contact.geometry import by_kind, facet_sizes, is_plane, nodal_normals, turning_within
+from abut.contact.geometry import Smoothing, by_kind, facet_sizes, is_plane, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance, rule_tables
 from abut.errors import InputError
 from abut.mesh.surface import Surface
@@ -106,13 +106,24 @@ def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
     return float(adjust + rounding)
 
 
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Integration points per direction, and subdivisions, of each facet of both surfaces, as decided in one configuration:
+    theory (Q5), (S7). With it the coupling is a smooth function of the coordinates until facets meet others."""
+
+    contactor_points: NDArray[np.int32]
+    contactor_divisions: NDArray[np.int32]
+    target_points: NDArray[np.int32]
+    target_divisions: NDArray[np.int32]
+
+
 @dataclass(frozen=True)
 class CouplingOptions:
     """How ``couple`` cuts and integrates, and what it keeps.
 
     rule:   "gauss" or "newton-cotes".
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
-            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
+            theory (Q4), (Q5) (newton-cotes: as far as its nine points go); or what ``plan_pair`` decided.
     reach:  largest distance between the surfaces, length; see ``default_reach``.
     adjust: gaps and overlaps up to this size count as zero, length.
     hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
@@ -124,7 +135,7 @@ class CouplingOptions:
     """
 
     rule: str = "gauss"
-    points: int | str = "auto"
+    points: int | str | Plan = "auto"
     reach: float | None = None
     adjust: float = 0.0
     hidden: bool = False
@@ -140,6 +151,7 @@ def couple(
     degree: int,
     options: CouplingOptions = CouplingOptions(),
     only: NDArray[np.bool_] | None = None,
+    across: Smoothing | None = None,
 ) -> Coupling:
     """Divide the contactor into segments by the target, projected along the contactor's continuous normal, and integrate
     (paper, section 4).
@@ -147,14 +159,21 @@ def couple(
     degree: of the pressure functions, 0, 1 (on facet corners) or 2 (the facet's own shape functions).
     only:   (n_facets,) of the contactor, those to integrate; the rows of all others stay empty. Couplings of disjoint
             facets add up to the whole: ``abut.contact.merging``.
+    across: where the contactor's normals are averaged, as decided in another configuration; else as it is now.
     Raises InputError where the two surfaces do not fit together (dimension, empty).
     """
-    _check(contactor, target)
+    check_pair(contactor, target)
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
-    raw = _cut(contactor, target, degree, facets, options)
+    raw = couple_surfaces(
+        **cutting_arguments(contactor, target, facets, options, across),
+        degree=degree,
+        vectorial=not options.componentwise,
+        keep_points=options.keep_points,
+        sights=options.keep_sights,
+    )
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
-    offset, n_points = _columns(contactor, target)
+    offset, n_points = point_columns(contactor, target)
     contactor_part = _matrix(raw["contactor"], MAX_FACET_NODES * len(contactor), n_points, 0)
     target_part = _matrix(raw["target"], MAX_FACET_NODES * len(contactor), n_points, offset)
     return Coupling(
@@ -175,7 +194,8 @@ def couple(
 Couple = Callable[[Surface, Surface, int, CouplingOptions], Coupling]  # ``couple``, or what has it done by others
 
 
-def _check(contactor: Surface, target: Surface) -> None:
+def check_pair(contactor: Surface, target: Surface) -> None:
+    """Raises InputError where two surfaces do not fit together."""
     if contactor.dim != target.dim:
         raise InputError(f"surfaces '{contactor.name}' and '{target.name}' have different dimensions")
     if contactor.axisymmetric != target.axisymmetric:
@@ -185,38 +205,41 @@ def _check(contactor: Surface, target: Surface) -> None:
             raise InputError(f"surface '{surface.name}' has no facets")
 
 
-def _cut(contactor: Surface, target: Surface, degree: int, facets: NDArray[np.int64], options: CouplingOptions) -> Json:
-    """What the compiled core makes of some facets of the contactor."""
-    tables = rule_tables(options.rule)
-    normals = nodal_normals(contactor) if options.normals is None else options.normals
+def cutting_arguments(
+    contactor: Surface,
+    target: Surface,
+    facets: NDArray[np.int64],
+    options: CouplingOptions,
+    across: Smoothing | None,
+) -> Json:
+    """What the compiled core is told about the cutting and the rules for some facets of the contactor."""
+    normals = nodal_normals(contactor, across) if options.normals is None else options.normals
     part = contactor if len(facets) == len(contactor) else contactor.part(facets)
-    turning = turning_within(part, normals[facets])
-    order_c, split_c = _plan(part, tables, options.points, turning)
-    order_t, split_t = _plan(target, tables, options.points, _turning_of_target(target))
-    if options.points == "auto":
-        order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
-    return couple_surfaces(
-        points_c=part.points,
-        kinds_c=part.kinds,
-        nodes_c=part.nodes,
-        normals=np.ascontiguousarray(normals[facets]),
-        points_t=target.points,
-        kinds_t=target.kinds,
-        nodes_t=target.nodes,
-        rules=tables,
-        order_c=order_c.astype(np.int32),
-        order_t=order_t,
-        subdivide_c=split_c,
-        subdivide_t=split_t,
-        degree=degree,
-        vectorial=not options.componentwise,
-        keep_points=options.keep_points,
-        sights=options.keep_sights,
-        axisymmetric=contactor.axisymmetric,
-        reach=default_reach(contactor, target) if options.reach is None else options.reach,
-        rounding=no_gap(contactor, target, options.adjust),
-        hidden=options.hidden,
-    )
+    plan = _plan_part(part, target, options, normals[facets])
+    if isinstance(options.points, Plan):
+        plan = replace(
+            plan,
+            contactor_points=plan.contactor_points[facets],
+            contactor_divisions=plan.contactor_divisions[facets],
+        )
+    return {
+        "points_c": part.points,
+        "kinds_c": part.kinds,
+        "nodes_c": part.nodes,
+        "normals": np.ascontiguousarray(normals[facets]),
+        "points_t": target.points,
+        "kinds_t": target.kinds,
+        "nodes_t": target.nodes,
+        "rules": rule_tables(options.rule),
+        "order_c": plan.contactor_points,
+        "order_t": plan.target_points,
+        "subdivide_c": plan.contactor_divisions,
+        "subdivide_t": plan.target_divisions,
+        "axisymmetric": contactor.axisymmetric,
+        "reach": default_reach(contactor, target) if options.reach is None else options.reach,
+        "rounding": no_gap(contactor, target, options.adjust),
+        "hidden": options.hidden,
+    }
 
 
 def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
@@ -232,6 +255,25 @@ def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
         if name in raw:
             result[name] = facets[raw[name]].astype(raw[name].dtype)
     return result
+
+
+def plan_pair(contactor: Surface, target: Surface, options: CouplingOptions, across: Smoothing | None = None) -> Plan:
+    """What ``couple`` decides about integration points and subdivisions; ``replace(options, points=...)`` holds on to it.
+    Raises InputError as ``couple`` does."""
+    check_pair(contactor, target)
+    return _plan_part(contactor, target, options, nodal_normals(contactor, across))
+
+
+def _plan_part(part: Surface, target: Surface, options: CouplingOptions, normals: NDArray[np.float64]) -> Plan:
+    """normals: (n_facets, 9, dim) of the contactor or a part of it."""
+    if isinstance(options.points, Plan):
+        return options.points
+    tables = rule_tables(options.rule)
+    turning = turning_within(part, normals)
+    points, divisions = _plan(part, tables, options.points, turning)
+    if options.points == "auto":
+        points = np.where(turning > SAME_NORMAL, np.maximum(points, CURVED_POINTS[part.dim]), points).astype(np.int32)
+    return Plan(points, divisions, *_plan(target, tables, options.points, _turning_of_target(target)))
 
 
 def _plan(
@@ -261,7 +303,7 @@ def _turning_of_target(target: Surface) -> NDArray[np.float64]:
         return np.zeros(len(target))
 
 
-def _columns(contactor: Surface, target: Surface) -> tuple[int, int]:
+def point_columns(contactor: Surface, target: Surface) -> tuple[int, int]:
     """Number of the target's first point among the columns, and how many points there are."""
     if contactor.points is target.points:
         return 0, len(contactor.points)
@@ -277,7 +319,7 @@ def _matrix(entries: tuple[Array, ...], rows: int, n_points: int, offset: int) -
 
 def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> IntegrationPoints:
     n, dim = raw["point_normal"].shape
-    offset, n_points = _columns(contactor, target)
+    offset, n_points = point_columns(contactor, target)
     operator = sp.csr_matrix((n, dim * n_points))
     for surface, name, sign, first in ((contactor, "contactor", 1.0, 0), (target, "target", -1.0, offset)):
         facet = raw[f"point_{name}_facet"]

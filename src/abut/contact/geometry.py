@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -90,33 +90,72 @@ def area_vectors(surface: Surface) -> NDArray[np.float64]:
     return own
 
 
-def nodal_normals(surface: Surface) -> NDArray[np.float64]:
+@dataclass(frozen=True)
+class Smoothing:
+    """Which facets' normals are averaged at each node of each facet, as decided in one configuration of a surface.
+
+    A visit is a node of a facet, counted facet by facet.
+
+    here, other: (n,) visits at the same point with no crease between them: the normal at ``here`` contains the facet of
+                 ``other``. Each visit is a pair with itself.
+    """
+
+    here: NDArray[np.int64]
+    other: NDArray[np.int64]
+
+
+def smoothing(surface: Surface) -> Smoothing:
+    """Creases are edges where facets meet at more than 40 degrees. Raises InputError for a facet without a normal at one
+    of its nodes."""
+    own = area_vectors(surface)
+    facet, local = _visits(surface)
+    vector = own[facet, local]
+    length = np.linalg.norm(vector, axis=1, keepdims=True)
+    _check_normals(surface, own, length)
+    pairs = list(_without_crease(surface.nodes[facet, local].astype(np.int64), vector / length))
+    return Smoothing(np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs]))
+
+
+def nodal_normals(surface: Surface, across: Smoothing | None = None) -> NDArray[np.float64]:
     """Continuous unit normals at the facets' nodes, (n_facets, 9, dim), zero where padded; theory (S1).
 
     At each node the area-weighted normals of the surface's own facets are averaged, leaving out facets that meet
-    this one at more than 40 degrees (a crease). Flat surfaces get the exact normal up to their edges. Raises InputError for
-    a facet without a normal at one of its nodes.
+    this one at more than 40 degrees (a crease), here or in the configuration of ``across``. Flat surfaces get the exact
+    normal up to their edges. Raises InputError for a facet without a normal at one of its nodes.
     """
+    across = across or smoothing(surface)
     own = area_vectors(surface)
-    valid = surface.nodes >= 0
-    facet, local = np.nonzero(valid)
-    node = surface.nodes[facet, local]
-    vector = own[facet, local]
-    length = np.linalg.norm(vector, axis=1, keepdims=True)
+    facet, local = _visits(surface)
+    total = _totals(own[facet, local], across)
+    result = np.zeros_like(own)
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    _check_normals(surface, own, length)
+    result[facet, local] = total / length
+    return result
+
+
+def _visits(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Facet and local number of each visit."""
+    facet, local = np.nonzero(surface.nodes >= 0)
+    return facet, local
+
+
+def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float64]:
+    total = np.zeros_like(vector)
+    np.add.at(total, across.here, vector[across.other])
+    return total
+
+
+def _check_normals(surface: Surface, own: NDArray[np.float64], length: NDArray[np.float64]) -> None:
+    """own: (n_facets, 9, dim) area vectors; length: (n_visits, 1) of what is to become a unit vector."""
+    facet, local = _visits(surface)
     flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(own, axis=2).max(axis=1)[facet])
     if len(flat):
         raise InputError(
             f"surface '{surface.name}': facet {facet[flat[0]]} has no normal at its point "
-            f"{surface.points[node[flat[0]]].tolist()}: points of it coincide or lie on a line; give the cell "
-            "distinct points (a prism instead of a collapsed hexahedron)"
+            f"{surface.points[surface.nodes[facet[flat[0]], local[flat[0]]]].tolist()}: points of it coincide or lie on "
+            "a line; give the cell distinct points (a prism instead of a collapsed hexahedron)"
         )
-    unit = vector / length
-    total = np.zeros_like(unit)
-    for here, other in _without_crease(node.astype(np.int64), unit):
-        np.add.at(total, here, vector[other])
-    result = np.zeros_like(own)
-    result[facet, local] = total / np.linalg.norm(total, axis=1, keepdims=True)
-    return result
 
 
 def mean_normals(surface: Surface) -> NDArray[np.float64]:

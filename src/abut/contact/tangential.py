@@ -3,6 +3,8 @@ node of the contactor."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -15,10 +17,18 @@ HELD = 1e-9  # share of a tangent along which a node can move, below which it ca
 Array = NDArray[np.float64]
 
 
-def slip_operators(at: IntegrationPoints) -> tuple[Sparse, ...]:
-    """int H_k d . (u_C - u_T) for directions d in the tangent plane of each integration point, facet by facet, theory (R1):
-    (9 n_facets, dim n_points) sparse each. In 2D d is the normal turned by a right angle; in 3D there are three, the
-    axes less their normal parts."""
+@dataclass(frozen=True)
+class SlipOperators:
+    """Of slip and of its forces, facet by facet. along: (9 n_facets, dim n_points) sparse for each direction d, int H_k d .
+    (u_C - u_T), theory (R1); arms: (9 n_facets, 3) int H_k (x_C - x_T), in 2D its size (9 n_facets, 1), theory (R9)."""
+
+    along: tuple[Sparse, ...]
+    arms: Array
+
+
+def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
+    """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D three,
+    the axes less their normal parts. points: (n_points, dim) of the mesh."""
     normal = at.normal
     dim = normal.shape[1]
     entries = at.gap_operator.tocoo()
@@ -30,7 +40,13 @@ def slip_operators(at: IntegrationPoints) -> tuple[Sparse, ...]:
         fields = [turned(normal)]
     else:
         fields = [np.eye(dim)[a] - normal * normal[:, [a]] for a in range(dim)]
-    return tuple(_integrated(at, shapes, field) for field in fields)
+    return SlipOperators(tuple(_integrated(at, shapes, field) for field in fields), _arms(at, points))
+
+
+def _arms(at: IntegrationPoints, points: Array) -> Array:
+    gap = at.weight * (at.gap_operator @ points.ravel())
+    field = gap[:, None] if points.shape[1] == 2 else gap[:, None] * at.normal
+    return np.asarray(at.pressure.T @ field)
 
 
 def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
@@ -46,6 +62,11 @@ def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
 def turned(normal: Array) -> Array:
     """Unit normals (n, 2) turned by a right angle, against the clock."""
     return np.column_stack([-normal[:, 1], normal[:, 0]])
+
+
+def quarter(n_points: int) -> Sparse:
+    """What turns rows of forces (.., 2 n_points) by a right angle, against the clock."""
+    return sp.kron(sp.identity(n_points), np.array([[0.0, 1.0], [-1.0, 0.0]]), format="csr")
 
 
 def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:

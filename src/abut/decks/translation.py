@@ -19,6 +19,7 @@ from abut.decks.cards.pretension import cut
 from abut.decks.cards.reasons import DeckError, Reasons
 from abut.decks.cards.record import Deck, GeneralContact, Numbers, Pair
 from abut.decks.cards.time_histories import Course, combine, courses, scaled, times, zero
+from abut.decks.friction import friction_options
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
@@ -112,7 +113,7 @@ def translate(deck: Deck) -> Translation:
             _check_sides(mesh, contact, pair)
     reasons.tell()
     if deck.general is not None:
-        mesh, found = _general(deck.general, mesh, solids, contacts, notes)
+        mesh, found = _general(deck, deck.general, mesh, solids, contacts, notes)
         contacts += found
     model = Model(
         mesh,
@@ -228,12 +229,12 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
         notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
-    offset = pair.clearance or 0.0
-    return Contact(slave, master, name=pair.name, adjust=float(adjust), offset=offset, friction=pair.friction)
+    options = {"adjust": float(adjust), "offset": pair.clearance or 0.0, **friction_options(deck, pair.friction)}
+    return Contact(slave, master, name=pair.name, **options)
 
 
 def _general(
-    general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
+    deck: Deck, general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
 ) -> tuple[Mesh, list[Contact]]:
     """Pairs of bodies that face each other and that no *CONTACT PAIR or *TIE names; the mesh with their surfaces."""
     named = [{body for side in (c.contactor, c.target) for body in bodies_of(mesh, side)} for c in contacts]
@@ -245,7 +246,7 @@ def _general(
             "in *CONTACT PAIR",
         )
     notes += [f"general contact: {f.note}" for f in found]
-    options = {"kind": "tied"} if general.tied else {"friction": general.friction}
+    options = {"kind": "tied"} if general.tied else friction_options(deck, general.friction)
     return add_surfaces(mesh, found), [f.contact(**options) for f in found]
 
 

@@ -10,14 +10,17 @@ from abut.errors import InputError
 from abut.model import Amplitude
 from abut.types import Json
 
+HISTORIES = ("amplitude", "friction_amplitude")
+
 
 def values(table: BaseModel, where: str, leave_out: Collection[str] = ()) -> Json:
     """What a table gives to its record: lists as tuples, the amplitude as one."""
     given = table.model_dump(exclude=set(leave_out))
     result = {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    if result.get("amplitude") is not None:
-        try:
-            result["amplitude"] = Amplitude(result["amplitude"])
-        except InputError as error:
-            raise InputError(f"{where}.{error}") from None
+    for key in HISTORIES:
+        if result.get(key) is not None:
+            try:
+                result[key] = Amplitude(result[key])
+            except InputError as error:
+                raise InputError(f"{where}.{str(error).replace('amplitude', key, 1)}") from None
     return result

@@ -26,6 +26,10 @@ from abut.problem.problem import ContactProblem, Problem
 def choose(linear: str, problem: ContactProblem) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. Raises InputError
     where "amg" cannot serve the problem."""
+    if problem.model.finite:
+        if linear == "amg":
+            raise InputError('solve.linear: "amg" is for kinematics "small"; choose "direct" or "auto"')
+        return "direct"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.held.coupled)
 
 
@@ -39,16 +43,17 @@ def chosen(
             'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
             'couple points; choose "direct" or "auto"'
         )
-    friction = [pair.contact.name for pair in pairs if pair.frictional]
-    if linear == "amg" and friction:
+    smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
+    if linear == "amg" and smooth:
         raise InputError(
-            f'solve.linear: "amg" does not know friction, which contact \'{friction[0]}\' has; choose "direct" or "auto"'
+            f"solve.linear: \"amg\" knows friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
+            'function for it; choose "direct" or "auto", or law "complementarity"'
         )
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs) and not friction
+    able = not (coupled or smooth) and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 
@@ -75,7 +80,8 @@ class Direct:
             return dense(system)
         pairs = system.pairs
         moved = np.asarray(system.operator @ system.motions)
-        return SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
+        made = SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
+        return replace(made, repeated=previous.repeated) if isinstance(previous, SaddlePoint) else made
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""

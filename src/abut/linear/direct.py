@@ -132,6 +132,45 @@ class Factorization:
         return solve(self._matrix, rhs, symmetric=True)
 
 
+class Repeated:
+    """Matrices that differ in their values only, one after the other: analysed once, as long as the pattern lasts."""
+
+    def __init__(self) -> None:
+        self._solver: Foreign = None
+        self._pattern: tuple[NDArray[np.int32], NDArray[np.int32], bool] | None = None
+
+    def solve(self, matrix: Sparse, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[np.float64]:
+        """As ``solve``, which takes over where this one is not accurate. Raises SingularModelError."""
+        size = np.abs(rhs).max(initial=0.0)
+        module = _pardiso()
+        if module is None or size == 0.0:
+            return solve(matrix, rhs, symmetric=symmetric)
+        try:
+            if not self._knows(matrix, symmetric):
+                self._analyse(matrix, symmetric)
+            self._solver.set_phase(23)
+            x: NDArray[np.float64] = self._solver._call_pardiso(matrix, rhs / size)
+            if _residual(matrix, x, rhs / size, symmetric) < ACCURATE:
+                return size * x
+        except module.pardiso_wrapper.PyPardisoError:
+            self._pattern = None
+        return solve(matrix, rhs, symmetric=symmetric)
+
+    def _knows(self, matrix: Sparse, symmetric: bool) -> bool:
+        if self._pattern is None:
+            return False
+        indptr, indices, own = self._pattern
+        return own == symmetric and np.array_equal(indptr, matrix.indptr) and np.array_equal(indices, matrix.indices)
+
+    def _analyse(self, matrix: Sparse, symmetric: bool) -> None:
+        self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
+        for key, value in (SETTINGS | {11: 0, 13: 0}).items():  # scaling and matching would depend on the values
+            self._solver.iparm[key - 1] = value
+        weakref.finalize(self, self._solver.free_memory, everything=True)
+        _analyse(self._solver, matrix, np.zeros(matrix.shape[0]))
+        self._pattern = matrix.indptr, matrix.indices, symmetric
+
+
 def _analyse(solver: Foreign, matrix: Sparse, b: NDArray[np.float64]) -> None:
     """PARDISO's symbolic phase. Raises InputError where the factors would not fit into memory."""
     solver.set_phase(11)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, soft_inverse
+from abut.linear.sliding_rows import Reduced, reduced
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Rows
 from abut.types import Sparse
 
@@ -19,42 +22,88 @@ FAINT = 1e-3  # share of the largest, below which how much a row looks at the ga
 
 @dataclass(frozen=True)
 class Conditions:
-    """The rows lower du + corner dp = ... of n pressures, in which dp = columns * q and every row is taken ``rows`` times.
+    """The rows lower du + corner x + residual = 0 of n unknowns, in which x = columns * q and every row is taken ``rows``
+    times; multipliers change by fixed + push^T x.
 
-    lower: (n, n_free), corner: (n, n), sparse; inverse: roughly that of -(lower K^-1 B^T + corner), (n,) -> (n,)."""
+    lower, forces: (n, n_free), the latter transposed the forces of x; corner: (n, n), sparse; inverse: roughly that of
+    -(lower K^-1 forces^T + corner), (n,) -> (n,); symmetric: lower is minus ``forces``."""
 
     lower: Sparse
+    forces: Sparse
     corner: Sparse
+    residual: NDArray[np.float64]
     columns: NDArray[np.float64]
     rows: NDArray[np.float64]
     inverse: Apply
+    push: Sparse
+    fixed: NDArray[np.float64]
+    symmetric: bool = True
+
+    def multipliers(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Change of all multipliers."""
+        return np.asarray(self.fixed + self.push.T @ x)
 
 
-def conditions(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
+def conditions(law: Rows, operator: Sparse, pressures: PressureBlock, pairs: Sequence[Pair]) -> Conditions:
     """Of the rows that are not decoupled. operator: (n, n_free) B."""
-    own = ~law.decoupled
-    corner = sp.csr_matrix(law.by_pressure)[own][:, own]
     if not law.symmetric:
-        return _general(law.by_displacement[own], corner, operator[own], own, pressures)
+        few = reduced(law, pairs)
+        return _general(law, operator, pressures) if few is None else _sliding(few, operator, pressures)
+    own = ~law.decoupled
+    corner, forces, push = sp.csr_matrix(law.by_pressure)[own][:, own], operator[own], _selection(own)
     soft = -corner.diagonal()
     if not soft.any():
         sizes = np.full(len(soft), pressures.scale)
-        return Conditions(-operator[own], corner, sizes, sizes, schur_inverse(pressures.parts, own))
-    diagonal = pressures.diagonal
-    sizes = np.sqrt(pressures.unit / (diagonal[own] + soft))  # residuals are measured in the root of energy
-    return Conditions(-operator[own], corner, sizes, sizes, soft_inverse(pressures.forward, diagonal, soft))
+        inverse = schur_inverse(pressures.parts, own)
+    else:
+        diagonal = pressures.diagonal
+        sizes = np.sqrt(pressures.unit / (diagonal[own] + soft))  # residuals are measured in the root of energy
+        inverse = soft_inverse(pressures.forward, diagonal, soft)
+    return Conditions(-forces, forces, corner, law.residual[own], sizes, sizes, inverse, push, law.fixed)
 
 
-def _general(
-    lower: Sparse, corner: Sparse, operator: Sparse, own: NDArray[np.bool_], pressures: PressureBlock
-) -> Conditions:
+def _selection(own: NDArray[np.bool_]) -> Sparse:
+    return sp.identity(len(own), format="csr")[own]
+
+
+def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Conditions:
+    """Rows with slip eliminated."""
+    diagonal, soft = few.pull.power(2) @ pressures.diagonal, np.abs(few.corner.diagonal())
+    sizes = np.where(soft > 0.0, np.sqrt(pressures.unit / (diagonal + soft)), pressures.scale)
+    return Conditions(
+        -(few.pull @ operator).tocsr(), (few.push @ operator).tocsr(), few.corner, few.residual, sizes, sizes,
+        _parted_inverse(few, diagonal + soft, pressures), few.push, few.fixed, few.symmetric,
+    )  # fmt: skip
+
+
+def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
+    """That of pull S push^T - corner: what is closed or sticks component by component, springs across the slip by themselves,
+    theory (V25); where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of it."""
+    m = int(few.single.sum())
+    if few.corner[:m].count_nonzero():
+
+        def multiply(q: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(few.pull @ pressures.forward(few.push.T @ q) - few.corner @ q)
+
+        return _roughly(multiply, lambda r: r / diagonal, len(diagonal))
+    by_gap = schur_inverse(pressures.parts, few.single)
+    return lambda r: np.concatenate([by_gap(r[:m]), r[m:] / diagonal[m:]])
+
+
+def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
     """Rows that look at points, as the constraint function's do: a row is about ``share`` times that of the operator."""
+    own, fixed = ~law.decoupled, law.fixed
+    lower, operator = law.by_displacement[own], operator[own]
+    corner, residual = sp.csr_matrix(law.by_pressure)[own][:, own], (law.residual + law.by_pressure @ fixed)[own]
     size = np.asarray(operator.multiply(operator).sum(axis=1)).ravel()
     share = np.asarray(lower.multiply(operator).sum(axis=1)).ravel() / np.where(size > 0.0, size, 1.0)
     looks = np.maximum(np.abs(share), FAINT * np.abs(share).max(initial=1e-300))
     diagonal = pressures.diagonal[own]
     columns = np.sqrt(pressures.unit / (diagonal + np.abs(corner.diagonal()) / looks))
-    return Conditions(lower, corner, columns, columns / looks, _mixed_inverse(share, corner, own, pressures))
+    return Conditions(
+        lower, operator, corner, residual, columns, columns / looks, _mixed_inverse(share, corner, own, pressures),
+        _selection(own), fixed, False,
+    )  # fmt: skip
 
 
 def _mixed_inverse(
@@ -84,11 +133,17 @@ def _mixed_inverse(
         p[closed] = by_gap(rest / share[closed])
         return p
 
-    whole, first = (spla.LinearOperator((n, n), matvec=f, dtype=float) for f in (multiply, split))
+    roughly = _roughly(multiply, split, n)
+    return lambda r: -roughly(r)
+
+
+def _roughly(multiply: Apply, precondition: Apply, n: int) -> Apply:
+    """The inverse by Krylov iterations to ``ACCURACY``."""
+    whole, first = (spla.LinearOperator((n, n), matvec=f, dtype=float) for f in (multiply, precondition))
 
     def apply(r: NDArray[np.float64]) -> NDArray[np.float64]:
         if not r.any():
             return np.zeros(n)
-        return np.asarray(-spla.gmres(whole, r, rtol=ACCURACY, restart=ITERATIONS, maxiter=1, M=first)[0])
+        return np.asarray(spla.gmres(whole, r, rtol=ACCURACY, restart=ITERATIONS, maxiter=1, M=first)[0])
 
     return apply

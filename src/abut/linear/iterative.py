@@ -37,10 +37,9 @@ class Iterative:
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``, preconditioned by theory (V11)."""
-        fixed, active = rows.fixed, ~rows.decoupled
-        own = conditions(rows, self.system.operator, self.pressures)
-        operator, n = self.system.operator[active], len(residual)
-        coarse = self._rigid(operator, own)
+        own = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
+        operator, n = own.forces, len(residual)
+        coarse = self._rigid(own)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
             u, p = x[:n], own.columns * x[n:]
@@ -53,14 +52,12 @@ class Iterative:
             r = x[:n] + operator.T @ p
             return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / own.columns])
 
-        rhs = np.concatenate([-residual + self.system.operator.T @ fixed, -own.rows * rows.residual[active]])
+        rhs = np.concatenate([-residual + self.system.operator.T @ own.fixed, -own.rows * own.residual])
         solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
         self.count.iterations += iterations
         if not done or not np.isfinite(solution).all():
             raise NotConverged(FAILED)
-        dp = fixed
-        dp[active] = own.columns * solution[n:]
-        return solution[:n], dp
+        return solution[:n], own.multipliers(own.columns * solution[n:])
 
     def factorise(self, rows: Rows) -> None:
         """No factors are kept."""
@@ -83,12 +80,12 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _rigid(self, operator: Sparse, own: Conditions) -> Apply:
+    def _rigid(self, own: Conditions) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds."""
         motions = self.system.motions
         if not motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        small = compliance(operator @ motions, own.inverse, -np.asarray(own.lower @ motions))
+        small = compliance(own.forces @ motions, own.inverse, -np.asarray(own.lower @ motions))
         return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
 
 

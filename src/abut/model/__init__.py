@@ -19,11 +19,12 @@ from abut.model.conditions import (
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.model import PLANES, Model
 from abut.model.probe import Probe
+from abut.model.rotation import Rotation
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity",
-    "History", "Integration", "Load", "Model", "NodalForce", "Pressure", "Probe", "Rigid", "Solid", "SolveOptions",
-    "Support", "Temperature", "Term", "Traction",
+    "History", "Integration", "Load", "Model", "NodalForce", "Pressure", "Probe", "Rigid", "Rotation", "Solid",
+    "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

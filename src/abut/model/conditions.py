@@ -186,6 +186,9 @@ class Rigid:
 class Pressure:
     """Pressure on a surface, force per area, positive into the body.
 
+    ``follows``: with kinematics "finite" it acts along the normal of the deformed surface, on its deformed area; False: a
+    dead load, along the normal and on the area of the undeformed one. Without effect with kinematics "small".
+
     >>> import abut
     >>> oil = abut.Pressure("bore", 12.0, abut.Amplitude(((0.0, 1.0), (1.0, 1.0))))  # in full from the start
     """
@@ -193,8 +196,11 @@ class Pressure:
     on: str
     value: float
     amplitude: History = None
+    follows: bool = True
 
     def __post_init__(self) -> None:
+        if not isinstance(self.follows, bool):
+            raise InputError(f"pressure on '{self.on}': follows: expected true or false, got {self.follows!r}")
         checks.finite(self.value, f"pressure on '{self.on}': value")
         _amplitude(self.amplitude, f"pressure on '{self.on}'")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 from abut import checks
@@ -10,14 +9,13 @@ from abut.contact.laws import Law
 from abut.contact.sides import Names, label, listed, normalised, words
 from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
+from abut.model.friction import ROUGH, Friction, checked
 
 KINDS = ("contact", "tied")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 RULES = ("gauss", "newton-cotes")
-ROUGH = "rough"  # friction that never slips
-AT_NODES = ("auto", "P1", "P2", "dual", "dual-P1")  # pressures that go with friction
 
 
 @dataclass(frozen=True)
@@ -46,10 +44,13 @@ class Contact:
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
-    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
+    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
+    that of friction by its square root);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, or "rough" for surfaces that never
-    slip while they touch; the result then depends on the order of the loads, and on the load steps.
+    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, a function of position,
+    points (n, dim) -> (n,), taken in the undeformed mesh, pairs of pressure and coefficient, linear between and constant
+    outside, or "rough" for surfaces that never slip while they touch; times ``friction_amplitude``, constant where that is
+    left out. With friction the result depends on the order of the loads, and on the load steps.
 
     >>> import abut
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
@@ -69,7 +70,8 @@ class Contact:
     offset: float = 0.0
     adjust: float = 0.0
     amplitude: History = None
-    friction: float | str = 0.0
+    friction: Friction = 0.0
+    friction_amplitude: History = None
 
     def __post_init__(self) -> None:
         for side in ("contactor", "target"):
@@ -87,7 +89,7 @@ class Contact:
                 f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
                 "complementarity and pressure auto; leave them out, or use segment-to-segment"
             )
-        if self.law == LAWS[1] and self.pressure.startswith("dual"):
+        if self.law == LAWS[1] and self.pressure.startswith("dual") and not self.frictional:
             raise InputError(
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
@@ -108,26 +110,27 @@ class Contact:
         """Whether there is friction."""
         return self.friction != 0.0
 
-    @property
-    def coefficient(self) -> float:
-        """Of friction; infinite for "rough"."""
-        return math.inf if self.friction == ROUGH else float(self.friction)
-
     def _check_friction(self, where: str) -> None:
-        if self.friction != ROUGH:
-            if isinstance(self.friction, str):
-                raise InputError(f'{where}: friction: expected a coefficient >= 0 or "rough", got {self.friction!r}')
-            if checks.finite(self.friction, f"{where}: friction") < 0.0:
-                raise InputError(f"{where}: friction: expected a coefficient >= 0, got {self.friction!r}")
+        object.__setattr__(self, "friction", checked(self.friction, f"{where}: friction"))
+        self._check_friction_amplitude(f"{where}: friction_amplitude")
         if not self.frictional:
             return
         if self.kind == "tied":
             raise InputError(f"{where}: friction: a tie holds in all directions; leave friction or kind out")
-        if self.method != METHODS[0] or self.law != LAWS[0]:
+        if self.method != METHODS[0]:
+            raise InputError(f"{where}: friction: goes with method segment-to-segment; leave the other one out")
+        if not isinstance(self.law, str):
             raise InputError(
-                f"{where}: friction: goes with method segment-to-segment and law complementarity; leave out the others"
+                f"{where}: friction: a law of your own looks at the gap and the pressure alone; leave friction out, or take "
+                f"law {' or '.join(LAWS)}"
             )
-        if self.pressure not in AT_NODES:
-            raise InputError(
-                f"{where}: friction: needs a pressure at nodes, one of {', '.join(AT_NODES)}, got {self.pressure!r}"
-            )
+
+    def _check_friction_amplitude(self, where: str) -> None:
+        if self.friction_amplitude is None:
+            return
+        if not isinstance(self.friction_amplitude, Amplitude):
+            raise InputError(f"{where}: expected an Amplitude, got {type(self.friction_amplitude).__name__}")
+        if not self.frictional or self.friction == ROUGH:
+            raise InputError(f"{where}: there is no coefficient that it could multiply; leave it out, or give friction")
+        if any(factor < 0.0 for _, factor in self.friction_amplitude.points):
+            raise InputError(f"{where}: expected factors >= 0, since the coefficient cannot be negative")

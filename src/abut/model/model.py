@@ -17,8 +17,10 @@ from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
-from abut.model.contact import LAWS, Contact
+from abut.model.contact import Contact
+from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
+from abut.model.rotation import Rotation, check_rotations
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
@@ -32,6 +34,9 @@ class Model:
     ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
     forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
     one of ``solids`` or ``rigid``.
+
+    ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
+    forces and pressures in the deformed configuration; theory (D1)).
 
     >>> import abut
     >>> from abut.mesh import make
@@ -60,9 +65,11 @@ class Model:
     equations: Sequence[Equation] = ()
     rigid: Sequence[Rigid] = ()
     probes: Sequence[Probe] = ()
+    kinematics: str = "small"
+    rotations: Sequence[Rotation] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes"):
+        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
         check_rigid(self.mesh, self.rigid)
@@ -70,7 +77,10 @@ class Model:
         check_supports(self.mesh, self.supports)
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid})
         self._check_contacts()
-        self._check_laws()
+        check_kinematics(self.kinematics, self.solids)
+        check_rotations(self.mesh, self.rotations, self.supports, self.rigid, self.kinematics)
+        if self.finite:
+            check_finite(self.mesh, self.contacts, self.equations, self.rigid, self.supports)
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
@@ -82,7 +92,13 @@ class Model:
     @cached_property
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
-        return Solids(self.mesh, self.materials, self.plane, {solid.body: solid.integration for solid in self.solids})
+        integration = {solid.body: solid.integration for solid in self.solids}
+        return Solids(self.mesh, self.materials, self.plane, integration, self.kinematics)
+
+    @property
+    def finite(self) -> bool:
+        """Whether deformations may be finite."""
+        return self.kinematics == "finite"
 
     @property
     def dim(self) -> int:
@@ -92,8 +108,9 @@ class Model:
     @property
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
-        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts)
-        return tuple(dict.fromkeys([None, *(item.amplitude for item in given)]))
+        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
+        friction = (contact.friction_amplitude for contact in self.contacts)
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction]))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -180,16 +197,6 @@ class Model:
         for i, (contact, own) in enumerate(zip(self.contacts, every)):
             check_own(own, contact.contactor, contact.target, f"contacts[{i}]")
         check_twice([contact.name for contact in self.contacts], every)
-
-    def _check_laws(self) -> None:
-        """Raise InputError for friction beside other laws than complementarity: they are searched for in different ways."""
-        friction = [contact for contact in self.contacts if contact.frictional]
-        other = [contact for contact in self.contacts if contact.kind != "tied" and contact.law != LAWS[0]]
-        if friction and other:
-            raise InputError(
-                f"contact '{other[0].name}': its law does not go with the friction of contact '{friction[0].name}' in one "
-                "model; use complementarity"
-            )
 
     def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
         if rigid >= bodies_of(self.mesh, contact.target):

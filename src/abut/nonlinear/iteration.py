@@ -32,14 +32,17 @@ class Increment:
 
 @dataclass(frozen=True)
 class Found:
-    """What a search ends with. cycling: (n,) bool, multipliers that go in and out for ever, or whose law stays violated;
-    laws: those of all pairs as the last iteration saw them, near any state."""
+    """What a search ends with. reason: why it did not converge, where more can be said than that; cycling: (n,) bool,
+    multipliers that go in and out for ever, or whose law stays violated; laws: those of all pairs as the last iteration
+    saw them, near any state; between: (n,) with friction, the statuses of the last iterations, the sum of 2^status."""
 
     state: State
     iterations: tuple[Iteration, ...]
     converged: bool
     cycling: NDArray[np.bool_]
     laws: Laws
+    reason: str = ""
+    between: NDArray[np.uint8] | None = None
 
 
 def active_laws(system: Linearised, state: State) -> list[LawRows]:
@@ -102,15 +105,28 @@ def report(
         for pair, g in zip(system.pairs, gap)
         if not pair.tied
     ]
+    rubbing = any(pair.frictional for pair in system.pairs)
     return Iteration(
         step=increment.number,
         iteration=count,
-        active=int(state.closed.sum()),
+        active=points(system, state.closed),
         changed=changed,
         residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment)),
         contact_residual=_relative(violation, largest_pressure(state, increment)),
         penetration=max(depth, default=0.0),
         seconds=seconds,
+        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
+        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
+    )
+
+
+def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = False) -> int:
+    """How many multipliers (n,) have a flag, of a pair with friction how many points; all pairs, or those of friction."""
+    own = zip(system.pairs, system.split(flags))
+    return sum(
+        int((flag[pair.normal] if pair.frictional else flag).sum())
+        for pair, flag in own
+        if pair.frictional or not of_friction
     )
 
 
@@ -119,6 +135,8 @@ def largest_force(system: Linearised, state: State, internal: Vector, increment:
     displacements have been condensed, those that are left see nothing of contact forces that balance each other on a body,
     as round a press fit."""
     push = system.weight * state.multipliers
+    if system.about is not None:
+        return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, 1e-300)
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
     return max(*largest, increment.largest.force, 1e-300)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.coupling import surface_degree
 from abut.contact.pressure_space import DUAL_P1
 from abut.linear.solver import Prepared
+from abut.nonlinear.equilibrium import equilibrium
 from abut.nonlinear.iteration import Found, largest_so_far
 from abut.nonlinear.newton import Task, newton
 from abut.problem.problem import Problem
@@ -21,7 +22,8 @@ from abut.solution.state import State
 class Attempt:
     """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
     (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
-    bool, multipliers that keep changing."""
+    bool, multipliers that keep changing; time: at which it was to end; reason: why it did not converge, where more can be
+    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``."""
 
     number: int
     state: State
@@ -29,6 +31,10 @@ class Attempt:
     iterations: tuple[Iteration, ...]
     cycling: NDArray[np.bool_]
     inside: NDArray[np.bool_]
+    time: float
+    reason: str = ""
+    whole: bool = True
+    between: NDArray[np.uint8] | None = None
 
 
 def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
@@ -36,6 +42,13 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
 
     The problem has dual functions wherever the space has them. What is closed all over at the outset may stay so: that is
     tried first. Else dual functions tell where contact is closed, and there the ordinary ones take their place."""
+    if prepared.system.about is not None:
+        none = np.zeros(0, dtype=bool)
+        return _ended(task, time, *equilibrium(task, time, prepared), none)
+    return _searched(task, time, prepared)
+
+
+def _searched(task: Task, time: float, prepared: Prepared) -> Attempt:
     problem = task.problem
     pairs = prepared.system.pairs
     begin = replace(problem.restrict(task.before), time=time)
@@ -47,23 +60,26 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
     if inner is not problem:
         found, own = newton(replace(task, problem=inner), begin, prepared, aim="this set")
         if found.converged:
-            return _ended(replace(task, problem=inner), found, own, begin.closed)
+            return _ended(replace(task, problem=inner), time, found, own, begin.closed)
         earlier = found.iterations
         begin = found.state.with_closed(begin.closed & ~found.cycling)
     found, prepared = newton(task, begin, prepared, earlier, "set" if search else "solution")
     inside = found.state.closed
     inner = problem.with_ordinary(inside) if found.converged else problem
     if inner is problem and (not (found.converged and search) or (prepared.exact and not smooth)):
-        return _ended(task, found, prepared, none)
+        return _ended(task, time, found, prepared, none)
     task = replace(task, problem=inner)
     found, prepared = newton(task, found.state, prepared, found.iterations, settle=True)
-    return _ended(task, found, prepared, none if inner is problem else inside)
+    return _ended(task, time, found, prepared, none if inner is problem else inside)
 
 
-def _ended(task: Task, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:
+def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:
     problem: Problem = task.problem
     largest = largest_so_far(prepared.system, found.state, task.increment)
     state = replace(problem.expand(task.before, found.state, found.laws), largest=largest)
     if found.converged:
         state = problem.accepted(task.before, state)
-    return Attempt(task.increment.number, state, found.converged, found.iterations, found.cycling, inside)
+    return Attempt(
+        task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason,
+        between=found.between,
+    )  # fmt: skip

@@ -7,12 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.solution import ContactResult, FrictionResult
+from abut.solution import ContactResult, FrictionResult, Step
 from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
-OF_FRICTION = ("sticking_area", "slipping_area", "friction_work")  # the very last, where a contact has friction
 
 
 def contact_summary(contact: ContactResult) -> Json:
@@ -42,16 +41,29 @@ def contact_summary(contact: ContactResult) -> Json:
 
 
 def _friction(friction: FrictionResult) -> Json:
-    sizes = {name: np.linalg.norm(getattr(friction, name), axis=2) for name in ("traction", "slip", "total_slip")}
     return {
         "coefficient": number(friction.coefficient) if math.isfinite(friction.coefficient) else "rough",
         "sticking_area": friction.sticking_area,
         "slipping_area": friction.slipping_area,
-        "max_traction": float(np.nanmax(sizes["traction"], initial=0.0)),
-        "max_slip": float(np.nanmax(sizes["slip"][friction.status > 0], initial=0.0)),
-        "max_total_slip": float(np.nanmax(sizes["total_slip"], initial=0.0)),
+        "force": vector(friction.force),
+        "force_by_area": friction.force_by_area,
+        "force_limit": number(friction.force_limit),
+        "largest_share": number(friction.largest_share),
+        "max_traction": friction.max_traction,
+        "max_slip": friction.max_slip,
+        "max_total_slip": friction.max_total_slip,
         "work": friction.work,
+        "total_work": friction.total_work,
     }
+
+
+def energy_summary(step: Step) -> Json:
+    """Where the energy of a step with friction comes from and goes to."""
+    own = step.energy
+    if own is None:
+        return {}
+    names = ("loads", "supports", "contact", "stored", "friction", "stepping", "error")
+    return {"energy": {name: number(getattr(own, name)) for name in names}}
 
 
 def number(value: float) -> float | None:
@@ -78,6 +90,23 @@ def more_columns(dim: int) -> list[str]:
     ]
 
 
+def friction_columns(dim: int) -> list[str]:
+    """Names of the very last columns of history.csv, where a contact has friction."""
+    return [
+        "sticking_area",
+        "slipping_area",
+        "friction_work",
+        "total_friction_work",
+        *(f"friction_force_{a}" for a in "xyz"[:dim]),
+        "friction_force_by_area",
+        "friction_force_limit",
+        "largest_friction_share",
+        "max_traction",
+        "max_slip",
+        "max_total_slip",
+    ]
+
+
 def more_values(contact: ContactResult) -> dict[str, float]:
     """Their values by name, nan where there is no number: readers of the columns before them take it for one."""
     s, r = contact.statistics, contact.resultant
@@ -85,5 +114,8 @@ def more_values(contact: ContactResult) -> dict[str, float]:
     result = dict(zip(more_columns(contact.contactor.dim), map(float, values)))
     if contact.friction is not None:
         own = contact.friction
-        result |= dict(zip(OF_FRICTION, (own.sticking_area, own.slipping_area, own.work)))
+        areas, work = (own.sticking_area, own.slipping_area), (own.work, own.total_work)
+        forces = (*own.force, own.force_by_area, own.force_limit, own.largest_share)
+        largest = (own.max_traction, own.max_slip, own.max_total_slip)
+        result |= dict(zip(friction_columns(contact.contactor.dim), map(float, (*areas, *work, *forces, *largest))))
     return result

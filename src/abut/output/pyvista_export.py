@@ -15,8 +15,12 @@ from abut.solution import Solution, Step
 from abut.solution.grids import CONTACTOR, TARGET, Grid, contact_grid, largest_pressure, point_fields, vectors
 from abut.types import Foreign
 
-FIELDS = {"pressure": "pressure", "gap": "gap", "von Mises": "von_mises", "displacement": "displacement"}
-ON_CONTACTS = ("pressure", "gap")
+FIELDS = {
+    "pressure": "pressure", "gap": "gap", "traction": "traction", "slip": "total_slip", "von Mises": "von_mises",
+    "displacement": "displacement",
+}  # fmt: skip
+OF_FRICTION = ("traction", "slip")
+ON_CONTACTS = ("pressure", "gap", *OF_FRICTION)
 
 
 def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
@@ -25,8 +29,8 @@ def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
 
     step: index into ``solution.steps``. Points of bodies have displacement (n, 3), stress (n, 6: xx yy zz xy yz zx) and
     von_mises; points of contacts pressure, multiplier and gap (NaN where there is none), displacement, contact_force (of the
-    mesh's point ``node``: points of that number repeat it), cells status and side (as in ``contact_*.vtu``). Raises
-    InputError without PyVista, or where there is no such step.
+    mesh's point ``node``: points of that number repeat it), with friction traction, slip, total_slip, friction_status,
+    friction_work and total_friction_work; cells status and side (as in ``contact_*.vtu``). Raises InputError without PyVista, or where there is no such step.
 
     >>> import abut
     >>> from abut.mesh import make
@@ -63,9 +67,10 @@ def plot(
 ) -> Foreign:
     """Show a solution in a window, or write it to the picture file ``path`` without one; returns the plotter.
 
-    what: "pressure" or "gap" (on the contactors, bodies as ghosts), "von Mises" or "displacement" (on the bodies).
-    scale: factor of the displacements. Raises InputError without PyVista, for an unknown quantity or step, and where the
-    file cannot be written.
+    what: "pressure", "gap", with friction the size of the tangential "traction" or of the "slip" in all steps (on the
+    contactors, bodies as ghosts), "von Mises" or "displacement" (on the bodies).
+    scale: factor of the displacements. Raises InputError without PyVista, for an unknown quantity or step, for one of
+    friction where no contact has any, and where the file cannot be written.
     """
     checks.choice(what, "plot: what", tuple(FIELDS))
     checks.finite(scale, "plot: scale")
@@ -74,6 +79,9 @@ def plot(
     plotter = pyvista.Plotter(off_screen=path is not None, window_size=(1280, 860))
     plotter.background_color = "white"
     on_contacts = what in ON_CONTACTS
+    rubbing = [c.name for c in _step(solution, step).contacts if what not in OF_FRICTION or c.friction is not None]
+    if on_contacts and not rubbing:
+        raise InputError(f"plot: what: {what!r} needs a contact with friction, and there is none")
     largest = _largest(data, what, _step(solution, step))
     colours = {
         "scalars": FIELDS[what],
@@ -89,7 +97,7 @@ def plot(
         else:
             plotter.add_mesh(own, **colours)
         plotter.add_mesh(own.extract_feature_edges(35), color="#333333", line_width=1)
-    for sides in data["contacts"] if on_contacts else ():
+    for sides in [data["contacts"][name] for name in rubbing] if on_contacts else ():
         plotter.add_mesh(_deformed(sides["contactor"], scale), line_width=6, lighting=False, **colours)
     if solution.model.dim == 2:
         plotter.view_xy()
@@ -165,7 +173,7 @@ def _largest(data: Foreign, what: str, step: Step) -> float:
         return largest_pressure([step])
     grids = [sides["contactor"] for sides in data["contacts"]] if what in ON_CONTACTS else list(data["bodies"])
     largest = 0.0
-    for grid in grids:
+    for grid in (own for own in grids if FIELDS[what] in own.point_data):
         values = np.asarray(grid.point_data[FIELDS[what]])
         sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
         largest = max(largest, float(np.nanmax(np.nan_to_num(sizes), initial=0.0)))

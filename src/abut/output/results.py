@@ -17,7 +17,15 @@ from abut.io.versions import versions
 from abut.io.vtu import write_vtu
 from abut.model.probe import label
 from abut.output import probes
-from abut.output.contact_rows import OF_CONTACT, OF_FRICTION, contact_summary, more_columns, more_values, number
+from abut.output.contact_rows import (
+    OF_CONTACT,
+    contact_summary,
+    energy_summary,
+    friction_columns,
+    more_columns,
+    more_values,
+    number,
+)
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
@@ -148,6 +156,7 @@ def _step_summary(step: Step) -> Json:
         "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
         "contacts": [contact_summary(c) for c in step.contacts],
+        **energy_summary(step),
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
@@ -176,7 +185,7 @@ def _history(solution: Solution) -> str:
     head += [name for name in probes.history_columns(solution.steps) if name not in head]
     head += more_columns(dim)
     if any(c.friction is not None for step in solution.steps for c in step.contacts):
-        head += OF_FRICTION
+        head += friction_columns(dim)
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()
@@ -195,7 +204,7 @@ def _history(solution: Solution) -> str:
 
 def _log(solution: Solution) -> str:
     lines = [{"note": note} for note in solution.notes]
-    lines += [dict(vars(row)) for step in solution.steps for row in step.iterations]
+    lines += [row.row for step in solution.steps for row in step.iterations]
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 

@@ -63,7 +63,7 @@ class Stream:
         """Append an iteration or a note to the log."""
         if isinstance(item, Phase):
             return
-        line = {"note": item} if isinstance(item, str) else dict(vars(item))
+        line = {"note": item} if isinstance(item, str) else item.row
         try:
             os.write(self._log, (json.dumps(line) + "\n").encode())  # one call: no line is ever half there
         except OSError as error:

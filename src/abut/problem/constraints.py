@@ -18,6 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import eliminate
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+from abut.problem.turns import Turn, Turns, about
 from abut.types import Array, Sparse
 
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
@@ -51,7 +52,7 @@ class Links:
 class Supports:
     """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
     ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
-    at any time; bodies: the rigid ones; links: where there are equations."""
+    at any time; bodies: the rigid ones; links: where there are equations; turns: finite ones, None without."""
 
     free: Sparse
     prescribed: NDArray[np.float64]
@@ -60,6 +61,19 @@ class Supports:
     coupled: bool = False
     bodies: Sequence[RigidBody] = ()
     links: Links | None = None
+    turns: Turns | None = None
+
+    def displacement(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of all points, (dim n_points,), by the free displacements and the factors of the histories."""
+        linear = np.asarray(self.free @ free + self.prescribed @ factors)
+        return linear if self.turns is None else linear + self.turns.displacement(free, factors)
+
+    def near(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> Supports:
+        """The same as a linear change of variables near a state: its columns are the derivatives there."""
+        if self.turns is None:
+            return self
+        columns = (self.free + self.turns.columns(free, factors)).tocsr()
+        return replace(self, free=columns, orthonormal=False)
 
     def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
@@ -116,9 +130,9 @@ def supports(model: Model) -> Supports:
     conditions, bodies = _conditions(model), rigid_bodies(model)
     on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in bodies)]))
     free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), bodies)
-    orthonormal, coupled, links = True, False, None
+    orthonormal, coupled, links, turning = True, False, None, list[Turn]()
     if bodies or model.equations:
-        free, prescribed, links = _together(
+        free, prescribed, links, turning = _together(
             model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies
         )
         gram = free.T @ free
@@ -128,7 +142,9 @@ def supports(model: Model) -> Supports:
         coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
     factors = [1.0 if history is None else history.largest for history in model.histories]
     largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
-    return Supports(free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None)
+    turning += _turned(model, free.shape[1])
+    turns = Turns(turning, model.dim, len(model.mesh.points)) if model.finite and turning else None
+    return Supports(free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None, turns)
 
 
 def _together(
@@ -137,8 +153,9 @@ def _together(
     prescribed: NDArray[np.float64],
     conditions: tuple[Array, ...],
     bodies: Sequence[RigidBody],
-) -> tuple[Sparse, NDArray[np.float64], Links]:
-    """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12)."""
+) -> tuple[Sparse, NDArray[np.float64], Links, list[Turn]]:
+    """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12). The turns
+    are those of rigid bodies."""
     n_dofs, n_own = free.shape
     free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
     histories = model.histories
@@ -167,7 +184,15 @@ def _together(
     others = sp.csr_matrix((every.shape[0] - linear.shape[0], n_dofs))
     of_equations = sp.vstack([others, linear], format="csr")
     links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])
-    return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links
+    turning, first = list[Turn](), n_own
+    for body in bodies:
+        count = len(body.components)
+        own = slice(first + model.dim, first + count)
+        first += count
+        if count > 1:
+            by_free, given = done.free[own] * (1.0 / body.size), done.prescribed[own] / body.size
+            turning.append(about(body.nodes, body.points, body.centre, by_free, given, small=True))
+    return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links, turning
 
 
 def equations(model: Model) -> tuple[Sparse, NDArray[np.float64]]:
@@ -192,8 +217,21 @@ def _without_rounding(rows: Sparse, size: NDArray[np.float64]) -> Sparse:
     return sp.csr_matrix((entries.data[keep], (entries.row[keep], entries.col[keep])), shape=rows.shape)
 
 
+def _turned(model: Model, n_free: int) -> list[Turn]:
+    """The turns of ``Model.rotations``."""
+    turns = []
+    for rotation in model.rotations:
+        nodes = rotation.nodes(model.mesh)
+        vector = np.array([rotation.angle]) if model.dim == 2 else rotation.angle * np.array(rotation.direction)
+        given = np.multiply.outer(vector, np.eye(len(model.histories))[model.histories.index(rotation.amplitude)])
+        none = sp.csr_matrix((len(vector), n_free))
+        turns.append(about(nodes, model.mesh.points[nodes], np.array(rotation.centre), none, given, small=False))
+    return turns
+
+
 def _name(model: Model, origin: int) -> str:
-    return "the axis" if origin == AXIS else f"support on '{model.supports[origin].on}'"
+    own = [*(support.on for support in model.supports), *(rotation.on for rotation in model.rotations)]
+    return "the axis" if origin == AXIS else f"support on '{own[origin]}'"
 
 
 def _node_by_node(
@@ -221,9 +259,9 @@ def _node_by_node(
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
-            names = ", ".join(sorted({"the axis" if i == AXIS else model.supports[i].on for i in origin[first:last]}))
+            names = ", ".join(sorted({_name(model, i) for i in origin[first:last]}))
             raise SingularModelError(
-                f"supports on {names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
+                f"{names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
                 "they prescribe different displacements in one direction; take one of them out"
             )
         prescribed[k] = x
@@ -276,6 +314,13 @@ def _conditions(model: Model) -> tuple[Array, ...]:
             directions.append(np.broadcast_to(vector, (len(where), dim)))
             values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(support.amplitude)]))
             origins.append(np.full(len(where), i))
+    for i, rotation in enumerate(model.rotations):
+        where = rotation.nodes(model.mesh)
+        for axis in np.eye(dim):
+            nodes.append(where)
+            directions.append(np.broadcast_to(axis, (len(where), dim)))
+            values.append(np.zeros((len(where), len(histories))))
+            origins.append(np.full(len(where), len(model.supports) + i))
     on_axis = points_on_axis(model.mesh)
     if len(on_axis):
         nodes.append(on_axis)

@@ -29,17 +29,18 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
 from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
-from abut.contact.tangential import slip_operators
+from abut.contact.tangential import SlipOperators, slip_operators
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
+from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
 from abut.problem.contact_normals import contact_normals
 from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
-from abut.problem.scales import scales_of
+from abut.problem.scales import scales
 from abut.problem.tied_rows import tied_rows
 from abut.types import Array, Sparse
 
@@ -100,6 +101,7 @@ class Pair:
     planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
     slip: Slip | None = None  # with friction
+    values: FrictionValues | None = None  # the same: its coefficient
 
     @property
     def tied(self) -> bool:
@@ -139,12 +141,14 @@ class Pair:
     def friction(self, factors: NDArray[np.float64]) -> FrictionBound:
         """What each function of a pair with friction carries along the tangents, the model's histories being at ``factors``
         (n_histories,)."""
-        return FrictionBound(np.full(len(self.space), self.contact.coefficient))
+        assert self.values is not None
+        return self.values.bound(factors)
 
     @property
     def steepest(self) -> NDArray[np.float64]:
         """The largest coefficient of friction that each function ever has, (n_functions,)."""
-        return np.full(len(self.space), self.contact.coefficient)
+        assert self.values is not None
+        return self.values.steepest
 
     @property
     def weight(self) -> NDArray[np.float64]:
@@ -224,18 +228,18 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     surfaces do not face each other."""
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
-    reach = _reach(held, contactor, target)
-    scales = scales_of(model, contactor, target)
-    normals = contact_normals(contactor, target, scales.share, reach, couple, held) if contact.frictional else None
+    reach = reach_of(held, contactor, target)
+    both = scales(model, contactor, target)
+    normals = contact_normals(contactor, target, both.share, reach, couple, held) if contact.frictional else None
     contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
-    size, stiffness = float(np.median(sizes)), scales.young / float(np.median(sizes))
+    size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
         own = tied_rows(contactor, coupling, space, held)
         return Pair(
             contact, contactor, target, coupling, space, own.rows, own.free,
             prescribed=own.rows @ held.prescribed, gap=np.zeros(len(own.weight)), scale=own.weight / stiffness, size=size,
-            stiffness=stiffness, index=own.index, components=own.components, compliance=scales.compliance,
+            stiffness=stiffness, index=own.index, components=own.components, compliance=both.compliance,
         )  # fmt: skip
     space = without_held(space, contactor, coupling, held)
     rows = (space.transfer.T @ coupling.operator).tocsr()
@@ -253,8 +257,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
-        components=(space,), compliance=scales.compliance,
-        points=None if contact.frictional else _points(coupling, space, held, scales.young / sizes, constant, varying),
+        components=(space,), compliance=both.compliance,
+        points=None if contact.frictional else _points(coupling, space, held, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=_planes(contactor, border, beyond, held),
     )  # fmt: skip
@@ -263,12 +267,14 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     assert coupling.points is not None
     assert normals is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(slim, slip_operators(coupling.points), normals, held)
+    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, held)
 
 
-def _with_friction(own: Pair, operators: tuple[Sparse, ...], normals: NDArray[np.float64], held: Supports) -> Pair:
+def _with_friction(
+    model: Model, own: Pair, operators: SlipOperators, normals: NDArray[np.float64], held: Supports
+) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    sides = FrictionSides(own.contactor, own.target, normals, _reach(held, own.contactor, own.target))
+    sides = FrictionSides(own.contactor, own.target, normals, reach_of(held, own.contactor, own.target))
     made = friction_rows(sides, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)
     prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
@@ -277,6 +283,7 @@ def _with_friction(own: Pair, operators: tuple[Sparse, ...], normals: NDArray[np
         own, rows=made.rows, operator=(made.rows @ held.free).tocsr(), prescribed=prescribed,
         gap=np.concatenate([own.gap, np.zeros(more)]), scale=weight / own.stiffness, index=made.index,
         components=made.components, slip=made.slip, points=None,
+        values=friction_values(model, own.contact, made.slip.points),
     )  # fmt: skip
 
 
@@ -326,7 +333,10 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    return changed if own.slip is None else _with_friction(changed, own.slip.operators, own.slip.at_facets, held)
+    if own.slip is None:
+        return changed
+    assert own.slip.at_facets is not None
+    return _with_friction(model, changed, own.slip.operators, own.slip.at_facets, held)
 
 
 def _couple(
@@ -343,7 +353,7 @@ def _couple(
         coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
-        name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
+        name, degree = resolve(contact.pressure, contactor, not tied and (contact.law == LAWS[0] or contact.frictional))
         if contact.frictional and name == DUAL_P1:
             name = DUAL  # the law of friction looks at pressure and traction node by node
         of_dual = name in (DUAL, DUAL_P1)
@@ -384,5 +394,6 @@ def _points(
     )
 
 
-def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
+def reach_of(held: Supports, contactor: Surface, target: Surface) -> float:
+    """How far apart the surfaces may lie at the outset and still be paired, a length."""
     return default_reach(contactor, target) + 2.0 * held.largest

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from abut.cells import MAX_FACET_NODES
-from abut.contact.geometry import split_at_creases
+from abut.contact.function_places import places
 from abut.contact.node_to_segment import feet
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.tangential import frames
+from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Supports
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
@@ -37,14 +37,15 @@ class Sides:
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet, as from ``slip_operators``; at_facets: (n_facets, 9, dim)
-    normals of the contactor; normals: (n_functions, dim), from target to contactor, tangents: (n_functions, dim - 1, dim),
-    unit, at the node of each function of the pressure."""
+    """What makes tangential rows. operators: facet by facet; tangents: (n_functions, dim - 1, dim) and normals:
+    (n_functions, dim), from target to contactor, unit, at the place of each function of the pressure, ``points`` (n_functions, dim);
+    at_facets: (n_facets, 9, dim) normals of the contactor, None for large sliding."""
 
-    operators: tuple[Sparse, ...]
-    at_facets: NDArray[np.float64]
-    normals: NDArray[np.float64]
+    operators: SlipOperators
     tangents: NDArray[np.float64]
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    at_facets: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
@@ -59,18 +60,17 @@ class FrictionRows:
 
 
 def friction_rows(
-    pair: Sides, space: PressureSpace, normal: Sparse, operators: tuple[Sparse, ...], held: Supports
+    pair: Sides, space: PressureSpace, normal: Sparse, operators: SlipOperators, held: Supports
 ) -> FrictionRows:
     """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold both sides along a tangent, as at a
     plane of symmetry, there is no traction along it; where they hold the contactor's node alone, the target carries it."""
     dim, n = pair.contactor.dim, len(space)
-    split, _ = split_at_creases(pair.contactor)
-    at = np.zeros((len(split.points), dim))
-    at[split.nodes[split.nodes >= 0]] = -pair.at_facets[split.nodes >= 0]  # from target to contactor
-    normals = at[space.side]
+    points, outward = places(pair.contactor, space, pair.at_facets)
+    normals = -outward
     axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
-    tangents, free = frames(normals, np.stack(axes, axis=1))
-    fields = [(space.transfer.T @ own).tocsr() for own in operators]
+    moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
+    tangents, free = frames(normals, moves)
+    fields = [(space.transfer.T @ own).tocsr() for own in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
     rows, components = [normal], [space]
@@ -84,9 +84,8 @@ def friction_rows(
         components.append(only(space, keep))
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
-    return FrictionRows(
-        tuple(components), index, sp.vstack(rows).tocsr(), Slip(operators, pair.at_facets, normals, tangents)
-    )
+    slip = Slip(operators, tangents, points, normals, pair.at_facets)
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), slip)
 
 
 def carried_by_target(

@@ -13,7 +13,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.restraint import Restraint
 from abut.solution.state import State
-from abut.types import Array, Operator
+from abut.types import Array, Operator, Sparse
 
 Vector = NDArray[np.float64]
 
@@ -23,6 +23,8 @@ class Rows:
     """The laws of all pairs near the present state, in the unknowns: residual + by_displacement du + by_pressure dp = 0.
 
     ``decoupled`` rows hold nothing but their own pressure. ``symmetric``: all others are minus the rows of the operator.
+    by_gap, by_multiplier: (n, n) derivatives by the weighted gaps and, these apart, by the multipliers; None where a law
+    looks at points.
     """
 
     residual: Vector
@@ -30,12 +32,25 @@ class Rows:
     by_pressure: Operator
     decoupled: NDArray[np.bool_]
     symmetric: bool
+    by_gap: Sparse | None = None
+    by_multiplier: Sparse | None = None
 
     @property
     def fixed(self) -> Vector:
         """Change of the pressures that decoupled rows give at once; zero for all others."""
         own = np.where(self.decoupled, self.by_pressure.diagonal(), 1.0)
         return np.where(self.decoupled, -self.residual / own, 0.0)
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """A state of finite deformation that a problem is linearised about. at: (n_free,) displacements; unbalanced: (n_free,)
+    forces of stresses less loads there; reference: size of forces against which that is judged; symmetric: the stiffness."""
+
+    at: Vector
+    unbalanced: Vector
+    reference: float
+    symmetric: bool
 
 
 @dataclass(frozen=True)
@@ -46,7 +61,9 @@ class Linearised:
     factors: (n_histories,) of the histories at ``time``; stiffness K: (n_free, n_free); load f: (n_free,); operator B:
     (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed,
     theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
-    contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation.
+    contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation;
+    about: under finite deformation, else None; B q is then B (q - at). Contact forces may have other columns than gaps have
+    rows: F^T p with ``pushing`` F (n, n_free); forgotten: (n,) multipliers of friction without a past, which carry nothing.
     """
 
     time: float
@@ -61,6 +78,9 @@ class Linearised:
     forces: Vector
     unit: float
     compliance: NDArray[np.float64] | None = None
+    about: Expansion | None = None
+    pushing: Operator | None = None
+    forgotten: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         """Number of multipliers."""
@@ -88,6 +108,16 @@ class Linearised:
         """(n,) int H_k."""
         return self.join([pair.weight for pair in self.pairs])
 
+    @property
+    def columns(self) -> Operator:
+        """(n, n_free): forces by multiplier; the operator where nothing else is said."""
+        return self.operator if self.pushing is None else self.pushing
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the stiffness is."""
+        return self.about is None or self.about.symmetric
+
     def same_matrices(self, other: Linearised) -> bool:
         """Whether stiffness, operator and compliance are the very objects of another state's."""
         mine, its = ((s.stiffness, s.operator, s.compliance) for s in (self, other))
@@ -99,23 +129,26 @@ class Linearised:
 
     def unbalanced(self, state: State, internal: Vector | None = None) -> Vector:
         """K q - B^T p - f; internal: K q where it is known."""
-        residual = (self.internal(state) if internal is None else internal) - self.load
+        if self.about is not None:  # K q would lose digits: a turn moves points far without forces
+            residual = self.about.unbalanced + self.stiffness @ (state.unknowns - self.about.at)
+        else:
+            residual = (self.internal(state) if internal is None else internal) - self.load
         if len(state.multipliers):
-            residual = residual - self.operator.T @ state.multipliers
+            residual = residual - self.columns.T @ state.multipliers
         return np.asarray(residual)
 
     def gap(self, state: State) -> Vector:
         """Weighted gaps of all multipliers, (n,)."""
         if not len(self.offset):
             return self.offset
-        gap = self.offset + self.operator @ state.unknowns
+        gap = self.offset + self.operator @ (state.unknowns if self.about is None else state.unknowns - self.about.at)
         return np.asarray(gap if self.compliance is None else gap + self.compliance @ state.multipliers)
 
     def rows(self, laws: Sequence[LawRows]) -> Rows:
         """The laws of all pairs in terms of the unknowns."""
         if not self.pairs:
             none = np.zeros(0)
-            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), True)
+            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), self.symmetric)
         by_displacement, by_compliance, first = [], [], 0
         for pair, law in zip(self.pairs, laws):
             here = slice(first, first + len(pair))
@@ -127,11 +160,14 @@ class Linearised:
                 by_compliance.append(
                     np.zeros((len(pair), len(self.compliance))) if empty else law.by_gap @ self.compliance[here]
                 )
+        at_points = any(law.at_points for law in laws)
         by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
         return Rows(
             residual=np.concatenate([law.residual for law in laws]),
             by_displacement=sp.vstack(by_displacement).tocsr(),
             by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
             decoupled=np.concatenate([law.decoupled for law in laws]),
-            symmetric=not any(law.at_points for law in laws) and all(law.symmetric for law in laws),
+            symmetric=self.symmetric and not at_points and all(law.symmetric for law in laws),
+            by_gap=None if at_points else sp.block_diag([law.by_gap for law in laws]).tocsr(),
+            by_multiplier=by_pressure,
         )

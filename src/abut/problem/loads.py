@@ -11,22 +11,25 @@ from abut.bodies.assemble import thermal_load
 from abut.bodies.loads import body_load, force_load, pressure_load, traction_load
 from abut.bodies.solids import TemperatureChange
 from abut.fields import evaluate
-from abut.model import BodyForce, Force, Gravity, Model, NodalForce, Pressure, Temperature, Traction
+from abut.model import BodyForce, Force, Gravity, Load, Model, NodalForce, Pressure, Temperature, Traction
 from abut.model.conditions import weights
 
 
 @dataclass(frozen=True)
 class Loads:
     """forces: (dim n_points, n_histories) nodal forces of loads and thermal strains; resultant: (dim, n_histories) of the
-    loads; temperature: (n_points, n_histories) change at the nodes, without that of whole solids."""
+    loads; temperature: (n_points, n_histories) change at the nodes, without that of whole solids; following: (dim n_points,
+    n_histories) of loads that follow the deformation, before there is any, None where there are none."""
 
     forces: NDArray[np.float64]
     resultant: NDArray[np.float64]
     temperature: NDArray[np.float64]
+    following: NDArray[np.float64] | None = None
 
     def at_ends(self, model: Model) -> list[NDArray[np.float64]]:
-        """The nodal forces (dim n_points,) at the end of every load step."""
-        return [self.forces @ weights(model.histories, time) for time in model.solve.ends]
+        """The nodal forces (dim n_points,) at the end of every load step, on undeformed bodies."""
+        forces = self.forces if self.following is None else self.forces + self.following
+        return [forces @ weights(model.histories, time) for time in model.solve.ends]
 
 
 def loads(model: Model) -> Loads:
@@ -35,15 +38,25 @@ def loads(model: Model) -> Loads:
     applied, temperature = applied_load(model), nodal_temperature(model)
     resultant = applied.reshape(-1, model.dim, applied.shape[1]).sum(axis=0)
     strained = strain_load(model, temperature) if model.deformable.constant else 0.0  # others: with the stresses
-    return Loads(applied + strained, resultant, temperature)
+    return Loads(applied + strained, resultant, temperature, applied_load(model, True) if followers(model) else None)
 
 
-def applied_load(model: Model) -> NDArray[np.float64]:
-    """Nodal forces of all loads, (dim n_points, n_histories)."""
+def followers(model: Model) -> list[Pressure]:
+    """The loads of a model that follow the deformation."""
+    return [load for load in model.loads if isinstance(load, Pressure) and _follows(model, load)]
+
+
+def _follows(model: Model, load: Load) -> bool:
+    return model.finite and isinstance(load, Pressure) and load.follows
+
+
+def applied_load(model: Model, following: bool = False) -> NDArray[np.float64]:
+    """Nodal forces of all dead loads, or of those that follow the deformation, on undeformed bodies, (dim n_points,
+    n_histories)."""
     histories = model.histories
     total = np.zeros((model.mesh.points.size, len(histories)))
     for load in model.loads:
-        if not isinstance(load, Temperature):
+        if not isinstance(load, Temperature) and _follows(model, load) == following:
             total[:, histories.index(load.amplitude)] += _forces(model, load)
     return total
 

@@ -18,13 +18,14 @@ from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import Regularisation
 from abut.problem.kinematics import Kinematics
 from abut.problem.laws import LawRows
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import Expansion, Linearised
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Motion, Share, Term
 from abut.solution.state import State, at_rest
 from abut.types import Operator, Sparse
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
+SLIGHT = 1e-5
 CONTACTS = "contacts"  # whose history is the slip
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
@@ -111,23 +112,55 @@ class ContactProblem:
     def linearise(self, before: State, now: State) -> Linearised:
         """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
         have no rounding."""
-        slipped = self._slipped(before)
         if self.constant:
-            before, now = (replace(state, unknowns=np.zeros(self.n_free)) for state in (before, now))
-        at, shares = now.unknowns, self._shares(before, now)
-        force = self.held.free.T @ np.asarray(sum(share.force for share in shares))
+            rest = np.zeros(self.n_free)
+            return self._near(before, replace(before, unknowns=rest), replace(now, unknowns=rest), None)
+        return self._near(before, before, now, None)
+
+    def begin(self, before: State, time: float) -> Linearised:
+        """The problem near the converged state ``before``, but at another time: displacements that are prescribed until then
+        act by the tangent, so that the first iteration spreads them over the bodies."""
+        now = replace(before, time=time)
+        return self._near(before, before, now, self.displacement(now) - self.displacement(before))
+
+    def _near(self, converged: State, before: State, now: State, prescribed: NDArray[np.float64] | None) -> Linearised:
+        """prescribed: displacements (dim n_points,) that are to come yet, by the tangent."""
+        slipped = self._slipped(converged)
+        at, shares = now.unknowns, self._shares(before, now, prescribed)
+        whole = np.asarray(sum(share.force for share in shares))
+        if prescribed is not None:
+            whole = whole + sum(s.tangent.internal(prescribed) for s in shares if s.tangent is not None)
         factors = weights(self.model.histories, now.time)
+        there = factors if prescribed is None else weights(self.model.histories, before.time)
+        held = self.held.near(at, there)
+        force = held.free.T @ whole
         operator, offset, bending = self._contact(now, factors, slipped)
         if self.constant:
             stiffness, load = self.stiffness, -force
         else:
-            stiffness = self._tangent(shares)
+            stiffness = self._tangent(shares, held)
+            if self.held.turns is not None:
+                stiffness = stiffness + self.held.turns.bending(at, there, whole)
             stiffness = stiffness if bending is None else stiffness - bending
             load = stiffness @ at - force - self.springs.forces(at)
         return Linearised(
             now.time, factors, stiffness, load, self.pairs, operator, offset, self.motions, self.restraint, load,
-            self.unit or unit_of(stiffness),
+            self.unit or unit_of(stiffness), about=self._expansion(shares, at, force, stiffness),
         )  # fmt: skip
+
+    def _expansion(
+        self, shares: Sequence[Share], at: NDArray[np.float64], force: NDArray[np.float64], stiffness: Operator
+    ) -> Expansion | None:
+        """The state of finite deformation; forces are judged against the largest one, reactions among them, and at least
+        against what a strain of ``SLIGHT`` makes of a cell, theory (D13)."""
+        if not self.model.finite:
+            return None
+        points = self.model.mesh.points
+        size = float(np.ptp(points, axis=0).max()) / len(points) ** (1.0 / self.model.dim)
+        largest = max(float(np.abs(share.force).max(initial=0.0)) for share in shares)
+        symmetric = all(share.symmetric for share in shares)
+        unbalanced = force + self.springs.forces(at)
+        return Expansion(at, unbalanced, max(largest, SLIGHT * unit_of(stiffness) * size), symmetric)
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
@@ -159,8 +192,7 @@ class ContactProblem:
 
     def displacement(self, state: State) -> NDArray[np.float64]:
         """Of all points, (dim n_points,)."""
-        prescribed = self.held.prescribed @ weights(self.model.histories, state.time)
-        return np.asarray(self.held.free @ state.unknowns + prescribed)
+        return self.held.displacement(state.unknowns, weights(self.model.histories, state.time))
 
     def _offset(self, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()) -> NDArray[np.float64]:
         """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``; slipped: what to
@@ -185,11 +217,11 @@ class ContactProblem:
         bending = [jump.bending for jump in jumps if jump.bending is not None]
         return operator, value - operator @ now.unknowns, sum(bending[1:], bending[0]) if bending else None
 
-    def _tangent(self, shares: Sequence[Share]) -> Operator:
-        """The stiffness on the free displacements."""
+    def _tangent(self, shares: Sequence[Share], held: Supports) -> Operator:
+        """The stiffness on the free displacements. held: near the state."""
         if self.stiffness is not None:
             return self.stiffness
-        tangents = [share.tangent.reduce(self.held) for share in shares if share.tangent is not None]
+        tangents = [share.tangent.reduce(held) for share in shares if share.tangent is not None]
         return self.springs.added_to(sum(tangents[1:], tangents[0]))
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
@@ -197,35 +229,46 @@ class ContactProblem:
         state, and what is open moved on until it closes; empty without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []
-        factors = weights(self.model.histories, before.time)
+        return [
+            gap[pair.tangential] + came if pair.frictional else came
+            for pair, gap, came in zip(self.pairs, self._gaps(before), self._approached(before))
+        ]
+
+    def _approached(self, before: State) -> list[NDArray[np.float64]]:
+        """Of them, what is open moves on until it closes; empty of a pair without friction."""
         ends = np.cumsum([len(pair) for pair in self.pairs])[:-1]
-        result = []
-        for pair, multipliers, closed in zip(
-            self.pairs, *(np.split(v, ends) for v in (before.multipliers, before.closed))
-        ):
-            jump = np.zeros(0)
-            if pair.frictional:
-                gap = pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors
-                jump = gap[pair.tangential] + approach_slip(pair, gap, multipliers, closed)
-            result.append(jump)
-        return result
+        states = self._gaps(before), np.split(before.multipliers, ends), np.split(before.closed, ends)
+        return [
+            approach_slip(pair, gap, multipliers, closed) if pair.frictional else np.zeros(0)
+            for pair, gap, multipliers, closed in zip(self.pairs, *states)
+        ]
+
+    def _gaps(self, before: State) -> list[NDArray[np.float64]]:
+        """Weighted gaps and tangential jumps of each pair in a converged state."""
+        factors = weights(self.model.histories, before.time)
+        return [pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors for pair in self.pairs]
 
     def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
-        """Slip of each pair with friction by name, (n, 2): in the step that ends ``now``, and in all steps; none while
-        open."""
+        """Slip of each pair with friction by name, (n, 3): in the step that ends ``now``, in all steps in contact, and what
+        did not count in the step because it only came closer."""
         system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
         result = {}
-        for pair, gap, closed in zip(self.pairs, system.split(system.gap(now)), system.split(now.closed)):
+        states = system.split(system.gap(now)), system.split(now.closed), self._approached(before)
+        for pair, gap, closed, approached in zip(self.pairs, *states):
             if pair.frictional:
                 step = gap / pair.weight
-                step[pair.normal], step[~closed] = 0.0, 0.0
-                total = earlier.get(pair.contact.name, np.zeros((len(pair), 2)))[:, 1]
-                result[pair.contact.name] = np.column_stack([step, total + step])
+                step[pair.normal] = 0.0
+                total = earlier.get(pair.contact.name, np.zeros((len(pair), 3)))[:, 1]
+                came = np.zeros(len(pair))
+                came[pair.tangential] = approached / pair.weight[pair.tangential]
+                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0), came])
         return result
 
-    def _shares(self, before: State, now: State) -> list[Share]:
-        """Of every term."""
+    def _shares(self, before: State, now: State, prescribed: NDArray[np.float64] | None = None) -> list[Share]:
+        """Of every term. prescribed: displacements to leave out of those of ``now``."""
         there, here = self.displacement(before), self.displacement(now)
+        if prescribed is not None:
+            here = here - prescribed
         return [
             term.evaluate(*(Motion(s.time, u, before.history.of(term.name)) for s, u in ((before, there), (now, here))))
             for term in self.terms

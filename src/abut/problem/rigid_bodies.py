@@ -72,9 +72,32 @@ class RigidBody:
         turns = q[self.points.shape[1] :] / self.size if len(q) > 1 else np.zeros(1)
         return np.asarray(self.moved(self.reference[None])[0] @ q), np.asarray(turns)
 
-    def resultant(self, forces: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Force (dim,) and moment about the reference (1,) or (3,) of forces at all points (n_points, dim)."""
+    def turned(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """As ``motion`` by a finite turn, whose rotation vector is at most half a turn long."""
+        if self.axisymmetric:
+            return self.motion(displacement)
+        from scipy.spatial.transform import Rotation  # slow to import
+
+        dim = self.points.shape[1]
+        before, moved = np.zeros((2, len(self.nodes), 3))
+        before[:, :dim] = self.points - self.points.mean(axis=0)
+        moved[:, :dim] = self.points + displacement[self.nodes]
+        middle = moved.mean(axis=0)
+        turn = Rotation.align_vectors(moved - middle, before)[0]
+        arm = np.zeros(3)
+        arm[:dim] = self.reference - self.points.mean(axis=0)
+        vector = turn.as_rotvec()
+        there = (middle + turn.apply(arm))[:dim] - self.reference
+        return there, np.asarray(vector if dim == 3 else vector[2:])
+
+    def resultant(
+        self, forces: NDArray[np.float64], displacement: NDArray[np.float64] | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Force (dim,) and moment about the reference (1,) or (3,) of forces at all points (n_points, dim); displacement:
+        (n_points, dim) under finite deformation, None for arms in the undeformed body."""
         own, arm = forces[self.nodes], self.points - self.reference
+        if displacement is not None:
+            arm = arm + displacement[self.nodes] - self.turned(displacement)[0]
         if self.axisymmetric:
             return own.sum(axis=0), np.zeros(1)
         if own.shape[1] == 2:
@@ -96,6 +119,8 @@ def _body(model: Model, rigid: Rigid) -> RigidBody:
     nodes = nodes_of_body(model.mesh, rigid.body)
     points = model.mesh.points[nodes]
     centre = points.mean(axis=0)
+    if model.finite and rigid.reference is not None:
+        centre = np.array(rigid.reference)  # so that translations do not depend on finite turns
     return RigidBody(
         rigid=rigid,
         nodes=nodes,

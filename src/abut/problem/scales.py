@@ -19,7 +19,7 @@ class Scales:
     share: float
 
 
-def scales_of(model: Model, contactor: Surface, target: Surface) -> Scales:
+def scales(model: Model, contactor: Surface, target: Surface) -> Scales:
     """Of the contact of two surfaces. The model has refused two rigid sides."""
     both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
     young = min(material.modulus for material in both if material is not None)

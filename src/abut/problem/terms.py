@@ -34,11 +34,13 @@ class Motion:
 @dataclass(frozen=True)
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
-    tangent: ``Backend`` that reduces to the free displacements, None for none; history: as in ``Motion``, new."""
+    tangent: ``Backend`` that reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
+    the tangent."""
 
     force: Vector
     tangent: Backend | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
+    symmetric: bool = True
 
 
 class Term(Protocol):

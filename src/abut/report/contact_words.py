@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.solution import ContactResult
+from abut.solution import ContactResult, FrictionResult
 
 ZERO = 1e-9  # of its scale: smaller numbers are rounding, and shown as 0
 
@@ -57,16 +57,21 @@ def lines(contact: ContactResult) -> list[str]:
     if math.isfinite(s.partly_covered):
         result.append(f"where nodes are less than half covered up to {number(s.partly_covered)}, which counts nowhere")
     if contact.friction is not None:
-        own = contact.friction
-        result.append(
-            f"sticks on {number(own.sticking_area)} and slips on {number(own.slipping_area)} of the area, "
-            f"friction takes {number(own.work)} of work in the step"
-        )
+        result.append(friction_line(contact.friction))
     if np.isfinite(contact.resultant.centre).all():
         result.append(f"centre of pressure {centre(contact)}, moment about the origin {moment(contact)}")
     if some := on_bodies(contact):
         result.append(f"force on the bodies of the target: {some}")
     return result
+
+
+def friction_line(own: FrictionResult) -> str:
+    """What friction does, in a sentence."""
+    limit = f" of at most {number(own.force_limit)}" if math.isfinite(own.force_limit) else ""
+    return (
+        f"sticks on {number(own.sticking_area)} and slips on {number(own.slipping_area)} of the area, carries "
+        f"{number(own.force_by_area)}{limit} by area, takes {number(own.work)} of work in the step"
+    )
 
 
 def _point(values: NDArray[np.float64], contact: ContactResult) -> str:

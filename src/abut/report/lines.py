@@ -24,7 +24,8 @@ OFF = 1e-3  # cuts pass beside the node of largest pressure, as a share of the w
 
 @dataclass(frozen=True)
 class Line:
-    """points (n, dim), distance along them (n,) with 0 at the largest pressure, pressure and gap (n,).
+    """points (n, dim), distance along them (n,) with 0 at the largest pressure, pressure and gap (n,); with friction the size
+    of the tangential traction and its limit (n,), the coefficient times the pressure.
 
     Two points in one place with different pressures are a jump between facets; gap is NaN where nothing lies opposite.
     """
@@ -34,6 +35,8 @@ class Line:
     distance: NDArray[np.float64]
     pressure: NDArray[np.float64]
     gap: NDArray[np.float64]
+    traction: NDArray[np.float64] | None = None
+    limit: NDArray[np.float64] | None = None
 
     def distance_from(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distance along the line with 0 where the line passes nearest to ``point``."""
@@ -50,7 +53,12 @@ def pressure_lines(contact: ContactResult) -> tuple[Line, ...]:
 
     None where nothing is pressed."""
     own = patch(contact.contactor, 8 if contact.contactor.dim == 2 else 4)
-    pressure, gap = own.nodal(contact.pressure), own.nodal(contact.gap)
+    nodal = [contact.pressure, contact.gap]
+    if contact.friction is not None:
+        limit = contact.friction.traction_limit
+        nodal += [np.linalg.norm(contact.friction.traction, axis=2), np.where(np.isfinite(limit), limit, np.nan)]
+    values = np.column_stack([own.nodal(field) for field in nodal])
+    pressure = values[:, 0]
     if not len(own) or not np.isfinite(contact.statistics.place).all():
         return ()
     x, size = own.points, float(np.ptp(own.points, axis=0).max())
@@ -63,8 +71,8 @@ def pressure_lines(contact: ContactResult) -> tuple[Line, ...]:
         cuts = [(label, *_cut(own, x, normal, size)) for label, normal in _planes(own, x, pressure, top)]
     lines = []
     for label, segments, ends, share in cuts:
-        at, p, g = (_between(values, ends, share) for values in (x, pressure, gap))
-        line = _walk(label, segments, at, p, g, x[top], 1e-9 * size)
+        at, along = (_between(field, ends, share) for field in (x, values))
+        line = _walk(label, segments, at, along, x[top], 1e-9 * size)
         if line is not None:
             lines.append(line)
     lengths = [float(np.ptp(line.distance)) for line in lines]
@@ -129,19 +137,19 @@ def _walk(
     label: str,
     segments: NDArray[np.int64],
     x: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    gap: NDArray[np.float64],
+    values: NDArray[np.float64],
     start: NDArray[np.float64],
     near: float,
 ) -> Line | None:
-    """Join segments end to end, both ways from the one nearest to ``start``, and keep the pressed part with some more."""
+    """Join segments end to end, both ways from the one nearest to ``start``, and keep the pressed part with some more;
+    values: (n, 2 or 4) pressure, gap, traction and its limit at the points x (n, dim)."""
     if not len(segments):
         return None
     way = _chain(segments, _places(x, near), int(np.argmin(np.linalg.norm(x[segments].mean(axis=1) - start, axis=1))))
     span = x[way[-1]] - x[way[0]]
     if span[np.argmax(np.abs(span))] < 0.0:
         way = way[::-1]
-    at, p = x[way], np.nan_to_num(pressure[way])
+    at, p = x[way], np.nan_to_num(values[way, 0])
     distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(at, axis=0), axis=1))])
     distance -= distance[np.argmax(p)]
     pressed = distance[p > NOTHING * p.max(initial=0.0)]
@@ -149,7 +157,7 @@ def _walk(
         return None
     more = AROUND * float(np.ptp(pressed))
     kept = (distance >= pressed.min() - more) & (distance <= pressed.max() + more)
-    return Line(label, at[kept], distance[kept], p[kept], gap[way][kept])
+    return Line(label, at[kept], distance[kept], p[kept], *values[way][kept].T[1:])
 
 
 def _places(x: NDArray[np.float64], near: float) -> NDArray[np.int64]:

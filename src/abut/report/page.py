@@ -19,14 +19,15 @@ from abut.errors import AbutError
 from abut.io.versions import versions
 from abut.report.contact_words import centre, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
+from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import Line, pressure_lines
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
-from abut.solution import Solution
+from abut.solution import ContactResult, Solution
 from abut.types import Json
 
-SCRIPTS = ("plots.js", "parts.js", "view.js", "report.js")
+SCRIPTS = ("plots.js", "parts.js", "arrows.js", "view.js", "report.js")
 STYLES = ("libraries.css", "report.css")
 
 
@@ -163,7 +164,9 @@ def _contacts(solution: Solution) -> str:
         for c in solution.contacts
     ]
     head = ["contact", "force on the contactor", "largest pressure", "area", "penetration", "active", "covered"]
-    return _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
+    text = _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
+    rubbing = friction_rows(solution)
+    return text + (_table(HEAD, rubbing, "Friction") if rubbing else "")
 
 
 def _statistics(solution: Solution) -> str:
@@ -261,6 +264,7 @@ def _convergence(solution: Solution) -> Json:
         "contact": _plain(row.contact_residual for row in rows),
         "active": [row.active for row in rows],
         "changed": [row.changed for row in rows],
+        "slipping": [row.slipping for row in rows if row.slipping is not None],
     }
 
 
@@ -275,10 +279,16 @@ def _history(solution: Solution) -> Json:
                 "force": _plain(float(np.linalg.norm(c.force)) for c in own),
                 "area": _plain(c.area for c in own),
                 "pressure": _plain(c.max_pressure for c in own),
+                "friction": _friction(own),
             }
             for name, own in zip(names, each)
         ],
     }
+
+
+def _friction(steps: Sequence[ContactResult]) -> Json | None:
+    found = friction_history([contact.friction for contact in steps])
+    return None if found is None else {name: _plain(values) for name, values in found.items()}
 
 
 def _charts(solution: Solution) -> list[Json]:
@@ -317,6 +327,8 @@ def _lines(solution: Solution, origin: Origin) -> list[Json]:
                     "distance": _plain(distance),
                     "pressure": _plain(line.pressure),
                     "gap": _plain(_opening(line)),
+                    "traction": None if line.traction is None else _plain(line.traction),
+                    "limit": None if line.limit is None else _plain(line.limit),
                     "theory": None if reference is None else _plain(reference),
                 }
             )

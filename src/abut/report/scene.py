@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from abut.mesh.mesh import Mesh
+from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction_fields
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import largest_pressure, point_fields, vectors
@@ -17,6 +18,7 @@ from abut.types import Array, Json
 BUDGET = 9_000_000  # bytes of arrays; a third more as text
 FINE = 30_000  # points on all contact surfaces together, above which they are divided more coarsely
 VALUES = 20  # bytes of a point in a step: displacement, von Mises and the like
+RUBBING = 32  # more of them on a contactor with friction: traction, slips, status, arrows
 FIXED = 36  # bytes of a point in all: coordinates, triangles, edges
 
 
@@ -56,6 +58,8 @@ def scene(solution: Solution, budget: int = BUDGET) -> Scene:
         reduced.append(f"the bodies are drawn by {now} of their {points} points; values are those of the points kept")
         points = now
     fixed, per_step = FIXED * (points + on_contacts), VALUES * (points + on_contacts)
+    rubbing = [p for (c, role), p in zip(sides, patches) if role == "contactor" and contacts[c].friction is not None]
+    per_step += RUBBING * sum(map(len, rubbing))
     steps = _kept(solution.steps, max(1, int((budget - fixed) // max(per_step, 1))))
     if len(steps) < len(solution.steps):
         reduced.append(f"the picture shows {len(steps)} of {len(solution.steps)} steps")
@@ -90,7 +94,12 @@ def _body(mesh: Mesh, name: str, own: Skin) -> Json:
 def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
     surface: Any = getattr(contact, role)
     body = next((i for i, cells in enumerate(mesh.bodies.values()) if np.isin(surface.cells[:1], cells).any()), 0)
+    arrows = {}
+    if role == "contactor" and contact.friction is not None:
+        nodes = arrow_nodes(contact)
+        arrows = {"arrows": {"points": pack(vectors(mesh.points[nodes])), "normals": pack(arrow_normals(contact, nodes))}}
     return {
+        **arrows,
         "contact": contact.name,
         "role": role,
         "surface": surface.name,
@@ -103,6 +112,7 @@ def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
 
 
 def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> Json:
+    """Values at the points of bodies and contact surfaces."""
     fields = point_fields(step)
     stress, moved = fields["von_mises"], fields["displacement"]
     bodies = [{"displacement": pack(moved[s.nodes]), "von Mises": pack(stress[s.nodes])} for s in skins]
@@ -117,6 +127,13 @@ def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches
         }
         if role == "contactor":
             values["gap"] = pack(own.nodal(contact.gap))
+        if role == "contactor" and contact.friction is not None:
+            values |= {name: pack(field) for name, field in friction_fields(contact.friction, own).items()}
+            nodes = arrow_nodes(contact)
+            values["arrows"] = {
+                "traction": pack(at_arrows(contact, nodes, np.nan_to_num(contact.friction.traction))),
+                "displacement": pack(vectors(step.displacement[nodes])),
+            }
         contacts.append(values)
     return {"number": step.number, "factor": step.factor, "bodies": bodies, "contacts": contacts}
 

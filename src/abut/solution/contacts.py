@@ -67,20 +67,57 @@ class Resultant:
 class FrictionResult:
     """Friction of one contact pair at the end of a step.
 
-    coefficient: infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets' own nodes,
-    tangential force per area; slip, total_slip: the same, length, of the contactor over the target, in this step and in all
-    steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 stuck, 2 slipping, of a node without a multiplier the
-    highest of its facet; sticking_area, slipping_area: as ``ContactResult.area``; work: that friction takes in this step.
+    coefficient: the largest, infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets'
+    own nodes, tangential force per area; traction_limit: (n_contactor_facets, 9) what its size can be there at most, the
+    coefficient times the pressure, infinite for "rough"; slip, total_slip: the same, length, of the contactor over the target, in this step
+    and in all steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 sticking, 2 slipping, of a node without a
+    multiplier the highest of its facet; NaN (0) where padded.
+    sticking_area, slipping_area: as ``ContactResult.area``.
+    work, total_work: that friction takes, force times length, in this step and in all; work_per_area, total_work_per_area:
+    (n_contactor_facets, 9) the same at the nodes.
+    force: (dim,) resultant of the traction on the contactor; force_by_area: of its size wherever it points, the integral of
+    |t| over the area; force_limit: what that can be at most, the integral of the coefficient times the pressure, infinite
+    for "rough"; all of the full circumference in axisymmetric models, per unit thickness in 2D.
+    largest_share: the largest traction over the coefficient times the pressure at one point, 1 where anything slips; NaN
+    where nothing is pressed, and for "rough".
     """
 
     coefficient: float
     traction: NDArray[np.float64]
+    traction_limit: NDArray[np.float64]
     slip: NDArray[np.float64]
     total_slip: NDArray[np.float64]
     status: NDArray[np.int32]
     sticking_area: float
     slipping_area: float
     work: float
+    total_work: float
+    work_per_area: NDArray[np.float64]
+    total_work_per_area: NDArray[np.float64]
+    force: NDArray[np.float64]
+    force_by_area: float
+    force_limit: float
+    largest_share: float
+
+    @property
+    def max_traction(self) -> float:
+        """Size of the largest tangential traction at a node, force per area."""
+        return _largest(self.traction, self.status >= 0)
+
+    @property
+    def max_slip(self) -> float:
+        """The largest slip at a node in contact in this step, length."""
+        return _largest(self.slip, self.status > 0)
+
+    @property
+    def max_total_slip(self) -> float:
+        """The largest slip at a node in all steps, length."""
+        return _largest(self.total_slip, self.status >= 0)
+
+
+def _largest(values: NDArray[np.float64], at: NDArray[np.bool_]) -> float:
+    """Size of the largest vector of (n_facets, 9, dim) at some nodes."""
+    return float(np.nanmax(np.linalg.norm(values[at], axis=-1), initial=0.0))
 
 
 @dataclass(frozen=True)

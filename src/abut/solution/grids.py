@@ -52,7 +52,8 @@ def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -
 
 def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (CONTACTOR, TARGET)) -> Grid:
     """Facets of a contact's sides with pressure, multiplier, gap, displacement, contact_force, node at points; status, side
-    and unsettled at cells; with friction also traction, slip, total_slip and friction_status at points (zero on the target).
+    and unsettled at cells; with friction also traction, slip, total_slip, friction_status, friction_work and
+    total_friction_work (per area) at points, zero on the target.
 
     Each facet has points of its own, so that the multiplier may jump between facets. contact_force (n, 3) is the force at
     the mesh's point ``node``, which all points of that number repeat: over the nodes of a side, each taken once, it adds up
@@ -125,12 +126,14 @@ def _side(
 
 
 def _friction(friction: FrictionResult, facets: NDArray[np.int64], n_nodes: int, side: int) -> dict[str, Array]:
-    """Tangential traction and slips (n, 3), and status (0 open, 1 stuck, 2 slipping), at the nodes of facets."""
+    """Tangential traction and slips (n, 3), status (0 open, 1 sticking, 2 slipping), and work per area in the step and in
+    all, at the nodes of facets."""
+    names = {name: name for name in ("traction", "slip", "total_slip")}
+    names |= {"friction_work": "work_per_area", "total_friction_work": "total_work_per_area", "friction_status": "status"}
     result: dict[str, Array] = {}
-    for name in ("traction", "slip", "total_slip"):
-        values = getattr(friction, name)
-        here = values[facets, :n_nodes] if side == CONTACTOR else np.zeros((len(facets), n_nodes, values.shape[2]))
-        result[name] = vectors(np.nan_to_num(here).reshape(-1, values.shape[2]))
-    status = friction.status[facets, :n_nodes] if side == CONTACTOR else np.zeros((len(facets), n_nodes), np.int32)
-    result["friction_status"] = status.ravel().astype(np.int32)
+    for name, attribute in names.items():
+        values = getattr(friction, attribute)
+        here = values[facets, :n_nodes] if side == CONTACTOR else np.zeros_like(values, shape=(len(facets), n_nodes, *values.shape[2:]))
+        flat = np.nan_to_num(here).reshape(-1, *values.shape[2:])
+        result[name] = vectors(flat) if flat.ndim == 2 else flat
     return result

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 class Iteration:
     """One Newton iteration: one row of the live table, one line of run.jsonl.
 
-    active: multipliers in contact, over all pairs; changed: how many changed since the iteration before;
+    active: multipliers in contact, over all pairs, with friction points; changed: how many changed since the iteration before;
     residual: equilibrium residual over the reference force; contact_residual: largest violation of the contact law over
-    the reference pressure; penetration: largest penetration over the contactor's facet size.
+    the reference pressure; penetration: largest penetration over the contactor's facet size; sticking, slipping: how many of
+    the active ones of pairs with friction do, None where there is none.
     """
 
     step: int
@@ -23,6 +24,13 @@ class Iteration:
     contact_residual: float
     penetration: float
     seconds: float
+    sticking: int | None = None
+    slipping: int | None = None
+
+    @property
+    def row(self) -> dict[str, int | float]:
+        """By name, without what does not exist: a line of run.jsonl."""
+        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 @dataclass(frozen=True)

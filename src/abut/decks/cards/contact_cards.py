@@ -6,18 +6,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from abut.decks.cards.cards import Card, Line, as_float, key, of
+from abut.decks.cards.friction_cards import changed, changes, friction
 from abut.decks.cards.mesh_cards import MeshCards
 from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import GeneralContact, Numbers, Pair
+from abut.decks.cards.record import NO_FRICTION, Friction, GeneralContact, Numbers, Pair
 from abut.errors import nearest
 
 
 @dataclass(frozen=True)
 class Interaction:
-    """What surfaces do to each other. overclosure: HARD, LINEAR, ...; friction: coefficient."""
+    """What surfaces do to each other. overclosure: HARD, LINEAR, ..."""
 
     overclosure: str = "HARD"
-    friction: float = 0.0
+    friction: Friction = NO_FRICTION
 
 
 OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
@@ -60,8 +61,8 @@ def _contact_pairs(
             if clearance is None:
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
         tied, name = own.overclosure == "TIED", f"{slave}-{master}"
-        adjust, friction = _adjust(card, mesh), 0.0 if tied else own.friction
-        result.append(Pair(name, slave, master, tied, own.overclosure, adjust, clearance, line.place, friction))
+        rub = NO_FRICTION if tied else own.friction
+        result.append(Pair(name, slave, master, tied, own.overclosure, _adjust(card, mesh), clearance, line.place, rub))
     return result
 
 
@@ -124,42 +125,32 @@ def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
 
 
 def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interaction]:
-    """Interactions by name."""
+    """Interactions by name, with the changes of their friction in later steps."""
     result: dict[str, Interaction] = {}
-    current = ""
+    current, change, step = "", "", 0
     for card in cards:
         with reasons.gathered(defines=True):
+            step += card.key == "STEP"
             if card.key == "SURFACEINTERACTION":
                 current = card.need("NAME").upper()
                 result[current] = Interaction()
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                overclosure = key(card.get("PRESSURE-OVERCLOSURE", "HARD") or "HARD")
-                if overclosure not in OVERCLOSURES:
-                    raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
-                result[current] = replace(result[current], overclosure=overclosure)
+                result[current] = replace(result[current], overclosure=_overclosure(card))
+            elif card.key == "CHANGEFRICTION":
+                change = changes(card, result)
             elif card.key == "FRICTION":
-                if not current:
+                if not (change or current):
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                result[current] = replace(result[current], friction=_coefficient(card))
+                own = result[change or current]
+                rub = changed(own.friction, card, step) if change else Friction(friction(card))
+                result[change or current], change = replace(own, friction=rub), ""
     return result
 
 
-def _coefficient(card: Card) -> float:
-    card.first("coefficient of friction")
-    if len(card.lines) > 1:
-        raise card.error("a coefficient that depends on anything is not supported; give one")
-    value = as_float(card.lines[0].text(0))
-    if value is None or value < 0.0:
-        raise card.error(f"expected a coefficient >= 0, got {card.lines[0].text(0)!r}")
-    return value
-
-
-def stick_slopes(cards: Sequence[Card]) -> list[str]:
-    """A note for each card with a stick slope, which abut's friction does without."""
-    return [
-        f"{card.place}: *FRICTION: the stick slope is left out: points stick exactly"
-        for card in cards
-        if card.key == "FRICTION" and card.lines and card.lines[0].text(1)
-    ]
+def _overclosure(card: Card) -> str:
+    overclosure = key(card.get("PRESSURE-OVERCLOSURE", "HARD") or "HARD")
+    if overclosure not in OVERCLOSURES:
+        raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
+    return overclosure

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from abut.decks.cards.cards import Card, as_float, key, read_cards
-from abut.decks.cards.contact_cards import general_contact, pairs, stick_slopes
+from abut.decks.cards.cards import Card, read_cards
+from abut.decks.cards.contact_cards import general_contact, pairs
+from abut.decks.cards.friction_cards import friction_notes, without_tied_friction
 from abut.decks.cards.mesh_cards import MeshCards, mesh_cards
 from abut.decks.cards.model_cards import (
     cyclic_symmetry,
@@ -31,8 +32,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
     reasons = Reasons()
-    sifted = sift(_without_void_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
-    notes += stick_slopes(sifted.cards)
+    sifted = sift(without_tied_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
     cards = sifted.cards
@@ -42,6 +42,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     pair_list = pairs(cards, mesh, reasons)
     general = general_contact(cards, reasons)
     named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
+    notes += friction_notes(cards)
     for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
         if overclosure not in ("HARD", "TIED"):
             notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
@@ -107,22 +108,3 @@ def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: 
                     notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
                 result.append(value)
     return tuple(result)
-
-
-def _without_void_friction(cards: Sequence[Card], notes: list[str]) -> list[Card]:
-    """Friction without effect: of tied contact, where the card only gives the stick stiffness, and with coefficient 0."""
-    result: list[Card] = []
-    tied = False
-    for card in cards:
-        if card.key == "SURFACEINTERACTION":
-            tied = False
-        elif card.key == "SURFACEBEHAVIOR":
-            tied = key(card.get("PRESSURE-OVERCLOSURE") or "") == "TIED"
-        elif card.key == "FRICTION":
-            if tied:
-                notes.append(f"{card.place}: *FRICTION of tied contact gives its stick stiffness; tied exactly instead")
-                continue
-            if card.lines and not card.parameters and all(as_float(line.text(0)) == 0.0 for line in card.lines):
-                continue
-        result.append(card)
-    return result

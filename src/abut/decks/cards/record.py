@@ -61,9 +61,21 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Friction:
+    """value: coefficient, "rough" (never slips), or pairs of pressure and coefficient; changes: number of a step, and the
+    coefficient from its beginning on."""
+
+    value: float | str | tuple[tuple[float, float], ...] = 0.0
+    changes: tuple[tuple[int, float], ...] = ()
+
+
+NO_FRICTION = Friction()
+
+
+@dataclass(frozen=True)
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
-    clearance: the gap given for all of the surface, None for the one of the mesh; friction: coefficient."""
+    clearance: the gap given for all of the surface, None for the one of the mesh."""
 
     name: str
     slave: str
@@ -73,7 +85,7 @@ class Pair:
     adjust: float | str | Numbers
     clearance: float | None
     place: Place
-    friction: float = 0.0
+    friction: Friction = NO_FRICTION
 
 
 @dataclass(frozen=True)
@@ -82,7 +94,7 @@ class GeneralContact:
 
     overclosure: str
     place: Place
-    friction: float = 0.0
+    friction: Friction = NO_FRICTION
 
     @property
     def tied(self) -> bool:

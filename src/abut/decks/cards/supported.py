@@ -31,7 +31,8 @@ READ: dict[str, tuple[str, ...]] = {
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
     "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR"),
     "SURFACE INTERACTION": ("NAME",),
-    "FRICTION": (),
+    "FRICTION": ("ROUGH", "LAGRANGE", "ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE"),
+    "CHANGE FRICTION": ("INTERACTION",),
     "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE"),
     "CONTACT": (),
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
@@ -86,7 +87,6 @@ REFUSED: dict[str, str] = {
     "BEAM SECTION": "beams are not supported; model the part with solid elements",
     "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
-    "CHANGE FRICTION": "friction that changes between steps is not supported; make a deck for each state",
     "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
     "CHANGE SURFACE BEHAVIOR": "contact that changes between steps is not supported; make a deck for each state",
     "CHANGE SOLID SECTION": "materials that change between steps are not supported; make a deck for each state",
@@ -140,6 +140,12 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
     ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
+    ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
+    ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
+    ("FRICTION", "ANISOTROPIC"): "friction that depends on the direction is not supported; give one coefficient",
+    ("FRICTION", "DEPENDENCIES"): "a coefficient over field variables is not supported; give one",
+    ("FRICTION", "USER"): "user subroutines are not read",
+    ("CHANGE FRICTION", "AMPLITUDE"): "a coefficient over time within a step is not read; it changes as a step begins",
     ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
 }
 GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
@@ -150,7 +156,7 @@ NEEDED = {  # leaving these out would leave no deck
     *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
 }
 
-LEFT_OUT = {"FRICTION"}  # cards that are read, and may be left out all the same
+LEFT_OUT = {"FRICTION", "CHANGEFRICTION"}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
@@ -181,6 +187,7 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
 
     Raises InputError for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
+    asked |= {"CHANGEFRICTION"} if "FRICTION" in asked else set()
     left = _without_steps(tuple(cards), asked)
     _check_asked(ignore, left)
     static = any(card.key == "STATIC" for card in left if isinstance(card, Card))

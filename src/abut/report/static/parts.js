@@ -4,9 +4,18 @@
 const MAPS = {
   "pressure": ["1b0c41", "4a0c6b", "781c6d", "a52c60", "cf4446", "ed6925", "fb9b06", "f7d13d", "fcffa4"],
   "gap": ["fde725", "b5de2b", "6ece58", "35b779", "1f9e89", "26828e", "31688e", "3e4989", "482878", "440154"],
+  "traction": ["f7fbff", "c6dbef", "6baed6", "3182bd", "225ea8", "253494", "081d58"],
+  "slip": ["fff7ec", "fee8c8", "fdd49e", "fdbb84", "fc8d59", "ef6548", "d7301f", "b30000", "7f0000"],
+  "slip in the step": ["fff7ec", "fee8c8", "fdd49e", "fdbb84", "fc8d59", "ef6548", "d7301f", "b30000", "7f0000"],
+  "friction work": ["fcfbfd", "dadaeb", "9e9ac8", "756bb1", "54278f", "3f007d"],
+  "status": ["b8bec6", "b8bec6", "e8a33d", "e8a33d", "e8a33d", "2a6fb5", "2a6fb5"],
   "von Mises": ["30123b", "4145ab", "4675ed", "39a2fc", "1bcfd4", "24eca6", "61fc6c", "a4fc3b", "d1e834", "f3c63a", "fe9b2d", "f36315", "d93806", "b11901", "7a0402"],
   "displacement": ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"],
 };
+
+const STATUS = [["open", "b8bec6"], ["slipping", "e8a33d"], ["sticking", "2a6fb5"]]; // by its value as drawn
+const FROM_ZERO = ["pressure", "traction", "slip", "slip in the step", "friction work"];
+const ON_BODIES = ["von Mises", "displacement"];
 
 function unpack(array) {
   const text = atob(array.data);
@@ -162,9 +171,9 @@ class Part {
     return (own.array ||= unpack(own));
   }
 
-  // Put the part where it is at a step, deformed ``scale`` times; a fence as high as ``height`` times its value.
-  update(step, scale, name, height) {
-    const u = this.displacement(step), values = this.field(step, name);
+  // Put the part where it is at a step, deformed ``scale`` times; a fence as high as ``height`` times the field ``tall``.
+  update(step, scale, name, tall, height) {
+    const u = this.displacement(step), values = this.field(step, name), high = this.kind === "fence" ? this.field(step, tall) : null;
     const position = this.geometry.attributes.position, value = this.geometry.attributes.value.array;
     const moved = this.kind === "fence" ? new Float32Array(this.base.length) : this.place.array;
     for (let i = 0; i < moved.length; i++) moved[i] = this.base[i] + scale * u[i];
@@ -172,7 +181,7 @@ class Part {
       const k = this.map[i], known = values !== null && !Number.isNaN(values[k]);
       value[2 * i] = known ? values[k] : 0;
       value[2 * i + 1] = known ? 1 : 0;
-      const up = this.kind === "fence" && i % 4 > 1 && known ? height * Math.max(values[k], 0) : 0;
+      const up = high !== null && i % 4 > 1 && high[k] > 0 ? height * high[k] : 0;
       for (let c = 0; c < 3; c++) position.array[3 * i + c] = moved[3 * k + c] + (up ? up * this.out[3 * k + c] : 0);
     }
     position.needsUpdate = this.place.needsUpdate = this.geometry.attributes.value.needsUpdate = true;

@@ -80,6 +80,8 @@ function drawPlots(data) {
   if (data.probes.length) at("probes");
   for (const line of data.lines) {
     const series = [{ label: "pressure", values: line.pressure, colour: "accent", points: false }];
+    if (line.traction) series.push({ label: "tangential traction", values: line.traction, colour: "good", points: false });
+    if (line.limit) series.push({ label: "its limit", values: line.limit, colour: "good", dash: [3, 4], width: 1.2, points: false });
     if (line.theory) series.push({ label: "theory", values: line.theory, colour: "second", dash: [6, 5], points: false });
     if (line.gap.some((v) => v != null)) series.push({ label: "gap", values: line.gap, colour: "third", right: true, width: 1.2, points: false });
     plot(lines, `${line.contact}: pressure ${line.label}`, `distance from ${line.zero}`, line.distance, series);
@@ -105,6 +107,7 @@ function drawPlots(data) {
   plot(convergence, "Active set", "iteration", count, [
     { label: "in contact", values: run.active, colour: "accent" },
     { label: "changed", values: run.changed, colour: "second" },
+    ...(run.slipping.length ? [{ label: "slipping", values: run.slipping, colour: "third" }] : []),
   ], whole);
   const history = at("history");
   if (data.history.factor.length > 1) {
@@ -113,5 +116,18 @@ function drawPlots(data) {
       plot(history, title, "time (share of the load, where no amplitude says otherwise)", data.history.factor,
         data.history.contacts.map((c, i) => ({ label: c.name, values: c[key], colour: colours[i % colours.length] })));
     }
+    for (const c of data.history.contacts.filter((own) => own.friction)) drawFriction(history, data.history.factor, c);
   }
+}
+
+// Over the steps: force of friction by area with what it can be at most, and its work with the slipping area.
+function drawFriction(parent, factor, contact) {
+  const own = contact.friction, time = "time (share of the load, where no amplitude says otherwise)";
+  const limit = own.limit.some((v) => v != null) ? [{ label: "at most", values: own.limit, colour: "second", dash: [6, 5] }] : [];
+  plot(parent, `${contact.name}: friction force by area`, time, factor, [{ label: "friction force", values: own.force, colour: "accent" }, ...limit]);
+  plot(parent, `${contact.name}: work of friction`, time, factor, [{ label: "work in all", values: own.work, colour: "accent" }]);
+  plot(parent, `${contact.name}: area`, time, factor, [
+    { label: "sticking", values: own.sticking, colour: "accent" },
+    { label: "slipping", values: own.slipping, colour: "second" },
+  ]);
 }

@@ -50,15 +50,24 @@
       bottom.value = Number(low.toPrecision(5));
       middle.forEach((m, i) => { m.textContent = "\u2002" + short(Number((low + ((3 - i) / 4) * (high - low)).toPrecision(4))); });
     };
-    return [element("div", { id: "bar" }, canvas, element("div", {}, top, ...middle, bottom)), show];
+    const bar = element("div", { id: "bar" }, canvas, element("div", {}, top, ...middle, bottom));
+    const legend = element("div", { id: "legend" }, ...STATUS.map(([name, shade]) => element("p", {}, element("i", { style: `background:#${shade}` }), name)));
+    const either = () => {
+      const categories = view.state.field === "status";
+      bar.hidden = categories;
+      legend.hidden = !categories;
+      if (!categories) show();
+    };
+    return [element("div", {}, bar, legend), either];
   }
 
   function panel(view) {
     const s = view.state, scene = data.scene, at = document.getElementById("panel");
     const heading = (text) => element("h4", { textContent: text });
-    const fields = Object.keys(MAPS).filter((f) => scene.contacts.length || (f !== "pressure" && f !== "gap"));
+    const fields = Object.keys(MAPS).filter((f) => ON_BODIES.includes(f) || view.has(f));
     const [bar, showBar] = colourBar(view);
     at.append(heading("Colour"), choice(fields, s.field, (f) => { s.field = f; showBar(); view.apply(); }), bar);
+    if (view.arrows.length) at.append(tick("arrows: tangential traction", s.arrows, (on) => { s.arrows = on; view.apply(); }));
     at.append(tick("bands of colour", s.bands, (on) => { s.bands = on; view.apply(); }));
     at.append(tick("mesh", s.mesh, (on) => { s.mesh = on; view.apply(); }));
     showBar();
@@ -109,7 +118,8 @@
       const hit = view.pick((e.clientX - frame.left) / frame.width, (e.clientY - frame.top) / frame.height);
       box.hidden = !hit;
       if (!hit) return;
-      const values = Object.entries(hit.values).map(([name, v]) => `${name}: ${v.toPrecision(6)}`);
+      const words = (name, v) => name === "status" ? STATUS[Math.round(v)][0] : v.toPrecision(6);
+      const values = Object.entries(hit.values).map(([name, v]) => `${name}: ${words(name, v)}`);
       box.textContent = [hit.name, `(${hit.point.map(short).join(", ")})`, ...values].join("\n");
     });
   }

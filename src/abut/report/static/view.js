@@ -19,8 +19,10 @@ class View {
     this.sides = scene.contacts.map((c) => (this.flat ? new Part(c, "fence", true) : new Part(c, "side", false)));
     if (this.flat) this.sides.forEach((s) => { if (s.item.role !== "contactor") s.mesh.visible = s.grid.visible = false; });
     for (const part of [...this.bodies, ...this.sides]) this.world.add(part.mesh, part.features, part.grid);
+    this.arrows = scene.contacts.filter((c) => c.arrows).map((c) => new Arrows(c, this.flat));
+    for (const own of this.arrows) this.world.add(own.mesh);
     this.state = {
-      step: scene.steps.length - 1, scale: 1, bands: false, mesh: this.triangles() < 40000,
+      step: scene.steps.length - 1, scale: 1, bands: false, mesh: this.triangles() < 40000, arrows: !this.flat,
       field: scene.contacts.length ? (this.flat ? "von Mises" : "pressure") : "von Mises",
       bodies: this.bodies.map(() => "solid"), sides: this.sides.map((s) => s.item.role === "contactor"), range: {},
     };
@@ -156,7 +158,9 @@ class View {
       }
     }
     if (!(high >= low)) [low, high] = [0, 1];
-    if (name === "pressure") low = 0;
+    if (name === "status") return (this.extents[name] = [-0.5, 2.5]);
+    if (FROM_ZERO.includes(name)) low = 0;
+    if (low === 0 && high === 0) high = 1;
     const counted = this.data.largest[name]; // nodes hardly covered do not set the scale
     if (counted > 0) high = Math.min(high, counted);
     if (name === "gap" && high < 1e-9 * this.size) [low, high] = [0, 1e-9 * this.size]; // rounding
@@ -170,9 +174,10 @@ class View {
     const s = this.state, [low, high] = this.range(s.field);
     const [, tallest] = this.extent(this.fence());
     const height = tallest > 0 ? (0.12 * this.size) / tallest : 0;
-    for (const part of this.bodies) part.update(this.step, s.scale, s.field, 0);
-    for (const part of this.sides) part.update(this.step, s.scale, this.flat ? this.fence() : s.field, height);
-    const onBodies = s.field === "von Mises" || s.field === "displacement";
+    const onBodies = ON_BODIES.includes(s.field);
+    for (const part of this.bodies) part.update(this.step, s.scale, s.field, "", 0);
+    for (const part of this.sides) part.update(this.step, s.scale, this.flat && onBodies ? this.fence() : s.field, this.fence(), height);
+    this.drawArrows();
     const style = (part, body, coloured, shown) => {
       const u = part.mesh.material.uniforms, how = s.bodies[body];
       const ghost = how === "ghost" && !shown;
@@ -184,8 +189,8 @@ class View {
       u.map.value = this.maps[s.field];
       u.low.value = low;
       u.high.value = high;
-      u.bands.value = s.bands ? 12 : 0;
-      u.nothing.value = s.field === "pressure" ? 1e-3 * high : -1e30;
+      u.bands.value = s.field === "status" ? STATUS.length : s.bands ? 12 : 0;
+      u.nothing.value = FROM_ZERO.includes(s.field) ? 1e-3 * high : -1e30;
       const ink = document.documentElement.dataset.theme === "dark" ? "#e8edf3" : "#1a222c";
       for (const lines of [part.features, part.grid]) lines.material.uniforms.ink.value.setStyle(ink, RAW);
       part.features.material.uniforms.opacity.value = ghost ? 0.35 : 0.75;
@@ -197,7 +202,7 @@ class View {
     this.sides.forEach((part, i) => {
       style(part, part.item.body, s.sides[i] || onBodies, s.sides[i]);
       if (!this.flat) return;
-      const u = part.mesh.material.uniforms, same = s.field === this.fence();
+      const u = part.mesh.material.uniforms, same = !onBodies;
       part.mesh.visible = part.grid.visible = s.sides[i] && part.item.role === "contactor";
       part.grid.material.uniforms.opacity.value = 0.8;
       Object.assign(part.mesh.material, { transparent: true, depthTest: false });
@@ -209,8 +214,22 @@ class View {
     this.draw();
   }
 
+  // Whether any contact surface has a field.
+  has(name) { return this.sides.some((part) => part.field(this.step, name)); }
+
   // What is drawn across the contactor's line in 2D.
-  fence() { return this.state.field === "gap" ? "gap" : "pressure"; }
+  fence() { return [...ON_BODIES, "status"].includes(this.state.field) ? "pressure" : this.state.field; }
+
+  // The tangential traction on the contactors that are shown.
+  drawArrows() {
+    const s = this.state;
+    this.most ||= Math.max(0, ...this.arrows.flatMap((own) => this.data.steps.map((step) => own.largest(step))));
+    for (const own of this.arrows) {
+      own.mesh.visible = s.arrows && s.sides[own.item.number] && this.most > 0;
+      own.mesh.material.uniforms.ink.value.setStyle(s.field === "pressure" ? "#22c7e8" : "#12181f", RAW);
+      if (own.mesh.visible) own.update(this.step, s.scale, this.most);
+    }
+  }
 
   draw() { this.renderer.render(this.world, this.camera); }
 

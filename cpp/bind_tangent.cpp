@@ -1,0 +1,58 @@
+// Derivatives of the coupling for Python; arguments are checked there.
+#include "bind_surfaces.hpp"
+#include "tangent.hpp"
+
+namespace abut {
+
+static nb::tuple to_python(const Blocks &blocks, std::size_t rows, std::size_t height, std::size_t width) {
+  CompressedBlocks c = compress(blocks, rows, height * width);
+  const std::size_t n = c.column.size();
+  return nb::make_tuple(to_numpy(std::move(c.value), {n, height, width}), to_numpy(std::move(c.column)),
+                        to_numpy(std::move(c.start)));
+}
+
+static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kinds_c, Matrix<std::int32_t> nodes_c,
+                               Tensor3<double> normals, Matrix<double> points_t, Vector<std::uint8_t> kinds_t,
+                               Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
+                               Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
+                               Vector<std::int32_t> subdivide_t, int degree, bool axisymmetric, double reach,
+                               double rounding, bool hidden, Matrix<double> pressure, Tensor3<double> traction,
+                               Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points) {
+  SurfaceView contactor = view(points_c, kinds_c, nodes_c);
+  const SurfaceView target = view(points_t, kinds_t, nodes_t);
+  contactor.normals = normals.data();
+  const RuleTable rule_table = table(rules);
+  const std::size_t dim = contactor.dim, rows = MAX_FACET_NODES * contactor.facets;
+  if (pressure.shape(0) != contactor.facets || pressure.shape(1) != MAX_FACET_NODES)
+    throw nb::value_error("pressure must be (facets, MAX_FACET_NODES)");
+  TangentLists lists;
+  {
+    nb::gil_scoped_release release;
+    const Load load{pressure.data(), traction.shape(0) ? traction.data() : nullptr};
+    lists = tangent({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
+                    rule_table, {degree, true, false, false, axisymmetric, reach, rounding, hidden}, load,
+                    {normal_numbers.data(), target_offset});
+  }
+  nb::dict out;
+  out["moment_by_points"] = to_python(lists.moment.by_points, rows, 2, dim);
+  out["moment_by_normals"] = to_python(lists.moment.by_normals, rows, 2, dim);
+  out["force_by_points"] = to_python(lists.force.by_points, n_points, dim, dim);
+  out["force_by_normals"] = to_python(lists.force.by_normals, n_points, dim, dim);
+  const std::size_t loads = lists.loaded.size();
+  out["loaded"] = to_numpy(std::move(lists.loaded));
+  out["load"] = to_numpy(std::move(lists.load), {loads, dim});
+  return out;
+}
+
+void bind_tangent(nb::module_ &m) {
+  m.def("couple_tangent", &couple_tangent, nb::arg("points_c").noconvert(), nb::arg("kinds_c").noconvert(),
+        nb::arg("nodes_c").noconvert(), nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(),
+        nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
+        nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
+        nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("axisymmetric"), nb::arg("reach"),
+        nb::arg("rounding"), nb::arg("hidden"), nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(),
+        nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"),
+        "Derivatives of the coupling by points and nodal normals; see abut.contact.coupling_tangent.");
+}
+
+} // namespace abut

@@ -1,0 +1,92 @@
+"""Energy over a load step with friction, theory (R7): what forces do on the way from one converged state to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.problem.linearised import Linearised
+from abut.solution import ContactResult
+from abut.solution.energy import Energy
+
+NOTHING = 1e-12  # energy over the largest so far that is taken for none: a millionth of forces and of motions
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
+    internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: what the forces on these have left at most."""
+
+    displacement: Vector
+    prescribed: Vector
+    internal: Vector
+    loads: Vector
+    reaction: Vector
+    pressing: Vector
+    tractions: Sequence[Vector]
+    free: Vector
+    residual: float = 0.0
+
+    @classmethod
+    def none(cls, prescribed: Vector, system: Linearised) -> Acting:
+        """Before the first step: nothing acts. prescribed: displacement (dim n_points,) at the outset."""
+        nothing = np.zeros_like(prescribed)
+        tractions = [np.zeros(len(pair) - len(pair.space)) if pair.frictional else np.zeros(0) for pair in system.pairs]
+        free = np.zeros(len(system.load))
+        return cls(prescribed, prescribed, nothing, nothing, nothing, nothing, tractions, free)
+
+
+def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
+    """Nodal forces of all pressures and ties, without friction, (dim n_points,)."""
+    force = np.zeros(system.pairs[0].rows.shape[1])
+    for pair, own in zip(system.pairs, multipliers):
+        part = pair.normal if pair.frictional else slice(None)
+        force += pair.rows[part].T @ own[part]
+    return force
+
+
+def tractions(system: Linearised, multipliers: Sequence[Vector]) -> list[Vector]:
+    """Multipliers of friction of each pair, none without."""
+    return [own[pair.tangential] if pair.frictional else own[:0] for pair, own in zip(system.pairs, multipliers)]
+
+
+def energy(
+    system: Linearised,
+    before: Acting,
+    now: Acting,
+    slips: Sequence[Vector | None],
+    contacts: Sequence[ContactResult],
+    earlier: float = 0.0,
+) -> Energy:
+    """Of the step between two states. slips: (n, 3) of each pair's multipliers, in the step, in all, and what came closer
+    without slip, None without friction; contacts: their results; earlier: the largest size of the steps before, beside which what is left after unloading is rounding."""
+    moved = now.displacement - before.displacement
+    given = now.prescribed - before.prescribed
+
+    def mean(name: str) -> Vector:
+        return np.asarray(0.5 * (getattr(before, name) + getattr(now, name)))
+
+    stepping = closing = 0.0
+    for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
+        if pair.frictional and slip is not None:
+            step, _, came = (pair.weight[:, None] * slip)[pair.tangential].T
+            stepping += 0.5 * float(step @ (late - early))
+            closing += 0.5 * float(came @ (late + early))
+    internal, step = mean("internal"), np.abs(now.free - before.free)
+    rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
+    unbalanced = max(before.residual, now.residual) * step.sum()
+    return Energy(
+        loads=float(mean("loads") @ moved),
+        supports=float(mean("reaction") @ given),
+        contact=float(mean("pressing") @ moved) + closing,
+        stored=float(internal @ moved),
+        friction=sum(c.friction.work for c in contacts if c.friction is not None),
+        stepping=stepping,
+        size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
+        left=float(rounding + unbalanced),
+    )

@@ -1,0 +1,24 @@
+"""Friction of a deck's contact as the options of a contact."""
+
+from __future__ import annotations
+
+from abut.decks.cards.record import Deck, Friction
+from abut.decks.cards.time_histories import RAMP, ends
+from abut.model import Amplitude
+from abut.types import Json
+
+
+def friction_options(deck: Deck, friction: Friction) -> Json:
+    """The keys of ``Contact``. A coefficient that changes does so at the beginning of its step."""
+    if not friction.changes or not isinstance(friction.value, float):
+        return {"friction": friction.value}
+    starts = (0.0, *ends(deck)[:-1])
+    points = [(0.0, friction.value)]
+    for step, value in friction.changes:
+        start = starts[step - 1]
+        jump = start + RAMP * (ends(deck)[step - 1] - start)
+        points = [p for p in points if p[0] < start] + [(start, points[-1][1]), (jump, value)]
+    largest = max(value for _, value in points)
+    if largest == 0.0:
+        return {"friction": 0.0}
+    return {"friction": largest, "friction_amplitude": Amplitude(tuple((t, value / largest) for t, value in points))}

@@ -1,0 +1,115 @@
+"""Hyperelastic materials for finite deformation, theory (D3), (D4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from abut import checks
+from abut.errors import InputError
+from abut.materials.elastic import LinearElastic, lame
+from abut.materials.material import Array, Evaluated, Material
+
+VOLUMETRIC = ("square-log", "log-squared", "isochoric")
+SAINT_VENANT_KIRCHHOFF = 0
+CODES = {"log-squared": 1, "square-log": 2, "isochoric": 3}  # of the compiled core
+
+
+@dataclass(frozen=True)
+class NeoHooke:
+    """Compressible neo-Hookean material, for kinematics "finite".
+
+    young, poisson: as small strains see them; or in their place
+    shear:      shear modulus mu, > 0, and one of
+    bulk:       bulk modulus K = lambda + 2 mu / 3, > 0;
+    lame:       Lame's first constant lambda.
+    volumetric: the energy of volume changes, with J = det F. "square-log": lambda/2 ((J^2 - 1)/2 - ln J); "log-squared":
+                lambda/2 (ln J)^2; both beside mu/2 (tr C - 3) - mu ln J. "isochoric": K/2 (J - 1)^2, beside
+                mu/2 (J^(-2/3) tr C - 3), for materials that hardly change their volume.
+    density, expansion: as of ``LinearElastic``, per undeformed volume.
+
+    >>> import abut
+    >>> rubber = abut.NeoHooke(shear=0.8, bulk=400.0, volumetric="isochoric")
+    >>> round(rubber.linear.poisson, 4)
+    0.499
+    """
+
+    young: float | None = None
+    poisson: float | None = None
+    shear: float | None = None
+    bulk: float | None = None
+    lame: float | None = None
+    volumetric: str = "square-log"
+    density: float = 0.0
+    expansion: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks.choice(self.volumetric, "volumetric", VOLUMETRIC)
+        given = [name for name in ("young", "poisson", "shear", "bulk", "lame") if getattr(self, name) is not None]
+        if given not in (["young", "poisson"], ["shear", "bulk"], ["shear", "lame"]):
+            raise InputError(
+                "constants: expected young and poisson, shear and bulk, or shear and lame; got "
+                f"{' and '.join(given) or 'none of them'}"
+            )
+        for name in given:
+            checks.finite(getattr(self, name), name)
+        if self.shear is not None:
+            checks.positive(self.shear, "shear")
+            if not self.moduli[0] + 2.0 * self.shear / 3.0 > 0.0:
+                what = f"bulk: expected a number > 0, got {self.bulk!r}"
+                raise InputError(
+                    what if self.lame is None else f"lame: expected more than -2/3 of shear, got {self.lame!r}"
+                )
+        LinearElastic(self.linear.young, self.linear.poisson, self.density, self.expansion)
+
+    @property
+    def moduli(self) -> tuple[float, float]:
+        """Lame's constants lambda and mu, force per area."""
+        if self.shear is None:
+            return lame(LinearElastic(float(self.young or 0.0), float(self.poisson or 0.0)), None)
+        if self.lame is not None:
+            return self.lame, self.shear
+        return float(self.bulk or 0.0) - 2.0 * self.shear / 3.0, self.shear
+
+    @property
+    def linear(self) -> LinearElastic:
+        """The material that it is under small strains."""
+        lambda_, mu = self.moduli
+        poisson = 0.5 * lambda_ / (lambda_ + mu)
+        return LinearElastic(2.0 * mu * (1.0 + poisson), poisson, self.density, self.expansion)
+
+    @property
+    def constant(self) -> bool:
+        """False, as in ``Material``."""
+        return False
+
+    @property
+    def modulus(self) -> float:
+        """Young's modulus at rest."""
+        return self.linear.young
+
+    def initial(self, n: int) -> Array:
+        """It has no history: (n, 0)."""
+        return np.zeros((n, 0))
+
+    def evaluate(self, strain: Array, history: Array) -> Evaluated:
+        """As in ``Material``, for small strains."""
+        return self.linear.evaluate(strain, history)
+
+
+def law(material: Material) -> tuple[int, tuple[float, float]] | None:
+    """Code of a material's law under finite strains and its two constants, as the compiled core takes them; None for users'
+    own materials, whose strains are small."""
+    if isinstance(material, LinearElastic):
+        return SAINT_VENANT_KIRCHHOFF, lame(material, None)
+    if isinstance(material, NeoHooke):
+        lambda_, mu = material.moduli
+        first = lambda_ + 2.0 * mu / 3.0 if material.volumetric == "isochoric" else lambda_
+        return CODES[material.volumetric], (first, mu)
+    return None
+
+
+def at_rest(material: Material) -> Material:
+    """What a material is under small strains."""
+    return material.linear if isinstance(material, NeoHooke) else material

@@ -1,0 +1,42 @@
+"""Energy over a load step of a model with friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+ENERGY = 1e-8  # limit of the error of the balance
+ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and where far motions leave no more digits
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Where the energy of one load step comes from and where it goes, theory (R7): loads + supports + contact = stored +
+    friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
+
+    loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
+    the bodies, where interference grows or gaps close or open within the step; stored: change of the strain energy; friction:
+    that friction takes with the traction at the step's end, as in ``FrictionResult.work``; stepping: what the work of a
+    traction that grows in proportion over the step differs from that, of second order in the step.
+    size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
+    displacements in double precision and the tolerance of equilibrium may leave open.
+    """
+
+    loads: float
+    supports: float
+    contact: float
+    stored: float
+    friction: float
+    stepping: float
+    size: float
+    left: float
+
+    @property
+    def error(self) -> float:
+        """What is missing in the balance, over the size."""
+        missing = self.loads + self.supports + self.contact - self.stored - self.friction - self.stepping
+        return abs(missing) / self.size
+
+    @property
+    def limit(self) -> float:
+        """Of the error: at least and at most fixed shares of the size."""
+        return min(max(ENERGY, self.left / self.size), ROUNDED)
