@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
-from abut.analysis.statistics import cross
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult

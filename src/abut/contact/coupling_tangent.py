@@ -139,7 +139,9 @@ def _turning(surface: Surface, across: Smoothing, visits: NDArray[np.int64], n_p
     sums = sp.csr_matrix((np.ones(len(here)), (here, other)), shape=(len(visits), len(own)))
     n = np.arange(len(visits) + 1)
     project = sp.bsr_matrix((across_it, n[:-1], n))
-    return (project.tocsr() @ (sp.kron(sums, sp.identity(surface.dim), format="csr") @ _swelling(surface, n_points))).tocsr()
+    return (
+        project.tocsr() @ (sp.kron(sums, sp.identity(surface.dim), format="csr") @ _swelling(surface, n_points))
+    ).tocsr()
 
 
 def _swelling(surface: Surface, n_points: int) -> Sparse:
@@ -161,9 +163,7 @@ def _swelling(surface: Surface, n_points: int) -> Sparse:
     step = np.arange(dim)
     i = np.broadcast_to(dim * row[:, None, None] + step[:, None], value.shape)
     j = np.broadcast_to(dim * column[:, None, None].astype(np.int64) + step, value.shape)
-    return sp.csr_matrix(
-        (value.ravel(), (i.ravel(), j.ravel())), shape=(dim * int(used.sum()), dim * n_points)
-    )
+    return sp.csr_matrix((value.ravel(), (i.ravel(), j.ravel())), shape=(dim * int(used.sum()), dim * n_points))
 
 
 def _area_rates(surface: Surface, kind: str, nodes: Array) -> NDArray[np.float64]:
