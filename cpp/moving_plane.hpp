@@ -12,8 +12,8 @@ struct Rows2 {
   explicit operator bool() const { return x; }
 };
 
-// The plane turns with the corners of its facet. That its origin and its axes move within it changes no integral, so they
-// are taken as fixed: only the tilt remains, the change of its normal along e1 and e2.
+// The plane turns with the corners of its facet. That its origin and its axes move within it changes no integral, so
+// they are taken as fixed: only the tilt remains, the change of its normal along e1 and e2.
 class MovingPlane {
 public:
   explicit MovingPlane(const Contactor3 &c) : c_(c), own_(6 * c.facet.nodes) {

@@ -12,8 +12,8 @@ struct MovingSide {
 // Follows `Outline`, edge by edge, with rows for its ends and bulges.
 class MovingOutline {
 public:
-  // Edges of `polygon` that lie on an edge of the contactor's piece `mine` count as that edge, whichever they were cut by:
-  // the facet's own rim must move with the facet.
+  // Edges of `polygon` that lie on an edge of the contactor's piece `mine` count as that edge, whichever they were cut
+  // by: the facet's own rim must move with the facet.
   MovingOutline(MovingEdges &edges, const Polygon &polygon, int mine, const Piece &own)
       : edges_(edges), polygon_(polygon) {
     for (int i = 0; i < polygon.size; ++i)

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import beam, contrast, convergence, fits, hertz, patch, punches, stability
+from abut.benchmarks import (
+    beam,
+    contrast,
+    convergence,
+    finite_beams,
+    finite_rubber,
+    finite_uniform,
+    fits,
+    hertz,
+    patch,
+    punches,
+    stability,
+)
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
@@ -18,5 +30,8 @@ BENCHMARKS: dict[str, Benchmark] = {
         *beam.BENCHMARKS,
         *stability.BENCHMARKS,
         *convergence.BENCHMARKS,
+        *finite_uniform.BENCHMARKS,
+        *finite_beams.BENCHMARKS,
+        *finite_rubber.BENCHMARKS,
     )
 }

@@ -1,4 +1,4 @@
-"""Forces, tangent stiffness, stresses and strain energy of solids under finite strains; theory (D1) to (D8)."""
+"""Forces, tangent stiffness, stresses and strain energy of solids under finite strains; theory (D1), (D2)."""
 
 from __future__ import annotations
 

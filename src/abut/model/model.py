@@ -36,7 +36,7 @@ class Model:
     one of ``solids`` or ``rigid``.
 
     ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
-    forces and pressures in the deformed configuration, theory (D1)).
+    forces and pressures in the deformed configuration; theory (D1)).
 
     >>> import abut
     >>> from abut.mesh import make

@@ -151,7 +151,7 @@ class ContactProblem:
         self, shares: Sequence[Share], at: NDArray[np.float64], force: NDArray[np.float64], stiffness: Operator
     ) -> Expansion | None:
         """The state of finite deformation; forces are judged against the largest one, reactions among them, and at least
-        against what a strain of ``SLIGHT`` makes of a cell."""
+        against what a strain of ``SLIGHT`` makes of a cell, theory (D13)."""
         if not self.model.finite:
             return None
         points = self.model.mesh.points
