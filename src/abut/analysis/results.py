@@ -16,7 +16,7 @@ from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.nonlinear.friction import TOLERANCE
+from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.follower_loads import FollowerLoads
