@@ -45,8 +45,8 @@ def test_example_runs_and_balances(path: Path) -> None:
 
 
 def test_twisted_hub() -> None:
-    """The torque that slips is 2 pi r^2 L mu p with the mean pressure, but for facets of 11 degrees (a half per cent); then the
-    flange's work, torque times angle, is what friction takes."""
+    """The torque that slips is 2 pi r^2 L mu p with the mean pressure, but for facets of 11 degrees (a half per cent); then
+    the flange's work, torque times angle, is what friction takes."""
     solution = abut.solve(load_job(FOLDER / "twisted-hub" / "job.toml").model)
     last, (contact, _) = solution.steps[-1], solution.contacts
     torque = last.rigid["flange"].moment[2]

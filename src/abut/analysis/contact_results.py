@@ -124,6 +124,7 @@ def contact_result(
     nodal = raw if at is None else at_facet_nodes(at.surface, _reported(own, at))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, own, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
@@ -155,9 +156,9 @@ def contact_result(
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(
-            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
-        ),
+        friction=None
+        if at is None
+        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, before),
     )
 
 

@@ -37,8 +37,8 @@ class Sides:
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet; tangents: (n_functions, dim - 1, dim) and normals:
-    (n_functions, dim), from target to contactor, unit, at the place of each function of the pressure, ``points`` (n_functions, dim);
+    """What makes tangential rows. operators: by facets; tangents: (n_functions, dim - 1, dim), normals: (n_functions, dim)
+    from target to contactor, unit, at the place of each function of the pressure, ``points`` (n_functions, dim);
     at_facets: (n_facets, 9, dim) normals of the contactor, None for large sliding."""
 
     operators: SlipOperators
