@@ -64,7 +64,8 @@ def energy(
     earlier: float = 0.0,
 ) -> Energy:
     """Of the step between two states. slips: (n, 3) of each pair's multipliers, in the step, in all, and what came closer
-    without slip, None without friction; contacts: their results; earlier: the largest size of the steps before, beside which what is left after unloading is rounding."""
+    without slip, None without friction; contacts: their results; earlier: the largest size of the steps before, beside
+    which what is left after unloading is rounding."""
     moved = now.displacement - before.displacement
     given = now.prescribed - before.prescribed
 
