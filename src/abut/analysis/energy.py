@@ -20,7 +20,7 @@ Vector = NDArray[np.float64]
 class Acting:
     """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
     internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
-    each pair's multipliers of friction; free: (n_free,) displacements."""
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these."""
 
     displacement: Vector
     prescribed: Vector
@@ -30,6 +30,7 @@ class Acting:
     pressing: Vector
     tractions: Sequence[Vector]
     free: Vector
+    residual: float = 0.0
 
     @classmethod
     def none(cls, prescribed: Vector, system: Linearised) -> Acting:
@@ -74,8 +75,9 @@ def energy(
     for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
         if pair.frictional and slip is not None:
             stepping += 0.5 * float((pair.weight * slip)[pair.tangential] @ (late - early))
-    internal, free = mean("internal"), now.free
-    diagonal = system.stiffness.diagonal()
+    internal, step = mean("internal"), np.abs(now.free - before.free)
+    rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
+    unbalanced = max(before.residual, now.residual) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
@@ -84,5 +86,5 @@ def energy(
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,
         size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
-        rounding=float(np.finfo(float).eps * (diagonal * np.abs(free)) @ np.abs(free - before.free)),
+        left=float(rounding + unbalanced),
     )

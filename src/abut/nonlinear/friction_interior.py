@@ -1,0 +1,317 @@
+"""Contact with friction by interior points: pressures and gaps positive, tractions and slips inside their cones.
+
+Each function of a contact has a pressure and a gap with a product, as in ``interior_point``, and with friction two vectors
+in second-order cones: the bound and the traction (mu p, t), and beside it (|v|, v), both of which the solution puts on the
+boundary where it slips, and the second to zero where it sticks. Theory: docs/theory/friction.md, "Search"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.linear.solver import Prepared
+from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
+from abut.nonlinear.interior_point import softness
+from abut.nonlinear.iteration import advance
+from abut.problem.contact_pairs import Pair
+from abut.problem.laws import LawRows
+from abut.solution.state import State
+
+STEEPEST = 100.0  # coefficient of friction that stands for surfaces that never slip
+TRIES, SHORTER = 12, 0.8  # of steps that leave some products too far behind, and how much shorter each is
+LEAST = 1e-6  # share of the mean product that is aimed at
+ACCURACY = 1e-3  # reduction of residuals asked of iterative solvers
+Vector = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How bold steps are. boundary: share of the way to it; central: what the smallest product keeps of the mean of all;
+    dilates: begins with surfaces that part as they slip, which makes the problem a convex one."""
+
+    boundary: float
+    central: float
+    dilates: bool = False
+
+
+@dataclass(frozen=True)
+class Programme:
+    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap per
+    pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none; idle:
+    numbers of tractions without friction."""
+
+    solver: Prepared
+    normal: Numbers
+    scale: Vector
+    rubs: Numbers
+    along: Numbers
+    idle: Numbers
+    softness: float
+
+    @classmethod
+    def of(cls, solver: Prepared) -> Programme:
+        system, first, normal, along = solver.system, 0, [], []
+        width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
+        for pair in system.pairs:
+            if not pair.tied:
+                own = np.full((len(pair.space), width), -1)
+                if pair.frictional:
+                    own = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
+                normal.append(first + np.arange(len(pair.space)))
+                along.append(own)
+            first += len(pair)
+        numbers, tangents = np.concatenate(normal), np.concatenate(along)
+        own = cls(solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver))
+        holds = own.bound(np.ones(len(numbers)))[0] > 0.0
+        rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
+        idle = tangents[~holds]
+        return replace(own, rubs=rubs, along=tangents[rubs], idle=idle[idle >= 0])
+
+    def bound(self, pressure: Vector) -> tuple[Vector, Vector]:
+        """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
+        system, first, parts = self.solver.system, 0, []
+        for pair in system.pairs:
+            if not pair.tied:
+                parts.append(_bound(pair, system.factors, pressure[first : first + len(pair.space)]))
+                first += len(pair.space)
+        bound, slope = (np.concatenate(values) for values in zip(*parts))
+        return bound[self.rubs], slope[self.rubs]
+
+    def tangential(self, values: Vector) -> Vector:
+        """Values (n,) of all multipliers along the tangents of ``rubs``, (r, d - 1); zero where there is none."""
+        return np.where(self.along >= 0, values[np.maximum(self.along, 0)], 0.0)
+
+
+def _bound(pair: Pair, factors: Vector, pressure: Vector) -> tuple[Vector, Vector]:
+    if not pair.frictional:
+        return np.zeros(len(pressure)), np.zeros(len(pressure))
+    limit = pair.friction(factors)
+    return (STEEPEST * pressure, np.full(len(pressure), STEEPEST)) if limit.rough else limit.at(pressure)
+
+
+@dataclass(frozen=True)
+class Interior:
+    """state: displacements and multipliers, pressures positive and tractions within their bounds; gap: (k,) positive, as
+    pressures, which gaps are to be; slip: (r, d) inside its cone, as pressures, its last components what slips are to be;
+    dilatancy: gaps that slip opens, 1 to 0; length: of the last step."""
+
+    state: State
+    gap: Vector
+    slip: Vector
+    dilatancy: float
+    length: float = 1.0
+
+
+@dataclass(frozen=True)
+class _Near:
+    """An ``Interior`` point and what follows from it. gaps, slips: by displacements, as pressures."""
+
+    programme: Programme
+    here: Interior
+    gaps: Vector
+    slips: Vector
+
+    @cached_property
+    def pressure(self) -> Vector:
+        return self.here.state.multipliers[self.programme.normal]
+
+    @cached_property
+    def traction(self) -> Vector:
+        """(r, d): bound, and traction."""
+        bound, _ = self.programme.bound(self.pressure)
+        return np.column_stack([bound, self.programme.tangential(self.here.state.multipliers)])
+
+    @cached_property
+    def slope(self) -> Vector:
+        return self.programme.bound(self.pressure)[1]
+
+    @cached_property
+    def scaled(self) -> Scaling:
+        return scaling(self.here.slip, self.traction)
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean product."""
+        products = [self.here.gap * self.pressure, np.einsum("rd,rd->r", self.here.slip, self.traction)]
+        return float(np.concatenate(products).mean())
+
+    @property
+    def missed(self) -> float:
+        """Largest difference between what gaps and slips are and what they are to be."""
+        opened = self.here.gap.copy()
+        opened[self.programme.rubs] += self.here.dilatancy * self.slope * self.here.slip[:, 0]
+        off = [np.abs(self.gaps - opened), np.abs(self.slips - self.here.slip[:, 1:]).ravel()]
+        return float(np.concatenate(off).max(initial=0.0))
+
+
+def near(programme: Programme, here: Interior) -> _Near:
+    """Gaps and slips at a point."""
+    system = programme.solver.system
+    gap = system.gap(here.state) / system.scale
+    return _Near(programme, here, gap[programme.normal], programme.tangential(gap))
+
+
+def begin(programme: Programme, state: State, manner: Manner) -> Interior:
+    """The starting point: one solution with softness everywhere, theory (V17), tractions at most halfway to their bounds."""
+    system = programme.solver.system
+    soft = np.where(system.tied, 0.0, programme.softness * system.scale)
+    gap = system.gap(state)
+    gap[programme.idle] = 0.0
+    rows = _by_pairs(programme, -gap - soft * state.multipliers, sp.diags(-soft, format="csr"))
+    full = advance(programme.solver, state, rows, ACCURACY)
+    multipliers = full.multipliers.copy()
+    size = max(float(np.abs(multipliers[programme.normal]).mean()), 1e-300)
+    pressure = np.maximum(multipliers[programme.normal], 0.0) + size
+    multipliers[programme.normal] = pressure
+    drag, (bound, _) = programme.tangential(multipliers), programme.bound(pressure)
+    length = np.linalg.norm(drag, axis=1)
+    drag *= np.minimum(1.0, 0.5 * bound / np.maximum(length, 1e-300))[:, None]
+    there = programme.along >= 0
+    multipliers[programme.along[there]] = drag[there]
+    multipliers[programme.idle] = 0.0
+    traction = np.column_stack([bound, drag])
+    product_of_both = programme.softness * size**2
+    slip = mirrored(traction) * (product_of_both / depth(traction))[:, None]
+    start = replace(full, multipliers=multipliers)
+    return Interior(start, np.full(len(pressure), programme.softness * size), slip, float(manner.dilates))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """To ``state`` in one whole step; of each quantity its change."""
+
+    state: State
+    pressure: Vector
+    gap: Vector
+    traction: Vector
+    slip: Vector
+
+    def length(self, at: _Near) -> float:
+        """How many of it until the boundary."""
+        cones = longest(at.traction, self.traction), longest(at.here.slip, self.slip)
+        return min(_positive(at.pressure, self.pressure), _positive(at.here.gap, self.gap), *cones)
+
+
+def iterate(at: _Near, manner: Manner) -> Interior:
+    """One iteration: Mehrotra's predictor and corrector, with the coupling of bound and pressure."""
+    here, mean = at.here, at.mean
+    first = _direction(at, np.zeros_like(at.pressure), np.zeros_like(here.slip))
+    length = min(1.0, first.length(at))
+    products = [
+        (here.gap + length * first.gap) * (at.pressure + length * first.pressure),
+        np.einsum("rd,rd->r", here.slip + length * first.slip, at.traction + length * first.traction),
+    ]
+    foreseen = max(float(np.concatenate(products).mean()), 0.0)
+    aim = float(np.clip((foreseen / mean) ** 3, LEAST, 1.0)) * mean
+    of_cones = np.zeros_like(here.slip)
+    of_cones[:, 0] = aim
+    if len(of_cones):
+        of_cones -= product(times(at.scaled.inverse, first.slip), times(at.scaled.matrix, first.traction))
+    step = _direction(at, aim - first.gap * first.pressure, of_cones)
+    length = min(1.0, manner.boundary * step.length(at))
+    for _ in range(TRIES):
+        if _central(at, step, length, manner.central):
+            break
+        length *= SHORTER
+    state = here.state
+    state = replace(
+        state,
+        unknowns=state.unknowns + length * (step.state.unknowns - state.unknowns),
+        multipliers=state.multipliers + length * (step.state.multipliers - state.multipliers),
+    )
+    return Interior(state, here.gap + length * step.gap, here.slip + length * step.slip, here.dilatancy, length)
+
+
+def _central(at: _Near, step: _Step, length: float, share: float) -> bool:
+    """Whether all stay inside after a step of some length, and no product is far smaller than the mean of all."""
+    pressure, slip = at.pressure + length * step.pressure, at.here.slip + length * step.slip
+    traction = at.traction + length * step.traction
+    traction[:, 0] = at.programme.bound(pressure)[0]  # which need not be linear
+    inside = depth(traction)
+    if len(inside) and (inside.min() <= 0.0 or depth(slip).min() <= 0.0):
+        return False
+    products = np.concatenate([(at.here.gap + length * step.gap) * pressure, np.sqrt(depth(slip) * inside)])
+    return bool(products.min() >= share * products.mean())
+
+
+def _direction(at: _Near, of_gaps: Vector, of_cones: Vector) -> _Step:
+    """The step to products that are those told, but for the products of the steps' own parts."""
+    programme, here = at.programme, at.here
+    shift = of_gaps / at.pressure
+    scaled = at.scaled
+    slip = times(scaled.matrix, quotient(scaled.middle, of_cones)) - here.slip if len(here.slip) else here.slip
+    soft = np.einsum("rij,rjk->rik", scaled.matrix, scaled.matrix)
+    full = advance(programme.solver, here.state, _rows(at, shift, here.slip + slip, soft), ACCURACY)
+    change = full.multipliers - here.state.multipliers
+    pressure = change[programme.normal]
+    traction = np.column_stack([at.slope * pressure[programme.rubs], programme.tangential(change)])
+    return _Step(
+        full, pressure, shift - here.gap - here.gap / at.pressure * pressure, traction, slip - times(soft, traction)
+    )
+
+
+def _rows(at: _Near, shift: Vector, slip: Vector, soft: Vector) -> list[LawRows]:
+    """gap + d gap = shift - (g / p) dp, and slip + d slip = that told - W^2 (mu dp, dt), as rows of the multipliers."""
+    programme, here = at.programme, at.here
+    n, scale = len(here.state.multipliers), programme.scale
+    at_rubs, rubbed = programme.normal[programme.rubs], scale[programme.rubs]
+    entries = [(programme.normal, programme.normal, -scale * here.gap / at.pressure)]
+    system = programme.solver.system
+    residual = -system.gap(here.state)
+    wanted = shift.copy()
+    there = programme.along >= 0
+    for a in range(programme.along.shape[1]):
+        row, own = programme.along[:, a], there[:, a]
+        by_bound = -rubbed * soft[:, 1 + a, 0] * at.slope
+        entries.append((row[own], at_rubs[own], by_bound[own]))
+        entries.append((at_rubs[own], row[own], here.dilatancy * by_bound[own]))
+        residual[row[own]] += (rubbed * slip[:, 1 + a])[own]
+        for b in range(programme.along.shape[1]):
+            both = own & there[:, b]
+            entries.append((row[both], programme.along[both, b], (-rubbed * soft[:, 1 + a, 1 + b])[both]))
+    entries.append((at_rubs, at_rubs, -here.dilatancy * rubbed * soft[:, 0, 0] * at.slope**2))
+    wanted[programme.rubs] += here.dilatancy * at.slope * slip[:, 0]
+    residual[programme.normal] += scale * wanted
+    entries.append((programme.idle, programme.idle, -system.scale[programme.idle]))
+    row, column, value = (np.concatenate(parts) for parts in zip(*entries))
+    matrix = sp.csr_matrix((value, (row, column)), shape=(n, n))
+    residual[programme.idle] = (-system.scale * here.state.multipliers)[programme.idle]
+    return _by_pairs(programme, residual, matrix)
+
+
+def _by_pairs(programme: Programme, residual: Vector, by_pressure: sp.csr_matrix) -> list[LawRows]:
+    """Rows of all multipliers that see minus their own gap or slip; those ``idle`` see their own traction alone."""
+    system, laws, first = programme.solver.system, [], 0
+    idle = np.zeros(len(residual), dtype=bool)
+    idle[programme.idle] = True
+    for pair in system.pairs:
+        here = slice(first, first := first + len(pair))
+        own = idle[here]
+        laws.append(
+            LawRows(
+                residual=residual[here],
+                closed=np.ones(len(pair), dtype=bool),
+                by_gap=_diagonal(np.where(own, 0.0, -1.0)),
+                by_pressure=by_pressure[here, here],
+                at_points=False,
+                decoupled=own,
+                symmetric=not pair.frictional,
+            )
+        )
+    return laws
+
+
+def _diagonal(values: Vector) -> sp.csr_matrix:
+    matrix = sp.diags(values, format="csr")
+    matrix.eliminate_zeros()
+    return matrix
+
+
+def _positive(values: Vector, steps: Vector) -> float:
+    falling = steps < 0.0
+    return float((values[falling] / -steps[falling]).min(initial=np.inf))
