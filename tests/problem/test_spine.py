@@ -100,6 +100,9 @@ def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch)
                 return 0.5 * (starts[-1][0] + starts[-1][1])
             return 1.0 if attempt.state.time < 1.0 else None
 
+        def whole(self, time: float) -> bool:
+            return True
+
     monkeypatch.setattr(stepping, "load_step", failing)
 
     def none(*_: object) -> None:

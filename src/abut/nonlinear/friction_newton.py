@@ -80,8 +80,10 @@ class Course:
         state = self.best[1]
         if state is None:
             return None
-        changing = np.ptp(np.stack(self.recent), axis=0) > 0
-        return Found(state, tuple(self.done), False, changing, friction_laws)
+        recent = np.stack(self.recent)
+        between = np.bitwise_or.reduce(np.left_shift(1, recent.astype(np.uint8)), axis=0).astype(np.uint8)
+        changing = np.ptp(recent, axis=0) > 0
+        return Found(state, tuple(self.done), False, changing, friction_laws, between=between)
 
 
 def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -> Found | None:
@@ -138,6 +140,11 @@ def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
+    return coulomb(pair, system)
+
+
+def coulomb(pair: Pair, system: Linearised) -> Coulomb:
+    """The law of a pair with friction."""
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
