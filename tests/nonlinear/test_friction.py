@@ -242,11 +242,6 @@ def test_refused(options: dict, words: str) -> None:
         abut.Contact("a", "b", **options)
 
 
-def test_multigrid_is_refused() -> None:
-    with pytest.raises(InputError, match="does not know friction"):
-        abut.solve(replace(pushed(), solve=abut.SolveOptions(linear="amg")))
-
-
 def test_no_friction_is_the_contact_without() -> None:
     model = pushed(friction=0.0)
     plain = replace(model, contacts=[replace(model.contacts[0], friction=0)])

@@ -17,6 +17,7 @@ from abut.solution.state import CLOSED, OPEN, SLIPPING
 CONE = 1e-6  # traction beyond the bound, over the largest pressure
 OPPOSED = 1e-6  # power that slip in another direction than the traction's would need, over the largest
 STUCK = 1e-6  # slip that sticking points may have left, as a pressure over the largest
+FAINT = 1e-3  # traction over the largest pressure from which down its work is not looked at by itself
 WORK = 1e-6  # friction that gives work back, over the largest of one multiplier
 PRESSED = 1e-6  # bound over the largest below which no share of it is told
 Vector = NDArray[np.float64]
@@ -174,7 +175,8 @@ def friction_checks(
     slips_now, sticks = own == SLIPPING, own == CLOSED
     power = np.einsum("kd,kd->k", traction, slip)
     against = (size * way + power)[slips_now]
-    most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, 1e-300)
+    faint = FAINT * largest * float(way[own != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
+    most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
     work = -(power * pair.space.weight)[own != OPEN]
     unit = max(float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
     values = (
