@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -30,6 +30,7 @@ from abut.contact.nodal_recovery import (
 )
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult, PressureStatistics, Resultant
@@ -107,6 +108,9 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
+FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
+
+
 def contact_result(
     mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
 ) -> ContactResult:
@@ -124,8 +128,8 @@ def contact_result(
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
-        contactor=pair.contactor,
-        target=pair.target,
+        contactor=_undeformed(mesh, pair.contactor),
+        target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
         area=own.area,
@@ -144,7 +148,9 @@ def contact_result(
         checks=certificate(
             pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
         )
-        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
+        + friction_checks(
+            pair, own.multipliers, own.status, own.slips, own.limit, max(around.reference, FAINT * around.beside)
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
@@ -154,6 +160,11 @@ def contact_result(
         if at is None
         else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, before),
     )
+
+
+def _undeformed(mesh: Mesh, surface: Surface) -> Surface:
+    """The surface where it was at the outset, as results show it."""
+    return surface if surface.points is mesh.points else replace(surface, points=mesh.points)
 
 
 def _statistics(
@@ -172,7 +183,7 @@ def _statistics(
     ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
-        resultant(mesh.points[ids], forces[ids], mesh.axisymmetric, none),
+        resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 

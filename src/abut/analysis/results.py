@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
 from abut.analysis.contact_results import PairState, contact_result
+from abut.analysis.covered import covered
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -19,12 +20,13 @@ from abut.model.offset import offsets
 from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.finite import FiniteProblem
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, Energy, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
@@ -72,6 +74,7 @@ def step_result(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
+        reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=assembled.bodies.stress(end.motion),
@@ -84,6 +87,7 @@ def step_result(
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
+        flips=_flips(system, attempt),
         rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
@@ -103,6 +107,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
     displacement = problem.springs.without_motions(problem.displacement(state))
     system = problem.linearise(state, state)
+    if isinstance(problem, FiniteProblem):
+        system, state = covered(problem, system, state, displacement)
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -156,7 +162,8 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
         constant, varying = offsets(model, pair.contact)
-        overlap = overlaps(pair, end.nodal, constant + float(varying @ system.factors))
+        moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
+        overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
         around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
@@ -179,6 +186,19 @@ def _cycling(system: Linearised, attempt: Attempt) -> dict[str, NDArray[np.int64
             rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return cycling
+
+
+def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
+    """The nodes of each contact with friction whose status keeps changing, and between what."""
+    if attempt.between is None:
+        return {}
+    flips = {}
+    for pair, between, changing in zip(system.pairs, system.split(attempt.between), system.split(attempt.cycling)):
+        own = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
+        if own.any():
+            bits = between[pair.normal][own, None] >> np.arange(3) & 1
+            flips[pair.contact.name] = Flips(pair.space.node[own].astype(np.int64), bits.astype(bool))
+    return flips
 
 
 def _strained(system: Linearised, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:

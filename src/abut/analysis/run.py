@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -11,17 +11,21 @@ from numpy.typing import NDArray
 
 from abut.analysis.energy import Acting
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
+from abut.analysis.parts import whole
 from abut.analysis.results import step_result
 from abut.analysis.step_records import check_order, restored, saved_step
 from abut.errors import SingularModelError
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.nonlinear.large_steps import march_finite
 from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.pace import pace_of
 from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
+from abut.problem.finite import FiniteProblem
 from abut.problem.restraint import require_balance
 from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
@@ -59,6 +63,7 @@ class Run:
     solver: LinearSolver
     steps: list[Step] = field(default_factory=list)
     acted: Acting | None = None  # what acted at the end of the last step, with friction
+    parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
 
     @classmethod
     def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
@@ -88,12 +93,14 @@ class Run:
             return self.assembled.problem.start()
         self.told.observe(Phase("restoring the steps done before"))
         for saved in done:
-            self.steps.append(self._result(restored(saved)))
+            for part in restored(saved):
+                self.parts.append((part, self._result(part)))
+            self.steps.append(self._taken())
         self.clock.mark("results")
         return done[-1].state
 
-    def march(self, first: State) -> None:
-        """Solve the steps that are left, each told and kept as it ends."""
+    def march(self, first: State, done: Sequence[Saved] = ()) -> None:
+        """Solve the steps that are left, each told and kept as it ends. done: those before."""
         problem, observe, solve = self.assembled.problem, self.told.observe, self.model.solve
         times = [t for t in solve.ends if not self.steps or t > first.time * (1.0 + 1e-12)]
         count = len(self.steps) + len(times)
@@ -114,9 +121,17 @@ class Run:
             )
 
         halve = self.model.finite or any(pair.frictional for pair in problem.pairs)
-        schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
         control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
-        for attempt in march(problem, first, schedule, self.solver, control, len(self.steps) + 1):
+        attempts: Iterator[Attempt]
+        if isinstance(problem, FiniteProblem):
+            pace = pace_of(solve.steps, solve.times, self.model.histories)
+            for saved in done:
+                pace.repeat(saved.state.time, len(saved.iterations))
+            attempts = march_finite(problem, [*(saved.state for saved in done)] or [first], pace, self.solver, control)
+        else:
+            schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
+            attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)
+        for attempt in attempts:
             self.clock.mark("solve")
             observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
             self._end(attempt)
@@ -131,19 +146,42 @@ class Run:
         )
 
     def _result(self, attempt: Attempt) -> Step:
-        step, self.acted = step_result(self.assembled, attempt, self.steps, self.acted)
+        before = [*self.steps, *(step for _, step in self.parts)]
+        step, self.acted = step_result(self.assembled, attempt, before, self.acted)
         _check_size(self.model, step.displacement, self.told.note)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
     def _end(self, attempt: Attempt) -> None:
+        """Results of an attempt; those of the parts of a step when it is whole, or when nothing follows them."""
+        if attempt.converged:
+            self.parts.append((attempt, self._result(attempt)))
+            self.clock.mark("results")
+            if attempt.whole:
+                self._keep()
+            return
+        if self.parts:
+            attempt = replace(attempt, number=attempt.number + 1)
+            self._keep()
         self.steps.append(self._result(attempt))
         self.clock.mark("results")
-        if attempt.converged:
-            self.keep(self.so_far(complete=False), saved_step(attempt, self.kind))
-            self.clock.mark("writing")
-        else:
-            count = len(attempt.iterations)
-            self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
+        count = len(attempt.iterations)
+        self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
+
+    def _taken(self) -> Step:
+        """The step that the parts so far make; there are none left then."""
+        steps = [step for _, step in self.parts]
+        self.parts.clear()
+        return whole(steps)
+
+    def _keep(self) -> None:
+        """Keep the step that the parts so far make, and tell of it."""
+        attempts = [attempt for attempt, _ in self.parts]
+        self.steps.append(self._taken())
+        if len(attempts) > 1:
+            times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
+            self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
+        self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))
+        self.clock.mark("writing")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
         self.told.note(f"step {number}: {reason}: going on with the direct solver")

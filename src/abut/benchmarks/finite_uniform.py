@@ -13,6 +13,7 @@ from abut.materials.elastic import LinearElastic, lame
 from abut.materials.hyperelastic import NeoHooke
 from abut.mesh.make import box, join
 from abut.model import Model, Rotation, Solid, SolveOptions, Support
+from abut.model.conditions import support_along
 from abut.solution import Solution
 
 YOUNG, POISSON = 2.0, 0.3
@@ -52,9 +53,7 @@ def _stretch(law: str) -> Benchmark:
         return float(brentq(lambda t: cauchy(law, np.diag([STRETCH, t, t]))[1, 1], 0.3, 1.5, xtol=1e-15))
 
     def model(level: int) -> Model:
-        held = [
-            Support(f"block.{side}", **{axis: 0.0}) for side, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))
-        ]
+        held = [support_along(f"block.{on}", axis, 0.0) for on, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))]
         return _block(law, [*held, Support("block.right", x=STRETCH - 1.0)], level, 4)
 
     def measure(solution: Solution) -> dict[str, float]:

@@ -219,9 +219,10 @@ def _failure(solution: Solution, directory: Path) -> str:
 
     step = solution.steps[-1]
     places = [str(place) for place in unsettled(step)]
-    where = "; ".join(places) or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
+    where = "; ".join(places) or step.reason
+    where = where or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
     tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
-    return f"step {step.number} did not converge: {where}. The last state is in {directory}. Try{tries}"
+    return f"step {step.number} did not converge: {where}. The last state is in {directory}." + (f" Try{tries}" if tries else "")
 
 
 def _print_result(solution: Solution, directory: Path) -> None:

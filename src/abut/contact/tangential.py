@@ -64,6 +64,11 @@ def turned(normal: Array) -> Array:
     return np.column_stack([-normal[:, 1], normal[:, 0]])
 
 
+def quarter(n_points: int) -> Sparse:
+    """What turns rows of forces (.., 2 n_points) by a right angle, against the clock."""
+    return sp.kron(sp.identity(n_points), np.array([[0.0, 1.0], [-1.0, 0.0]]), format="csr")
+
+
 def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Tangents (n, dim - 1, dim) square to each other and to unit normals (n, dim), and which of them, (n, dim - 1) bool,
     point where the contactor's node can move.

@@ -118,7 +118,7 @@ def _twice(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _friction(contact: Contact, result: ContactResult, sides: str) -> str:
-    return "more load steps, or raise solve.max_iterations: stick and slip are not final"
+    return "raise solve.max_iterations: stick and slip are not final"
 
 
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {

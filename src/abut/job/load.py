@@ -219,6 +219,8 @@ def _explain(error: Json, data: Json) -> str:
         return f"{place}: missing"
     if kind == "union_tag_not_found":
         return f"{place}.kind: missing"
+    if kind == "union_tag_invalid":
+        return f"{place}.kind: expected one of {error['ctx']['expected_tags']}, got {error['ctx']['tag']!r}"
     if kind == "finite_number":
         return f"{place}: expected a finite number, got {error['input']!r}"
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"

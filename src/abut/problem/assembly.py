@@ -15,12 +15,14 @@ from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.finite_bodies import FiniteBodies
+from abut.problem.finite import finite_problem
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
+from abut.problem.whole_pairs import whole_pairs
 from abut.solution import Observer, Phase
 
 
@@ -51,7 +53,8 @@ def assemble(
     reduced = backend.reduce(held)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    every = pairs(model, held, backend.couple)
+    sliding = model.finite and bool(model.contacts)
+    every = whole_pairs(model, held) if sliding else pairs(model, held, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
@@ -83,6 +86,7 @@ def assemble(
         motions=held.coordinates(held_by.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
+    problem = finite_problem(problem) if sliding else problem
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

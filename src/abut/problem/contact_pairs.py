@@ -226,17 +226,17 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     surfaces do not face each other."""
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
-    reach = _reach(held, contactor, target)
+    reach = reach_of(held, contactor, target)
     contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
     sizes = facet_sizes(contactor)
-    scales = _scales(model, contactor, target)
-    size, stiffness = float(np.median(sizes)), scales.young / float(np.median(sizes))
+    both = scales(model, contactor, target)
+    size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
         own = tied_rows(contactor, coupling, space, held)
         return Pair(
             contact, contactor, target, coupling, space, own.rows, own.free,
             prescribed=own.rows @ held.prescribed, gap=np.zeros(len(own.weight)), scale=own.weight / stiffness, size=size,
-            stiffness=stiffness, index=own.index, components=own.components, compliance=scales.compliance,
+            stiffness=stiffness, index=own.index, components=own.components, compliance=both.compliance,
         )  # fmt: skip
     space = without_held(space, contactor, coupling, held)
     rows = (space.transfer.T @ coupling.operator).tocsr()
@@ -254,8 +254,8 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
-        components=(space,), compliance=scales.compliance,
-        points=None if contact.frictional else _points(coupling, space, held, scales.young / sizes, constant, varying),
+        components=(space,), compliance=both.compliance,
+        points=None if contact.frictional else _points(coupling, space, held, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=_planes(contactor, border, beyond, held),
     )  # fmt: skip
@@ -342,7 +342,7 @@ def _couple(
         coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
-        name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
+        name, degree = resolve(contact.pressure, contactor, not tied and (contact.law == LAWS[0] or contact.frictional))
         if contact.frictional and name == DUAL_P1:
             name = DUAL  # the law of friction looks at pressure and traction node by node
         of_dual = name in (DUAL, DUAL_P1)
@@ -382,12 +382,13 @@ def _points(
     )
 
 
-def _reach(held: Supports, contactor: Surface, target: Surface) -> float:
+def reach_of(held: Supports, contactor: Surface, target: Surface) -> float:
+    """How far apart the surfaces may lie at the outset and still be paired, a length."""
     return default_reach(contactor, target) + 2.0 * held.largest
 
 
 @dataclass(frozen=True)
-class _Scales:
+class Scales:
     """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together.
     A rigid side has none."""
 
@@ -395,7 +396,7 @@ class _Scales:
     compliance: float
 
 
-def _scales(model: Model, contactor: Surface, target: Surface) -> _Scales:
+def scales(model: Model, contactor: Surface, target: Surface) -> Scales:
     both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
     young = min(material.modulus for material in both if material is not None)  # the model has refused two rigid sides
-    return _Scales(young, sum(2.0 / contact_modulus(material) for material in both))
+    return Scales(young, sum(2.0 / contact_modulus(material) for material in both))
