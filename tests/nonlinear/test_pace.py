@@ -47,6 +47,19 @@ def test_kinks_are_met_and_begun_anew() -> None:
     assert abs(after - 0.37) < 1e-12
 
 
+def test_points_of_a_straight_history_are_met_in_passing() -> None:
+    straight = Amplitude(((0.0, 0.0), (0.5, 0.5), (1.0, 1.0)))
+    pace = pace_of(1, None, (straight,))
+    found, lengths = [], []
+    while (end := pace.end) is not None:
+        found.append(end)
+        lengths.append(end - pace.time)
+        pace.take(2)
+        assert not pace.turned
+    assert 0.5 in found
+    assert lengths[found.index(0.5) + 1] > lengths[0]
+
+
 def test_given_numbers_and_times() -> None:
     assert ends(pace_of(4, None, (None,)), 2) == [0.25, 0.5, 0.75, 1.0]
     assert ends(pace_of(1, (0.2, 0.9), (None,)), 2) == [0.2, 0.9]

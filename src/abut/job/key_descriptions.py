@@ -156,8 +156,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },
     "SolveTable": {
-        "steps": "load steps, equal parts of a linear ramp",
-        "times": "ends of the load steps, rising to 1, where they are unequal",
+        "steps": "load steps, equal parts of a linear ramp; with contact under finite kinematics the longest one is that part, "
+        "and 1 leaves all steps to abut",
+        "times": "ends of the load steps, rising to 1, where they are unequal; finite kinematics: with further ones between them "
+        "where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step",
     },

@@ -98,7 +98,7 @@ def _balanced(here: Balance, before: float) -> bool:
 
 
 def _carried(step: Step, time: float) -> State:
-    """From the last converged state, what is prescribed changes with the tangent there, theory (G9); contact closes as far as
+    """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes as far as
     it takes to hold every body."""
     system = step.problem.ahead(step.before, time)
     state = replace(step.before, time=time)
