@@ -150,9 +150,9 @@ def contact_result(
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(
-            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
-        ),
+        friction=None
+        if at is None
+        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction),
     )
 
 

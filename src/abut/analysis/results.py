@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
-from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.contact_results import PairState, contact_result
 from abut.analysis.covered import covered
+from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES

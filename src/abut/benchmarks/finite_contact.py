@@ -19,7 +19,9 @@ DIE, RADIUS, GAP = (1.2, 1.2), 0.75, 0.2  # of the die: width and height, of its
 PRESS = Amplitude(((0.0, 0.0), (1 / 6, 0.5), (1 / 3, 1.0), (1.0, 1.0)))
 SLIDE = Amplitude(((0.0, 0.0), (1 / 3, 0.0), (2 / 3, 0.5), (1.0, 1.0)))
 RING, DEPTH = (0.085, 0.090, 0.095), 0.07  # radii; how far the ring's ends go down
-MESH = "two or three digits; the prototype's die mesh is not known, and dies of 6 to 24 facets differ by 2 %, 1 %, 0.8 %"
+MESH = (
+    "two or three digits; the prototype's die mesh is not known, and dies of 6 to 24 facets differ by 2 %, 1 %, 0.8 %"
+)
 
 
 def _die(level: int) -> Mesh:
@@ -30,12 +32,14 @@ def _die(level: int) -> Mesh:
     arc = np.column_stack([RADIUS * np.sin(turn), RADIUS * (1.0 - np.cos(turn))])
     top = np.column_stack([half * x, np.full(len(x), DIE[1])])
     points = (1.0 - y)[:, None] * arc + y[:, None] * top
-    return replace(mesh, points=points + [0.2 + half, 4.0 + GAP])
+    return replace(mesh, points=points + np.array([0.2 + half, 4.0 + GAP]))
 
 
 def _ironing(level: int) -> Model:
     slab = rectangle((0.0, 12.0), (0.0, 4.0), (60 * 2**level, 12 * 2**level), "quad4")
-    rubber = {name: NeoHooke(young, 0.32, volumetric="log-squared") for name, young in (("slab", 68.96e7), ("die", 68.96e8))}
+    rubber = {
+        name: NeoHooke(young, 0.32, volumetric="log-squared") for name, young in (("slab", 68.96e7), ("die", 68.96e8))
+    }
     return Model(
         join({"slab": slab, "die": _die(level)}),
         [Solid(name, material) for name, material in rubber.items()],
@@ -53,8 +57,8 @@ def _forces(solution: Solution) -> Mapping[str, float]:
     at = {round(step.factor, 9): step.reactions["die.top"] for step in solution.steps}
     half, down, along = (at[round(time, 9)] for time in (1 / 6, 1 / 3, 2 / 3))
     return {
-        "force half down": -half[1], "force down": -down[1], "force along the slab": along[0], "force on the slab": -along[1],
-        **_effort(solution),
+        "force half down": -half[1], "force down": -down[1], "force along the slab": along[0],
+        "force on the slab": -along[1], **_effort(solution),
     }  # fmt: skip
 
 

@@ -139,7 +139,8 @@ class FiniteProblem(ContactProblem):
         there = self.displacement(before)
         parts = [before.history.of(term.name) for term in self.terms]
         return [
-            term.evaluate(Motion(before.time, there, own), Motion(time, here, own)) for term, own in zip(self.terms, parts)
+            term.evaluate(Motion(before.time, there, own), Motion(time, here, own))
+            for term, own in zip(self.terms, parts)
         ]
 
 

@@ -61,9 +61,7 @@ class SlipPoints:
     @property
     def array(self) -> Array:
         """All of it, (n, 30), for a restart."""
-        return np.column_stack(
-            [self.facet, self.target_facet, self.weight, self.pressure, self.own, self.other]
-        )
+        return np.column_stack([self.facet, self.target_facet, self.weight, self.pressure, self.own, self.other])
 
     def moments(self, n_facets: int) -> Array:
         """int H_k over what was covered, facet by facet, (9 n_facets,)."""
@@ -106,9 +104,7 @@ def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Sm
         return SlipNow(np.asarray(gather @ value)[:, None], ((gather @ change).tocsr(),))
     height = np.einsum("qa,qa->q", apart, normal)
     rise = sum(sp.diags(normal[:, a]) @ moved[a] + sp.diags(apart[:, a]) @ turning[a] for a in range(dim))
-    changes = [
-        moved[a] - sp.diags(height) @ turning[a] - sp.diags(normal[:, a]) @ rise for a in range(dim)
-    ]
+    changes = [moved[a] - sp.diags(height) @ turning[a] - sp.diags(normal[:, a]) @ rise for a in range(dim)]
     flat = apart - height[:, None] * normal
     return SlipNow(np.asarray(gather @ flat), tuple((gather @ change).tocsr() for change in changes))
 
