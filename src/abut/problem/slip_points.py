@@ -80,7 +80,7 @@ class SlipNow:
 
 
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Smoothing | None = None) -> SlipNow:
-    """Theory (G6) at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
+    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
     tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
     x, dim = contactor.points, contactor.dim
     mine, its = contactor.nodes[points.facet], target.nodes[points.target_facet]
