@@ -205,7 +205,7 @@ private:
     }
   }
 
-  // The frame's own part: a vector w in it changes by (-a w3, -b w3, a w1 + b w2) with tilts a and b.
+  // The frame's own part: theory (T4).
   void turn(const Look &at, const Gradient &g, int t, double *row) const {
     double vector[5][3], by[2] = {0, 0};
     for (int a = 0; a < 3; ++a) {

@@ -76,7 +76,7 @@ private:
       in.a ? in.add(n, s, 1, row) : out.add(n, t, 1, row);
       return row;
     }
-    // Across each edge the vertex moves as the edge does: along x dp = along x dc, away x dp = away x dd.
+    // Across each edge the vertex moves as the edge does: theory (T5).
     double *first = edges_.take().x, *second = edges_.take().x;
     in.add_along(n, s, {-along.y, along.x}, 1 / det, first);
     out.add_along(n, t, {-away.y, away.x}, 1 / det, second);

@@ -30,7 +30,9 @@ def main(out: Path) -> None:
     bore = contact.extract_cells(half)
     bore.points[:, :2] *= 0.997  # just in front of the hub's own surface
     zones = bore.extract_surface(nonlinear_subdivision=0, algorithm="dataset_surface")
-    plot.add_mesh(zones, scalars="friction_status", cmap=list(ZONES), clim=(-0.5, 2.5), show_scalar_bar=False, lighting=False)
+    plot.add_mesh(
+        zones, scalars="friction_status", cmap=list(ZONES), clim=(-0.5, 2.5), show_scalar_bar=False, lighting=False
+    )
     corners = bore.extract_points(bore.cell_connectivity.reshape(-1, 8)[:, :4].ravel(), include_cells=False)
     corners.points[:, :2] *= 0.98
     corners.set_active_vectors("traction")

@@ -133,7 +133,9 @@ def test_nothing_happens_for_a_while() -> None:
     model = pushed()
     off = abut.Amplitude([(0, 0), (0.2, 1), (0.4, 0), (1, 0)])
     still = replace(
-        model, loads=[replace(model.loads[0], amplitude=off)], supports=[*model.supports[:1], abut.Support("upper.top", x=0)]
+        model,
+        loads=[replace(model.loads[0], amplitude=off)],
+        supports=[*model.supports[:1], abut.Support("upper.top", x=0)],
     )
     solution = abut.solve(still)
     assert solution.converged

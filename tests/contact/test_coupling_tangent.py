@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.models.sheets import chain, sheet, together, turn
 
-from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent, normal_derivative
 from abut.contact.geometry import Smoothing, nodal_normals, smoothing
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.types import Array
-from tests.models.sheets import chain, sheet, together, turn
 
 LINES = ("line2", "line3")
 FACES = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -176,6 +176,26 @@ def test_matching_meshes(kind: str, curve: float) -> None:
 def tangent_of(pair: tuple[Surface, Surface], with_traction: bool) -> CouplingTangent:
     pressure, traction = load(pair[0])
     return coupling_tangent(*pair, 1, CouplingOptions(), pressure, traction if with_traction else None)
+
+
+@pytest.mark.parametrize("kinds", [("line3", "line2"), ("quad8", "quad4"), ("tri6", "quad9")])
+def test_a_plan_is_held(kinds: tuple[str, str]) -> None:
+    """With the numbers of points that another configuration asked for, few as they are, the derivative is that of the
+    same rule."""
+    pair = lines(kinds) if kinds[0] in LINES else faces(kinds)
+    options = CouplingOptions()
+    other = [replace(s, points=s.points * np.linspace(0.7, 1.2, pair[0].dim)) for s in pair]
+    plan = plan_pair(other[0], other[1], options)
+    assert not same_plan(plan, plan_pair(*pair, options))
+    held = replace(options, points=plan)
+    assert error(pair, options=held) < TOLERANCE
+    only = np.arange(len(pair[0])) % 2 == 0
+    some, every = couple(*pair, 1, held, only), couple(*pair, 1, held)
+    assert np.array_equal(some.gap.reshape(-1, 9)[only], every.gap.reshape(-1, 9)[only])
+
+
+def same_plan(a: Plan, b: Plan) -> bool:
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in vars(a))
 
 
 PAIRS = [lines(("line2", "line3")), lines(("line3", "line3")), faces(("quad4", "tri3")), faces(("quad9", "tri6"))]

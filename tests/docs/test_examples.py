@@ -34,7 +34,7 @@ def test_example_runs_and_balances(path: Path) -> None:
     step = solution.steps[-1]
     tied = [contact.name for contact in model.contacts if contact.kind == "tied"]
     check_expected(path, step)
-    size = max(np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts))
+    size = max([np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts)])
     if path.parent.name == "twisted-hub":
         size = max(np.abs(c.contactor_forces).sum() for c in step.contacts)
     balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
@@ -45,8 +45,8 @@ def test_example_runs_and_balances(path: Path) -> None:
 
 
 def test_twisted_hub() -> None:
-    """The torque that slips is 2 pi r^2 L mu p with the mean pressure, but for facets of 11 degrees (a half per cent); then the
-    flange's work, torque times angle, is what friction takes."""
+    """The torque that slips is 2 pi r^2 L mu p with the mean pressure, but for facets of 11 degrees (a half per cent); then
+    the flange's work, torque times angle, is what friction takes."""
     solution = abut.solve(load_job(FOLDER / "twisted-hub" / "job.toml").model)
     last, (contact, _) = solution.steps[-1], solution.contacts
     torque = last.rigid["flange"].moment[2]

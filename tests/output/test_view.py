@@ -159,7 +159,9 @@ def test_friction_in_pictures(tmp_path: Path) -> None:
     for what in ("traction", "slip"):
         plotter = solution.plot(what, path=tmp_path / f"{what}.png")
         own = solution.contacts[0].friction
-        assert plotter.mapper.scalar_range[1] == pytest.approx({"traction": own.max_traction, "slip": own.max_total_slip}[what])
+        assert plotter.mapper.scalar_range[1] == pytest.approx(
+            {"traction": own.max_traction, "slip": own.max_total_slip}[what]
+        )
     assert {"traction", "friction_status"} <= set(solution.to_pyvista()["contacts"][0]["contactor"].point_data)
     with pytest.raises(abut.InputError, match="needs a contact with friction"):
         solved("tri3").plot("slip", path=tmp_path / "none.png")

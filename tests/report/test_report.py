@@ -333,7 +333,7 @@ def test_rough_contacts_have_no_limit(tmp_path: Path) -> None:
 
 
 def test_arrows_are_the_traction() -> None:
-    """Arrows stand at the corners of facets and are the reported traction there; the status is drawn in the order of zones."""
+    """Arrows stand at the corners of facets and are the reported traction there; status is drawn in the order of zones."""
     solution = abut.solve(twisted(3))
     data, contact = scene(solution).data, solution.contacts[0]
     side, step = data["contacts"][0], data["steps"][-1]["contacts"][0]

@@ -108,6 +108,9 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
+FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
+
+
 def contact_result(
     mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
 ) -> ContactResult:
@@ -121,6 +124,7 @@ def contact_result(
     nodal = raw if at is None else at_facet_nodes(at.surface, _reported(own, at))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, own, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
@@ -144,7 +148,9 @@ def contact_result(
         checks=certificate(
             pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
         )
-        + friction_checks(pair, own.multipliers, own.status, own.slips, own.limit, around.reference),
+        + friction_checks(
+            pair, own.multipliers, own.status, own.slips, own.limit, max(around.reference, FAINT * around.beside)
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
@@ -152,7 +158,7 @@ def contact_result(
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
         friction=None
         if at is None
-        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction),
+        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, before),
     )
 
 

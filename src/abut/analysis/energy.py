@@ -20,7 +20,7 @@ Vector = NDArray[np.float64]
 class Acting:
     """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
     internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
-    each pair's multipliers of friction; free: (n_free,) displacements; residual: what the forces on these have left at most."""
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these."""
 
     displacement: Vector
     prescribed: Vector

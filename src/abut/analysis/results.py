@@ -26,7 +26,7 @@ from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, Energy, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
@@ -87,6 +87,7 @@ def step_result(
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, attempt),
+        flips=_flips(system, attempt),
         rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
@@ -185,6 +186,19 @@ def _cycling(system: Linearised, attempt: Attempt) -> dict[str, NDArray[np.int64
             rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return cycling
+
+
+def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
+    """The nodes of each contact with friction whose status keeps changing, and between what."""
+    if attempt.between is None:
+        return {}
+    flips = {}
+    for pair, between, changing in zip(system.pairs, system.split(attempt.between), system.split(attempt.cycling)):
+        own = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
+        if own.any():
+            bits = between[pair.normal][own, None] >> np.arange(3) & 1
+            flips[pair.contact.name] = Flips(pair.space.node[own].astype(np.int64), bits.astype(bool))
+    return flips
 
 
 def _strained(system: Linearised, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.energy import Acting
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
+from abut.analysis.parts import whole
 from abut.analysis.results import step_result
 from abut.analysis.step_records import check_order, restored, saved_step
 from abut.errors import SingularModelError
@@ -62,6 +63,7 @@ class Run:
     solver: LinearSolver
     steps: list[Step] = field(default_factory=list)
     acted: Acting | None = None  # what acted at the end of the last step, with friction
+    parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
 
     @classmethod
     def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
@@ -91,7 +93,9 @@ class Run:
             return self.assembled.problem.start()
         self.told.observe(Phase("restoring the steps done before"))
         for saved in done:
-            self.steps.append(self._result(restored(saved)))
+            for part in restored(saved):
+                self.parts.append((part, self._result(part)))
+            self.steps.append(self._taken())
         self.clock.mark("results")
         return done[-1].state
 
@@ -123,7 +127,8 @@ class Run:
             pace = pace_of(solve.steps, solve.times, self.model.histories)
             for saved in done:
                 pace.repeat(saved.state.time, len(saved.iterations))
-            attempts = march_finite(problem, [*(saved.state for saved in done)] or [first], pace, self.solver, control)
+            states = [problem.start(), *(saved.state for saved in done)]
+            attempts = march_finite(problem, states, pace, self.solver, control)
         else:
             schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
             attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)
@@ -142,19 +147,42 @@ class Run:
         )
 
     def _result(self, attempt: Attempt) -> Step:
-        step, self.acted = step_result(self.assembled, attempt, self.steps, self.acted)
+        before = [*self.steps, *(step for _, step in self.parts)]
+        step, self.acted = step_result(self.assembled, attempt, before, self.acted)
         _check_size(self.model, step.displacement, self.told.note)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
     def _end(self, attempt: Attempt) -> None:
+        """Results of an attempt; those of the parts of a step when it is whole, or when nothing follows them."""
+        if attempt.converged:
+            self.parts.append((attempt, self._result(attempt)))
+            self.clock.mark("results")
+            if attempt.whole:
+                self._keep()
+            return
+        if self.parts:
+            attempt = replace(attempt, number=attempt.number + 1)
+            self._keep()
         self.steps.append(self._result(attempt))
         self.clock.mark("results")
-        if attempt.converged:
-            self.keep(self.so_far(complete=False), saved_step(attempt, self.kind))
-            self.clock.mark("writing")
-        else:
-            count = len(attempt.iterations)
-            self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
+        count = len(attempt.iterations)
+        self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
+
+    def _taken(self) -> Step:
+        """The step that the parts so far make; there are none left then."""
+        steps = [step for _, step in self.parts]
+        self.parts.clear()
+        return whole(steps)
+
+    def _keep(self) -> None:
+        """Keep the step that the parts so far make, and tell of it."""
+        attempts = [attempt for attempt, _ in self.parts]
+        self.steps.append(self._taken())
+        if len(attempts) > 1:
+            times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
+            self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
+        self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))
+        self.clock.mark("writing")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
         self.told.note(f"step {number}: {reason}: going on with the direct solver")

@@ -8,12 +8,14 @@ import numpy as np
 
 from abut.errors import InputError
 from abut.nonlinear.load_step import Attempt
-from abut.solution import Saved
+from abut.solution import Saved, SavedPart
 
 
-def saved_step(attempt: Attempt, linear: str) -> Saved:
-    """linear: the solver that was used, "direct" or "amg"."""
-    return Saved(attempt.number, attempt.state, attempt.inside, linear, attempt.iterations)
+def saved_step(parts: Sequence[Attempt], linear: str) -> Saved:
+    """Of the parts that a step was taken in. linear: the solver that was used, "direct" or "amg"."""
+    last, iterations = parts[-1], tuple(row for part in parts for row in part.iterations)
+    earlier = tuple(SavedPart(part.state, part.inside, len(part.iterations)) for part in parts[:-1])
+    return Saved(last.number, last.state, last.inside, linear, iterations, earlier)
 
 
 def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> None:
@@ -27,7 +29,14 @@ def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> Non
             )
 
 
-def restored(saved: Saved) -> Attempt:
-    """The load step as it was when it converged."""
+def restored(saved: Saved) -> list[Attempt]:
+    """The parts of a load step as they were when they converged."""
     none = np.zeros(len(saved.state.status), dtype=bool)
-    return Attempt(saved.number, saved.state, True, saved.iterations, none, saved.inside, saved.state.time)
+    left = sum(part.iterations for part in saved.parts)
+    parts = [*saved.parts, SavedPart(saved.state, saved.inside, len(saved.iterations) - left)]
+    ends = np.cumsum([part.iterations for part in parts])
+    rows = [saved.iterations[end - part.iterations : end] for part, end in zip(parts, ends)]
+    return [
+        Attempt(saved.number, part.state, True, own, none, part.inside, part.state.time)
+        for part, own in zip(parts, rows)
+    ]

@@ -1,4 +1,4 @@
-"""Derivatives of a contact pair's coupling by the coordinates of both surfaces: theory page "Derivatives of the coupling".
+"""Derivatives of a contact pair's coupling by the coordinates of both surfaces, theory (T1).
 
 What ``abut.contact.coupling.couple`` integrates is differentiated as it computes it: places where nodes are projected,
 clipping, integration points, normals, areas, rays. Only decisions are constants: which facets meet and hide each other,
@@ -54,7 +54,7 @@ def coupling_tangent(
     only: NDArray[np.bool_] | None = None,
     across: Smoothing | None = None,
 ) -> CouplingTangent:
-    """Differentiate ``couple(contactor, target, degree, options, only, across)`` at the surfaces' points.
+    """Differentiate ``couple(contactor, target, degree, options, only, across)`` by the surfaces' points: theory (T1).
 
     pressure, traction: (9 n_facets,) and (9 n_facets, dim), coefficients of the facet-wise functions.
     Gaps that ``couple`` takes as none, being within ``options.adjust`` or rounding, change like others.
@@ -86,7 +86,8 @@ def coupling_tangent(
 
 
 def normal_derivative(contactor: Surface, across: Smoothing | None = None) -> Sparse:
-    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded."""
+    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded;
+    theory (T2)."""
     across = across or smoothing(contactor)
     used = np.flatnonzero(contactor.nodes.ravel() >= 0)
     visits = _turning(contactor, across, np.arange(len(used)), len(contactor.points))

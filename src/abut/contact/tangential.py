@@ -27,8 +27,8 @@ class SlipOperators:
 
 
 def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
-    """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D three,
-    the axes less their normal parts. points: (n_points, dim) of the mesh."""
+    """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D the
+    three axes less their normal parts. points: (n_points, dim) of the mesh."""
     normal = at.normal
     dim = normal.shape[1]
     entries = at.gap_operator.tocoo()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from abut.model import LAWS, METHODS, SolveOptions
 from abut.solution import Solution, Step
 
 COUNT = 3
+STATUSES = ("open", "sticking", "slipping")
+NAMED = 4  # nodes that the message names
 MORE = 4  # times the iterations, and as many as are allowed without asking at least
 
 
@@ -34,14 +37,23 @@ class Remedy:
 @dataclass(frozen=True)
 class Place:
     """Facets of a contactor whose contact status keeps changing: facets (n,) their numbers within the surface; nodes (m,)
-    point numbers of the mesh; coordinates (m, dim)."""
+    point numbers of the mesh; coordinates (m, dim); between: with friction, (m, 3) bool, which of ``STATUSES`` each node
+    takes in turn."""
 
     contact: str
     facets: NDArray[np.int64]
     nodes: NDArray[np.int64]
     coordinates: NDArray[np.float64]
+    between: NDArray[np.bool_] | None = None
 
     def __str__(self) -> str:
+        if self.between is not None:
+            some = [
+                f"node {node} at ({', '.join(f'{v:.4g}' for v in at)}) is {' and '.join(compress(STATUSES, own))} in turn"
+                for node, at, own in zip(self.nodes[:NAMED], self.coordinates, self.between)
+            ]
+            more = f"; and {len(self.nodes) - NAMED} more" if len(self.nodes) > NAMED else ""
+            return f"contact '{self.contact}': {'; '.join(some)}{more}"
         facets = ", ".join(map(str, self.facets[:8].tolist())) + (", ..." if len(self.facets) > 8 else "")
         low, high = self.coordinates.min(axis=0), self.coordinates.max(axis=0)
         box = " to ".join("(" + ", ".join(f"{v:.4g}" for v in corner) + ")" for corner in (low, high))
@@ -56,6 +68,9 @@ def unsettled(step: Step) -> list[Place]:
     surfaces = {c.name: c.contactor for c in step.contacts}
     places = []
     for name, facets in step.cycling.items():
+        if flips := step.flips.get(name):
+            places.append(Place(name, facets, flips.nodes, surfaces[name].points[flips.nodes], flips.between))
+            continue
         nodes = surfaces[name].nodes[facets]
         own = np.unique(nodes[nodes >= 0]).astype(np.int64)
         places.append(Place(name, facets, own, surfaces[name].points[own]))

@@ -128,8 +128,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
-        "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
-        "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
+        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick",
+        "epsilon": "smoothing of the constraint function, over the square of a reference pressure (of friction: its root)",
         "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
         "offset": "added to the gap; negative: interference [length]",
@@ -156,12 +156,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },
     "SolveTable": {
-        "steps": "load steps, equal parts of a linear ramp; with contact under finite kinematics the longest one is that part, "
-        "and 1 leaves all steps to abut",
-        "times": "ends of the load steps, rising to 1, where they are unequal; finite kinematics: with further ones between them "
-        "where one does not converge",
+        "steps": "load steps, equal parts of a linear ramp; auto: one. With friction, a step that does not converge is "
+        "taken in parts, of which only the end is written. With contact under finite kinematics a number gives the longest "
+        "step, and auto leaves all of them to abut",
+        "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
+        "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
-        "max_iterations": "iterations allowed in a load step",
+        "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
     },
     "OutputTable": {"directory": "folder of the results, beside the job file"},
 }

@@ -251,7 +251,7 @@ class ProbeTable(Table):
 
 
 class SolveTable(Table):
-    steps: int = SolveOptions.steps
+    steps: int | Literal["auto"] = SolveOptions.steps
     linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None

@@ -23,16 +23,16 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Reduced:
-    """The rows as residual - pull dg - soft q = 0 in m unknowns q, dp = fixed + push^T q, dg the change of the n weighted
-    gaps. push, pull: (m, n) sparse; soft: (m,) >= 0; single: (n,) the number of the unknown that each multiplier is by
-    itself, -1 for none; ``symmetric``: push is pull."""
+    """The rows as residual - pull dg + corner q = 0 in m unknowns q, dp = fixed + push^T q, dg the change of the n weighted
+    gaps. push, pull: (m, n), corner: (m, m), sparse; single: (n,) bool, multipliers that are unknowns by themselves, the
+    first ones; ``symmetric``: push is pull, and corner diagonal and negative."""
 
     residual: Vector
     push: Sparse
     pull: Sparse
-    soft: Vector
+    corner: Sparse
     fixed: Vector
-    single: NDArray[np.int64]
+    single: NDArray[np.bool_]
     symmetric: bool
 
 
@@ -48,15 +48,14 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
     slips = _joined(found)
     n, own = len(rows.residual), ~rows.decoupled
     own[slips.number[slips.number >= 0]] = False
-    plain, soft = np.flatnonzero(own), -rows.by_multiplier.diagonal()
-    if (rows.by_gap.diagonal()[own] != -1.0).any() or (soft[own] < 0.0).any():
+    plain, corner = np.flatnonzero(own), rows.by_multiplier[own][:, own]
+    if (rows.by_gap.diagonal()[own] != -1.0).any():
         return None
     m, across = len(plain), slips.across
-    single = np.full(n, -1)
-    single[plain] = np.arange(m)
+    place = np.cumsum(own) - 1
     fixed = rows.fixed
     fixed[slips.number[slips.there]] = slips.known[slips.there]
-    dragged = _entries(single[slips.normal], slips.number, slips.drag, (m, n))
+    dragged = _entries(place[slips.normal], slips.number, slips.drag, (m, n))
     select = sp.csr_matrix((np.ones(m), (np.arange(m), plain)), shape=(m, n))
     turned = _entries(np.arange(len(across.row)), slips.number[across.row], across.direction, (len(across.row), n))
     pull = sp.vstack([select, turned]).tocsr()
@@ -64,10 +63,10 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
         residual=np.concatenate([rows.residual[plain], across.residual]),
         push=sp.vstack([select + dragged, turned]).tocsr(),
         pull=pull,
-        soft=np.concatenate([soft[plain], across.soft]),
+        corner=sp.block_diag([corner, sp.diags(-across.soft)], format="csr"),
         fixed=fixed,
-        single=single,
-        symmetric=dragged.nnz == 0,
+        single=own,
+        symmetric=dragged.nnz == 0 and _negative_diagonal(corner),
     )
 
 
@@ -110,14 +109,14 @@ def _slips(rows: Rows, index: NDArray[np.int64]) -> _Slips:
     seen, main = np.linalg.eigh(gaps[:, 1:, 1:])
     main = np.where(there[:, :, None], main, 0.0)
     give = np.einsum("kai,kab,kbi->ki", main, own[:, 1:, 1:], main)
-    give = np.where(give < 0.0, give, -1.0)
-    along = seen > -STRAIGHT
-    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / give, 0.0)
-    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / give, 0.0)
-    row, i = np.nonzero(~along & (np.abs(main).max(axis=1) > 0.5 / index.shape[1]))
+    along = (seen > -STRAIGHT) & (give < 0.0)
+    by = np.where(along, give, -1.0)
+    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / by, 0.0)
+    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / by, 0.0)
+    row, i = np.nonzero((seen <= -STRAIGHT) & (np.abs(main).max(axis=1) > 0.0))
     yields = -seen[row, i]
     turned = np.einsum("ka,ka->k", main[row, :, i], left[row]) / yields
-    across = _Across(row, main[row, :, i], turned, -give[row, i] / yields)
+    across = _Across(row, main[row, :, i], turned, np.maximum(-give[row, i], 0.0) / yields)
     known, drag = (np.einsum("kai,ki->ka", main, values) for values in (known, drag))
     return _Slips(index[:, 0], number, drag, known, across)
 
@@ -130,6 +129,11 @@ def _blocks(matrix: Sparse, index: NDArray[np.int64]) -> Vector:
     result = np.zeros(row.shape)
     result[there] = np.asarray(matrix[row[there], column[there]]).ravel()
     return result
+
+
+def _negative_diagonal(matrix: Sparse) -> bool:
+    diagonal = matrix.diagonal()
+    return matrix.count_nonzero() == np.count_nonzero(diagonal) and bool((diagonal <= 0.0).all())
 
 
 def _entries(

@@ -9,29 +9,33 @@ from abut import checks
 from abut.errors import InputError
 
 LINEAR = ("auto", "direct", "amg", "petsc")
+AUTO = "auto"
 MOST_STEPS = 1_000_000  # load steps, and iterations in one
 
 
 @dataclass(frozen=True)
 class SolveOptions:
     """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
-    time), linear solver, iterations allowed in a step.
+    time), linear solver, iterations allowed in a step of each method that is tried. ``steps`` "auto" is one step. Where
+    contacts have friction a step that does not converge is taken in parts, whose results are not written.
 
     >>> import abut
     >>> abut.SolveOptions(steps=4).ends
     (0.25, 0.5, 0.75, 1.0)
     """
 
-    steps: int = 1
+    steps: int | str = "auto"
     linear: str = "auto"
     max_iterations: int = 50
     times: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("steps", "max_iterations"):
+        for name, other in (("steps", f'"{AUTO}" or '), ("max_iterations", "")):
             value = getattr(self, name)
+            if other and value == AUTO:
+                continue
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
-                raise InputError(f"solve.{name}: expected a whole number from 1 to {MOST_STEPS}, got {value!r}")
+                raise InputError(f"solve.{name}: expected {other}a whole number from 1 to {MOST_STEPS}, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
         if self.times is not None:
             self._check_times()
@@ -39,7 +43,8 @@ class SolveOptions:
     @property
     def ends(self) -> tuple[float, ...]:
         """Time at the end of each load step."""
-        return self.times or tuple(number / self.steps for number in range(1, self.steps + 1))
+        count = self.steps if isinstance(self.steps, int) else 1
+        return self.times or tuple(number / count for number in range(1, count + 1))
 
     def _check_times(self) -> None:
         try:
@@ -48,6 +53,6 @@ class SolveOptions:
             raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
         if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
             raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
-        if self.steps not in (1, len(times)):
+        if self.steps not in (AUTO, 1, len(times)):
             raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
         object.__setattr__(self, "times", times)

@@ -24,6 +24,7 @@ from abut.solution.state import State
 STEEPEST = 100.0  # coefficient of friction that stands for surfaces that never slip
 TRIES, SHORTER = 12, 0.8  # of steps that leave some products too far behind, and how much shorter each is
 LEAST = 1e-6  # share of the mean product that is aimed at
+ACCURACY = 1e-3  # reduction of residuals asked of iterative solvers
 Vector = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
@@ -162,7 +163,7 @@ def begin(programme: Programme, state: State, manner: Manner) -> Interior:
     gap = system.gap(state)
     gap[programme.idle] = 0.0
     rows = _by_pairs(programme, -gap - soft * state.multipliers, sp.diags(-soft, format="csr"))
-    full = advance(programme.solver, state, rows)
+    full = advance(programme.solver, state, rows, ACCURACY)
     multipliers = full.multipliers.copy()
     size = max(float(np.abs(multipliers[programme.normal]).mean()), 1e-300)
     pressure = np.maximum(multipliers[programme.normal], 0.0) + size
@@ -245,7 +246,7 @@ def _direction(at: _Near, of_gaps: Vector, of_cones: Vector) -> _Step:
     scaled = at.scaled
     slip = times(scaled.matrix, quotient(scaled.middle, of_cones)) - here.slip if len(here.slip) else here.slip
     soft = np.einsum("rij,rjk->rik", scaled.matrix, scaled.matrix)
-    full = advance(programme.solver, here.state, _rows(at, shift, here.slip + slip, soft))
+    full = advance(programme.solver, here.state, _rows(at, shift, here.slip + slip, soft), ACCURACY)
     change = full.multipliers - here.state.multipliers
     pressure = change[programme.normal]
     traction = np.column_stack([at.slope * pressure[programme.rubs], programme.tangential(change)])

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import ROUGH, STRIDE
+from abut.nonlinear.friction_foresight import advanced, foreseen
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
     Found,
     Increment,
-    advance,
     largest_pressure,
     points,
     report,
@@ -80,8 +80,10 @@ class Course:
         state = self.best[1]
         if state is None:
             return None
-        changing = np.ptp(np.stack(self.recent), axis=0) > 0
-        return Found(state, tuple(self.done), False, changing, friction_laws)
+        recent = np.stack(self.recent)
+        between = np.bitwise_or.reduce(np.left_shift(1, recent.astype(np.uint8)), axis=0).astype(np.uint8)
+        changing = np.ptp(recent, axis=0) > 0
+        return Found(state, tuple(self.done), False, changing, friction_laws, between=between)
 
 
 def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -> Found | None:
@@ -92,9 +94,10 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
     seen: set[bytes] = set()
     fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
     tolerance, accuracy = tolerated(course.solver), ROUGH
+    foresees, last = False, 0
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(course.solver, state, friction_laws(system, state), accuracy)
+        following = advanced(course.solver, state, friction_laws, course.increment, accuracy)
         wanted = next_status(system, following, course.increment)
         changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
@@ -109,6 +112,10 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
         before = left if not changed else np.inf
         accuracy = ROUGH if changed else max(0.3 * tolerance / left, STRIDE)
         seen.add(wanted.tobytes())
+        foresees = changed > 0 and not (foresees and changed >= last)  # not twice in a row where it misled
+        last = changed
+        if foresees:
+            state = state.with_status(foreseen(course.solver, following, wanted))
     return None
 
 
@@ -133,6 +140,11 @@ def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
+    return coulomb(pair, system)
+
+
+def coulomb(pair: Pair, system: Linearised) -> Coulomb:
+    """The law of a pair with friction."""
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 

@@ -34,7 +34,7 @@ class Increment:
 class Found:
     """What a search ends with. reason: why it did not converge, where more can be said than that; cycling: (n,) bool,
     multipliers that go in and out for ever, or whose law stays violated; laws: those of all pairs as the last iteration
-    saw them, near any state."""
+    saw them, near any state; between: (n,) with friction, the statuses of the last iterations, the sum of 2^status."""
 
     state: State
     iterations: tuple[Iteration, ...]
@@ -42,6 +42,7 @@ class Found:
     cycling: NDArray[np.bool_]
     laws: Laws
     reason: str = ""
+    between: NDArray[np.uint8] | None = None
 
 
 def active_laws(system: Linearised, state: State) -> list[LawRows]:

@@ -23,7 +23,7 @@ class Attempt:
     """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
     (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
     bool, multipliers that keep changing; time: at which it was to end; reason: why it did not converge, where more can be
-    said."""
+    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``."""
 
     number: int
     state: State
@@ -33,6 +33,8 @@ class Attempt:
     inside: NDArray[np.bool_]
     time: float
     reason: str = ""
+    whole: bool = True
+    between: NDArray[np.uint8] | None = None
 
 
 def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
@@ -78,5 +80,6 @@ def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: ND
     if found.converged:
         state = problem.accepted(task.before, state)
     return Attempt(
-        task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason
-    )
+        task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason,
+        between=found.between,
+    )  # fmt: skip

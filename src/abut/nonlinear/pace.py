@@ -104,13 +104,13 @@ def _named(histories: Sequence[History]) -> tuple[list[float], list[float]]:
     return sorted(named), sorted(turns)
 
 
-def pace_of(steps: int, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
-    """From what a user says of the steps: their number is that of the longest ones; times are met, each in one step if
-    it can be."""
+def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
+    """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this; times
+    are met, each in one step if it can be."""
     named, turns = _named(histories)
     if times:
         goals = [time for time in sorted({*named, *times}) if time <= times[-1]]
         return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
-    if steps == 1:
+    if isinstance(steps, str):
         return Pace([*named, 1.0], legs=turns, kinks=turns)
     return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from abut.linear.solver import LinearSolver, NotConverged
@@ -24,6 +24,10 @@ class Schedule(Protocol):
         """The time at which the next attempt ends, after the last one (None: before the first); None at the end."""
         ...
 
+    def whole(self, time: float) -> bool:
+        """Whether a step is to end at a time, not a part of one."""
+        ...
+
 
 @dataclass(frozen=True)
 class Fixed:
@@ -38,6 +42,10 @@ class Fixed:
         if not attempt.converged:
             return None
         return next((time for time in self.times if time > attempt.state.time), None)
+
+    def whole(self, time: float) -> bool:
+        """As in ``Schedule``."""
+        return True
 
 
 class Automatic:
@@ -63,6 +71,10 @@ class Automatic:
         reached = self._from + self._share * whole
         return goal if reached > goal * (1.0 - NO_TIME) else reached
 
+    def whole(self, time: float) -> bool:
+        """As in ``Schedule``."""
+        return time in self._times
+
 
 @dataclass(frozen=True)
 class Control:
@@ -85,7 +97,7 @@ def march(
     """Load step after load step, from the state ``first``; number: of the next one.
 
     Each attempt starts from the last converged state: the state of a failed one is dropped, and yielded only where no other
-    follows it; a solver that fails is replaced by another one, which begins the step again."""
+    follows it; attempts that are parts of a step have its number; a solver that fails is replaced by another one, which begins the step again."""
     before, attempt = first, None
     own, prepared = None, None
     time = schedule.next(attempt)
@@ -102,7 +114,7 @@ def march(
                 told = True
             task = Task(own, before, solver, Increment(number, before.largest), control.limit, control.observe)
             try:
-                attempt = load_step(task, time, prepared)
+                attempt = replace(load_step(task, time, prepared), whole=schedule.whole(time))
                 break
             except NotConverged as reason:
                 solver, own, prepared = control.fallback(number, reason), None, None
@@ -112,4 +124,4 @@ def march(
         else:
             control.halves(attempt, time)
         if attempt.converged:
-            before, number = attempt.state, number + 1
+            before, number = attempt.state, number + attempt.whole

@@ -8,14 +8,16 @@ import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import abut
 from abut.errors import InputError
 from abut.io.atomic import make_directory, write_file
 from abut.model import Model
-from abut.solution import History, Iteration, Largest, Saved, State
+from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
 
 FOLDER = "restart"
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
@@ -58,24 +60,39 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
     folder = directory / FOLDER
     make_directory(folder)
     head = {
-        "schema": 2,
+        "schema": 3,
         "abut": abut.__version__,
         "number": saved.number,
-        "time": saved.state.time,
         "linear": saved.linear,
-        "largest": [saved.state.largest.force, saved.state.largest.pressure],
         "iterations": [vars(row) for row in saved.iterations],
+        "parts": [part.iterations for part in saved.parts],
         "model": dict(model),
     }
-
-    arrays = {name: getattr(saved.state, name) for name in ARRAYS}
-    arrays |= {HISTORY + name: values for name, values in saved.state.history.arrays.items()}
+    arrays = _arrays(saved.state, saved.inside, "")
+    for i, part in enumerate(saved.parts):
+        arrays |= _arrays(part.state, part.inside, f"part{i}.")
 
     def write(temporary: Path) -> None:
         with open(temporary, "wb") as file:  # not a name: NumPy would add an ending to it
-            np.savez(file, head=np.array(json.dumps(head)), inside=saved.inside, **arrays)
+            np.savez(file, head=np.array(json.dumps(head)), **arrays)
 
     write_file(folder / f"{saved.number:04d}.npz", write)
+
+
+def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
+    """A state, and where "dual-P1" has ordinary functions, by name; of: what the names begin with."""
+    arrays = {of + name: getattr(state, name) for name in ARRAYS}
+    arrays |= {of + HISTORY + name: values for name, values in state.history.arrays.items()}
+    largest = np.array([state.largest.force, state.largest.pressure])
+    return {**arrays, of + "inside": inside, of + "time": np.array(state.time), of + "largest": largest}
+
+
+def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[State, NDArray[np.bool_]]:
+    """The same from arrays by name."""
+    history = {name.removeprefix(of + HISTORY): data[name] for name in names if name.startswith(of + HISTORY)}
+    own = {name: data[of + name] for name in ARRAYS}
+    largest = Largest(*map(float, data[of + "largest"]))
+    return State(float(data[of + "time"]), **own, history=History(history), largest=largest), data[of + "inside"]
 
 
 def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:
@@ -96,16 +113,16 @@ def _load(path: Path, model: Mapping[str, str]) -> Saved:
     try:
         with np.load(path, allow_pickle=False) as data:
             head = json.loads(str(data["head"]))
-            arrays = {name: data[name] for name in ARRAYS}
-            history = {name.removeprefix(HISTORY): data[name] for name in data.files if name.startswith(HISTORY)}
-            state = State(head["time"], **arrays, history=History(history), largest=Largest(*head["largest"]))
+            state, inside = _state(data, data.files, "")
+            parts = [(*_state(data, data.files, f"part{i}."), count) for i, count in enumerate(head["parts"])]
             version, before = head["abut"], head["model"]
             saved = Saved(
                 number=head["number"],
                 state=state,
-                inside=data["inside"],
+                inside=inside,
                 linear=head["linear"],
                 iterations=tuple(Iteration(**row) for row in head["iterations"]),
+                parts=tuple(SavedPart(*part) for part in parts),
             )
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
         raise InputError(

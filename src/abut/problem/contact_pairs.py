@@ -342,7 +342,7 @@ def _couple(
         coupling = replace(coupling, sights=seen.sights)
     else:
         tied = contact.kind == "tied"
-        name, degree = resolve(contact.pressure, contactor, not tied and contact.law == LAWS[0])
+        name, degree = resolve(contact.pressure, contactor, not tied and (contact.law == LAWS[0] or contact.frictional))
         if contact.frictional and name == DUAL_P1:
             name = DUAL  # the law of friction looks at pressure and traction node by node
         of_dual = name in (DUAL, DUAL_P1)

@@ -19,7 +19,7 @@ from abut.types import Sparse
 
 @dataclass(frozen=True)
 class Slip:
-    """What makes tangential rows. operators: facet by facet; tangents: (n_functions, dim - 1, dim) unit, at the place of each
+    """What makes tangential rows. operators: by facets; tangents: (n_functions, dim - 1, dim) unit, at the place of each
     function of the pressure, ``points`` (n_functions, dim)."""
 
     operators: SlipOperators

@@ -3,11 +3,11 @@
 from abut.solution.contacts import Check, ContactResult, FrictionResult, PressureStatistics, Resultant
 from abut.solution.energy import Energy
 from abut.solution.progress import Iteration, Observer, Phase
-from abut.solution.records import OnStep, ProbeResult, RigidResult, Saved, Solution, Step
+from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved, SavedPart, Solution, Step
 from abut.solution.state import History, Largest, State
 
 __all__ = [
-    "Check", "ContactResult", "Energy", "FrictionResult", "History", "Iteration", "Largest", "Observer", "OnStep", "Phase",
+    "Check", "ContactResult", "Energy", "Flips", "FrictionResult", "History", "Iteration", "Largest", "Observer", "OnStep", "Phase",
     "PressureStatistics", "ProbeResult", "Resultant",
-    "RigidResult", "Saved", "Solution", "State", "Step",
+    "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip

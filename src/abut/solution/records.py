@@ -54,6 +54,15 @@ class ProbeResult:
 
 
 @dataclass(frozen=True)
+class Flips:
+    """Nodes of a contact with friction whose status keeps changing. nodes: (n,) point numbers of the mesh; between: (n, 3)
+    bool, among open, sticking and slipping."""
+
+    nodes: NDArray[np.int64]
+    between: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
 class Step:
     """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
     displacements applied, where no amplitude says otherwise.
@@ -77,6 +86,7 @@ class Step:
     contacts: tuple[ContactResult, ...]
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
+    flips: Mapping[str, Flips] = field(default_factory=dict)  # contact name -> nodes that do, with friction
     spring: float | None = None  # largest force that constrains free rigid-body modes; None where there are none
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
@@ -125,11 +135,21 @@ class Step:
 
 
 @dataclass(frozen=True)
+class SavedPart:
+    """State at the end of a part of a step, where ``inside`` of it "dual-P1" has ordinary functions, and how many of the
+    step's iterations it took."""
+
+    state: State
+    inside: NDArray[np.bool_]
+    iterations: int
+
+
+@dataclass(frozen=True)
 class Saved:
     """Record of a converged step for a restart.
 
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
-    iterations: for the log.
+    iterations: for the log; parts: those before the last, of a step that was halved.
     """
 
     number: int
@@ -137,6 +157,7 @@ class Saved:
     inside: NDArray[np.bool_]
     linear: str
     iterations: tuple[Iteration, ...]
+    parts: tuple[SavedPart, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,47 @@
+"""One step from the parts in which it was taken, where it had to be halved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+
+from abut.solution import Check, ContactResult, Energy, Step
+
+
+def whole(parts: Sequence[Step]) -> Step:
+    """The step at the end of the last of its parts: what happened within it is added up, and every check is that of the worst
+    part."""
+    last = parts[-1]
+    if len(parts) == 1:
+        return last
+    contacts = tuple(_contact([part.contacts[i] for part in parts]) for i in range(len(last.contacts)))
+    iterations = tuple(row for part in parts for row in part.iterations)
+    return replace(last, contacts=contacts, iterations=iterations, energy=_energy([part.energy for part in parts]))
+
+
+def _contact(parts: Sequence[ContactResult]) -> ContactResult:
+    last, rubbed = parts[-1], [part.friction for part in parts if part.friction is not None]
+    checks = tuple(_worst(check, [other for part in parts for other in part.checks]) for check in last.checks)
+    if not rubbed:
+        return replace(last, checks=checks)
+    friction = replace(
+        rubbed[-1],
+        slip=sum((own.slip for own in rubbed[:-1]), rubbed[-1].slip),
+        work=sum(own.work for own in rubbed),
+        work_per_area=sum((own.work_per_area for own in rubbed[:-1]), rubbed[-1].work_per_area),
+    )
+    return replace(last, checks=checks, friction=friction)
+
+
+def _worst(check: Check, others: Sequence[Check]) -> Check:
+    if check.last:
+        return check
+    return max((other for other in others if other.name == check.name), key=lambda own: own.value / own.limit)
+
+
+def _energy(parts: Sequence[Energy | None]) -> Energy | None:
+    own = [part for part in parts if part is not None]
+    if not own:
+        return None
+    total = {field.name: sum(getattr(part, field.name) for part in own) for field in fields(Energy)}
+    return Energy(**{**total, "size": max(part.size for part in own)})
