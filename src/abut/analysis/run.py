@@ -128,7 +128,8 @@ class Run:
             pace = pace_of(solve.steps, solve.times, self.model.histories)
             for saved in done:
                 pace.repeat(saved.state.time, len(saved.iterations))
-            attempts = march_finite(problem, [*(saved.state for saved in done)] or [first], pace, self.solver, control)
+            states = [problem.start(), *(saved.state for saved in done)]
+            attempts = march_finite(problem, states, pace, self.solver, control)
         else:
             schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
             attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)

@@ -15,8 +15,8 @@ from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
-from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.finite import finite_problem
+from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import regularise
 from abut.problem.loads import Loads, followers, loads
