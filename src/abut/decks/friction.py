@@ -15,8 +15,8 @@ def path_notes(contacts: Sequence[Contact]) -> list[str]:
     if not any(contact.frictional for contact in contacts):
         return []
     return [
-        "friction: each step of the deck is one load step, whatever its increments; where the way of the loads matters within "
-        "a step, convert the deck and give solve.times"
+        "friction: each step of the deck is one load step, whatever its increments; where the way of the loads matters "
+        "within a step, convert the deck and give solve.times"
     ]
 
 
