@@ -42,7 +42,7 @@ class Acting:
 
 
 def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
-    """Nodal forces of all pressures and ties, without friction, (dim n_points,)."""
+    """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R8)."""
     force = np.zeros(system.pairs[0].rows.shape[1])
     for pair, own in zip(system.pairs, multipliers):
         part = pair.normal if pair.frictional else slice(None)

@@ -105,7 +105,9 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     """Forces and pressures of the state that a load step ended with."""
     bodies, state = assembled.bodies, attempt.state
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
-    displacement = problem.springs.without_motions(problem.displacement(state))
+    displacement = problem.displacement(state)
+    if not problem.model.finite:  # small turns would strain it
+        displacement = problem.springs.without_motions(displacement)
     system = problem.linearise(state, state)
     if isinstance(problem, FiniteProblem):
         system, state = covered(problem, system, state, displacement)

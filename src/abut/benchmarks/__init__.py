@@ -7,6 +7,7 @@ from abut.benchmarks import (
     contrast,
     convergence,
     finite_beams,
+    finite_contact,
     finite_rubber,
     finite_uniform,
     fits,
@@ -39,5 +40,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_uniform.BENCHMARKS,
         *finite_beams.BENCHMARKS,
         *finite_rubber.BENCHMARKS,
+        *finite_contact.BENCHMARKS,
     )
 }

@@ -144,6 +144,10 @@ class Pair:
         assert self.values is not None
         return self.values.bound(factors)
 
+    def at(self, factors: NDArray[np.float64]) -> Pair:
+        """The pair with the friction of a moment, where the model's histories are at ``factors``."""
+        return self if self.values is None else replace(self, values=self.values.at(factors))
+
     @property
     def steepest(self) -> NDArray[np.float64]:
         """The largest coefficient of friction that each function ever has, (n_functions,)."""
