@@ -143,7 +143,7 @@ def _energy(
     if acted is None:
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
-    slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
+    slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
     earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
     return now, energy(system, acted, now, slips, contacts, earlier)
 
