@@ -41,15 +41,29 @@ def test_a_cut_halves_and_gives_up_at_last() -> None:
 
 def test_kinks_are_met_and_begun_anew() -> None:
     turn = Amplitude(((0.0, 0.0), (0.3, 1.0), (1.0, 1.0)))
-    found = ends(pace_of(1, None, (None, turn)), 2)
+    found = ends(pace_of("auto", None, (None, turn)), 2)
     assert 0.3 in found
     after = found[found.index(0.3) + 1]
     assert abs(after - 0.37) < 1e-12
 
 
+def test_points_of_a_straight_history_are_met_in_passing() -> None:
+    straight = Amplitude(((0.0, 0.0), (0.5, 0.5), (1.0, 1.0)))
+    pace = pace_of("auto", None, (straight,))
+    found, lengths = [], []
+    while (end := pace.end) is not None:
+        found.append(end)
+        lengths.append(end - pace.time)
+        pace.take(2)
+        assert not pace.turned
+    assert 0.5 in found
+    assert lengths[found.index(0.5) + 1] > lengths[0]
+
+
 def test_given_numbers_and_times() -> None:
     assert ends(pace_of(4, None, (None,)), 2) == [0.25, 0.5, 0.75, 1.0]
-    assert ends(pace_of(1, (0.2, 0.9), (None,)), 2) == [0.2, 0.9]
+    assert ends(pace_of(1, None, (None,)), 2) == [1.0]
+    assert ends(pace_of("auto", (0.2, 0.9), (None,)), 2) == [0.2, 0.9]
 
 
 def test_an_earlier_run_is_followed() -> None:

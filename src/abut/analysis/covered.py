@@ -39,18 +39,14 @@ def covered(problem: FiniteProblem, system: Linearised, state: State, here: Arra
         forgotten=None if system.forgotten is None else system.forgotten[keep],
     )  # fmt: skip
     history = state.history.with_term(CONTACTS, slips)
-    return smaller, replace(
-        state, multipliers=state.multipliers[keep], status=state.status[keep], history=history
-    )
+    return smaller, replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
 
 
 def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array) -> Pair:
     """A pair without some multipliers, keep (n,), with the weights of what is covered now."""
     coupling = kind.shown(here)
     ends = np.cumsum([len(part) for part in pair.components])[:-1]
-    components = [
-        _weighed(only(part, own), coupling) for part, own in zip(pair.components, np.split(keep, ends))
-    ]
+    components = [_weighed(only(part, own), coupling) for part, own in zip(pair.components, np.split(keep, ends))]
     functions = keep[pair.normal]
     number = np.where(keep, np.cumsum(keep) - 1, -1)
     index = np.where(pair.index >= 0, number[np.maximum(pair.index, 0)], -1)[functions]
@@ -61,7 +57,12 @@ def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array)
         prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
         slip=None
         if pair.slip is None
-        else replace(pair.slip, tangents=pair.slip.tangents[functions], points=pair.slip.points[functions]),
+        else replace(
+            pair.slip,
+            tangents=pair.slip.tangents[functions],
+            points=pair.slip.points[functions],
+            normals=pair.slip.normals[functions],
+        ),
         values=None
         if pair.values is None
         else replace(pair.values, coefficient=pair.values.coefficient[functions]),

@@ -105,7 +105,9 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     """Forces and pressures of the state that a load step ended with."""
     bodies, state = assembled.bodies, attempt.state
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
-    displacement = problem.springs.without_motions(problem.displacement(state))
+    displacement = problem.displacement(state)
+    if not problem.model.finite:  # small turns would strain it
+        displacement = problem.springs.without_motions(displacement)
     system = problem.linearise(state, state)
     if isinstance(problem, FiniteProblem):
         system, state = covered(problem, system, state, displacement)
@@ -141,7 +143,7 @@ def _energy(
     if acted is None:
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
-    slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
+    slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
     earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
     return now, energy(system, acted, now, slips, contacts, earlier)
 

@@ -108,8 +108,9 @@ class Run:
         def begins(number: int, time: float) -> None:
             of_all = max(count, number)
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
-            loads = problem.held.free.T @ (self.assembled.loaded.forces @ weights(self.model.histories, time))
-            require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
+            factors = weights(self.model.histories, time)
+            loads = problem.held.free.T @ (self.assembled.loaded.forces @ factors)
+            require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
 
         def prepares(what: LinearSolver) -> None:
             observe(Phase(*setting_up(what, problem)))
@@ -127,7 +128,8 @@ class Run:
             pace = pace_of(solve.steps, solve.times, self.model.histories)
             for saved in done:
                 pace.repeat(saved.state.time, len(saved.iterations))
-            attempts = march_finite(problem, [*(saved.state for saved in done)] or [first], pace, self.solver, control)
+            states = [problem.start(), *(saved.state for saved in done)]
+            attempts = march_finite(problem, states, pace, self.solver, control)
         else:
             schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
             attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)

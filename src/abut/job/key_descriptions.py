@@ -157,8 +157,10 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one. With friction, a step that does not converge is "
-        "taken in parts, of which only the end is written",
-        "times": "ends of the load steps, rising to 1, where they are unequal",
+        "taken in parts, of which only the end is written. With contact under finite kinematics a number gives the longest "
+        "step, and auto leaves all of them to abut",
+        "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
+        "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
     },

@@ -33,8 +33,7 @@ def march_finite(
     while (time := pace.end) is not None:
         if cuts == 0:
             control.begins(number, time)
-        turned = any(abs(before.time - kink) < 1e-12 for kink in pace.turns)
-        guess = None if cuts or turned or earlier is None else extrapolated(problem, earlier, before, time)
+        guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         step = Step(
             problem, before, solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
@@ -54,7 +53,7 @@ def march_finite(
 
 
 def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:
-    """A guess at ``time`` from the last two converged states, theory (G10): pressures stay open or pushing."""
+    """A guess at ``time`` from the last two converged states, theory (G9): pressures stay open or pushing."""
     ratio = (time - before.time) / (before.time - earlier.time)
     ahead = before.multipliers + ratio * (before.multipliers - earlier.multipliers)
     first = 0

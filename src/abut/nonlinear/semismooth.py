@@ -1,4 +1,5 @@
-"""One load step at large displacements: semi-smooth Newton on geometry, material, contact and friction together."""
+"""One load step at large displacements: semi-smooth Newton on geometry, material, contact and friction together, by
+theory (G7), (G8)."""
 
 from __future__ import annotations
 
@@ -98,8 +99,8 @@ def _balanced(here: Balance, before: float) -> bool:
 
 
 def _carried(step: Step, time: float) -> State:
-    """From the last converged state, what is prescribed changes with the tangent there, theory (G9); contact closes as far as
-    it takes to hold every body."""
+    """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes
+    as far as it takes to hold every body."""
     system = step.problem.ahead(step.before, time)
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)

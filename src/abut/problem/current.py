@@ -55,7 +55,7 @@ class Current:
     pair: Pair
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
-        """Gaps, forces and derivatives with multipliers (n,). Theory (G1) to (G6)."""
+        """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
         pair = self.pair
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
@@ -120,7 +120,7 @@ class Current:
         return Frames.of(self.pair.contactor, self.pair.space, self.pair.slip.tangents)
 
     def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
-        """The same with slips, and forces of the tractions, theory (G4) to (G6)."""
+        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
         pair, own = self.pair, now.pair
         assert place.points is not None
         slip = slip_now(place.points, own.contactor, own.target, self._across)
@@ -171,7 +171,9 @@ class Current:
             rows.append(sum(sp.diags(tangents[:, b, a]) @ fields[a] for a in range(3)).tocsr()[has])
             slips.append(np.einsum("nd,nd->n", value, tangents[:, b])[has])
             slopes.append(
-                sum(sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)).tocsr()[has]
+                sum(
+                    sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)
+                ).tocsr()[has]
             )
             bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
         by_force = coupling_tangent(
@@ -179,7 +181,12 @@ class Current:
             pair.space.transfer @ traction, across=self._across,
         )  # fmt: skip
         return Rubbing(
-            sp.vstack(rows), np.concatenate(slips), sp.vstack(slopes), bending + by_force.force_tangent, tangents, operators
+            sp.vstack(rows),
+            np.concatenate(slips),
+            sp.vstack(slopes),
+            bending + by_force.force_tangent,
+            tangents,
+            operators,
         )
 
 

@@ -50,7 +50,7 @@ class FiniteProblem(ContactProblem):
         return self._expanded(before, now, here, np.zeros_like(here))
 
     def ahead(self, before: State, time: float) -> Linearised:
-        """The problem near the converged state ``before``, with what is prescribed at another time: theory (G9)."""
+        """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
         there, now = self.displacement(before), replace(before, time=time)
         return self._expanded(before, now, there, self.displacement(now) - there)
 
@@ -139,7 +139,8 @@ class FiniteProblem(ContactProblem):
         there = self.displacement(before)
         parts = [before.history.of(term.name) for term in self.terms]
         return [
-            term.evaluate(Motion(before.time, there, own), Motion(time, here, own)) for term, own in zip(self.terms, parts)
+            term.evaluate(Motion(before.time, there, own), Motion(time, here, own))
+            for term, own in zip(self.terms, parts)
         ]
 
 

@@ -61,9 +61,7 @@ class SlipPoints:
     @property
     def array(self) -> Array:
         """All of it, (n, 30), for a restart."""
-        return np.column_stack(
-            [self.facet, self.target_facet, self.weight, self.pressure, self.own, self.other]
-        )
+        return np.column_stack([self.facet, self.target_facet, self.weight, self.pressure, self.own, self.other])
 
     def moments(self, n_facets: int) -> Array:
         """int H_k over what was covered, facet by facet, (9 n_facets,)."""
@@ -82,7 +80,7 @@ class SlipNow:
 
 
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Smoothing | None = None) -> SlipNow:
-    """Theory (G6) at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
+    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
     tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
     x, dim = contactor.points, contactor.dim
     mine, its = contactor.nodes[points.facet], target.nodes[points.target_facet]
@@ -106,9 +104,7 @@ def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Sm
         return SlipNow(np.asarray(gather @ value)[:, None], ((gather @ change).tocsr(),))
     height = np.einsum("qa,qa->q", apart, normal)
     rise = sum(sp.diags(normal[:, a]) @ moved[a] + sp.diags(apart[:, a]) @ turning[a] for a in range(dim))
-    changes = [
-        moved[a] - sp.diags(height) @ turning[a] - sp.diags(normal[:, a]) @ rise for a in range(dim)
-    ]
+    changes = [moved[a] - sp.diags(height) @ turning[a] - sp.diags(normal[:, a]) @ rise for a in range(dim)]
     flat = apart - height[:, None] * normal
     return SlipNow(np.asarray(gather @ flat), tuple((gather @ change).tocsr() for change in changes))
 

@@ -207,7 +207,7 @@ class Solution:
                 "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
-            model = [balance, response, strain]
+            model = [balance, response] if self.model.finite else [balance, response, strain]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
