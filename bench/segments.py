@@ -3,22 +3,25 @@
 python bench/segments.py [--cells N]
 
 Spheres in spheres and balls on blocks have facets of very different sizes, whose normals point everywhere: what lies within
-reach is much more than what is seen; normals turn, and maps have to be inverted point by point. The last column is the
-time a facet over that of a flat interface of as many facets; each is the quickest of five.
+reach is much more than what is seen; normals turn, and maps have to be inverted point by point. The last two columns are
+the time a facet over that of a flat interface of as many facets, and the time of the derivatives by all coordinates
+over that of the values; each is the quickest of five.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
-from abut.cells import BY_CODE, CELLS
-from abut.contact.coupling import couple, surface_degree
+import numpy as np
+
+from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.contact.coupling import CouplingOptions, couple, surface_degree
+from abut.contact.coupling_tangent import coupling_tangent
 from abut.mesh.make import box, join, sphere_octant
 from abut.mesh.surface import Surface
-
-HOURS = 1e4  # seconds: longer than any of them takes
 
 
 def flat(n: int, cell: str) -> tuple[Surface, Surface]:
@@ -57,6 +60,27 @@ def inside_out(surface: Surface) -> Surface:
     return replace(surface, nodes=nodes)
 
 
+def quickest(work: Callable[[], object]) -> float:
+    """Seconds of CPU time, of five runs."""
+    spent = []
+    for _ in range(5):
+        start = time.process_time()
+        work()
+        spent.append(time.process_time() - start)
+    return min(spent)
+
+
+def measure(contactor: Surface, target: Surface) -> tuple[int, float, float]:
+    """Number of segments, seconds for the values and for the derivatives."""
+    degree, options = surface_degree(contactor), CouplingOptions()
+    rows = MAX_FACET_NODES * len(contactor)
+    pressure, traction = np.ones(rows), np.zeros((rows, contactor.dim))
+    count = int(couple(contactor, target, degree, options).segments.sum())
+    values = quickest(lambda: couple(contactor, target, degree, options))
+    derivatives = quickest(lambda: coupling_tangent(contactor, target, degree, options, pressure, traction))
+    return count, values, derivatives
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cells", type=int, default=70, help="three times the facets along an edge of the spheres")
@@ -67,16 +91,13 @@ def main() -> None:
         cases = (("flat", flat, along), ("sphere in sphere", spheres, n), ("ball on block", ball_on_block, n))
         for name, make, size in cases:
             contactor, target = make(size, cell)
-            spent = HOURS
-            for _ in range(5):
-                start = time.process_time()
-                count = int(couple(contactor, target, surface_degree(contactor)).segments.sum())
-                spent = min(spent, time.process_time() - start)
+            count, spent, derivatives = measure(contactor, target)
             a_facet = spent / len(contactor)
             alone = alone or a_facet
             print(
                 f"{cell:6s} {name:16s} {len(contactor):6d} facets {count:7d} segments in {spent:6.2f} s: "
-                f"{count / spent:9.0f} a second; a facet {1e6 * a_facet:6.1f} us, {a_facet / alone:5.1f} times flat"
+                f"{count / spent:9.0f} a second; a facet {1e6 * a_facet:6.1f} us, {a_facet / alone:5.1f} times flat; "
+                f"derivatives {derivatives / spent:4.1f} times"
             )
 
 

@@ -62,7 +62,7 @@ struct Contactor3 {
   Foot foot(const double *v, double *xi) const {
     const Point2 start = plane.flat(v);
     const double height = plane.height(v);
-    double x[3], n[3], dx[2][3], dn[2][3];
+    double x[3], n[3], dx[2][3], dn[2][3], last[2] = {0, 0};
     facet.centre(xi);
     Point2 p = start;
     for (int i = 0; i < 12; ++i) {
@@ -80,12 +80,14 @@ struct Contactor3 {
       if (det == 0)
         return {p, true};
       xi[0] -= cross2(d, b) / det, xi[1] -= cross2(a, d) / det;
-      facet.clamp(xi);
+      const bool cut = facet.clamp(xi);
+      const double step[2] = {xi[0] - before[0], xi[1] - before[1]};
+      cut ? go_on(xi, step, last) : void(last[0] = last[1] = 0);
       position.at(xi, x), direction.at(xi, n);
       if (leaning(n))
         return {p, false};
       p = start - (height - x[2]) / n[2] * Point2{n[0], n[1]};
-      if (std::abs(xi[0] - before[0]) + std::abs(xi[1] - before[1]) < SETTLED)
+      if (std::abs(step[0]) + std::abs(step[1]) < (cut ? SETTLED_AT_RIM : SETTLED))
         break;
     }
     return {p, true};
@@ -95,6 +97,19 @@ struct Contactor3 {
 
 private:
   static constexpr double SETTLED = 1e-7; // of the reference domain: what Newton's next step leaves is rounding
+  static constexpr double SETTLED_AT_RIM = 1e-10;
+
+  // Steps that are cut off at the rim shrink by a factor only, so the point goes on to where they lead: Aitken.
+  void go_on(double *xi, const double *step, double *last) const {
+    const double size = last[0] * last[0] + last[1] * last[1];
+    const double ratio = size > 0 ? (step[0] * last[0] + step[1] * last[1]) / size : 1;
+    const bool leads = ratio < 0.9 && ratio > -5;
+    for (int a = 0; a < 2; ++a) {
+      xi[a] += leads ? ratio / (1 - ratio) * step[a] : 0;
+      last[a] = leads ? 0 : step[a];
+    }
+    facet.clamp(xi);
+  }
 
   static bool leaning(const double *n) { return !(n[2] > 0.1 * std::sqrt(dot(n, n, 3))); }
   void to_frame(const Polynomial<3> &from, Polynomial<3> &to) const {

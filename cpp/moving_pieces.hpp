@@ -18,12 +18,12 @@ public:
   }
 
   // A polygon of the contactor piece `own.mine` that sees the facet t.
-  void integrate(const Over &over, const MovingPlane &plane, const Facet &t, const Segment &own,
-                 const Polygon &polygon, const Rule &rule) {
+  void integrate(const Over &over, const MovingPlane &plane, const Facet &t, const Segment &own, const Polygon &polygon,
+                 const Rule &rule) {
     Sight3 at(over.c, own.xi, own.eta);
-    const Outline outline(polygon, [&](const Vertex &v) { return over.curve(v); });
+    const Outline outline(polygon, [&](const Vertex &v) { return edges_->curve(v); });
     const MovingOutline moving(*edges_, polygon, own.mine, over.piece(own.mine));
-    const bool around = over.c.flat && !outline.straight; // as in `integrate_polygon`
+    const bool around = over.c.flat && curved(over, polygon); // as in `integrate_polygon`
     Fan fan{polygon.v[0].p, moving.corner(0)};
     if (around)
       fan = middle(polygon, moving);
@@ -48,6 +48,13 @@ private:
     Point2 first{}, last{};
     Rows2 first_rows{}, last_rows{};
   };
+
+  static bool curved(const Over &over, const Polygon &polygon) {
+    for (int i = 0; i < polygon.size; ++i)
+      if (const Curve *curve = over.curve(polygon.v[i]); curve && !curve->straight)
+        return true;
+    return false;
+  }
 
   Fan middle(const Polygon &polygon, const MovingOutline &moving) {
     Fan fan{polygon.middle(), edges_->take()};
@@ -114,7 +121,8 @@ private:
       return;
     add({bulge_[0].data(), p_[0].data()}, r * (1 - r)), add({bulge_[1].data(), p_[1].data()}, r * (1 - r));
     for (std::size_t s = 0; s < n; ++s)
-      weight_[s] += (1 - 2 * r) * (vy * bulge_[0][s] - vx * bulge_[1][s]) + (1 - r) * (ux * turn_[1][s] - uy * turn_[0][s]);
+      weight_[s] +=
+          (1 - 2 * r) * (vy * bulge_[0][s] - vx * bulge_[1][s]) + (1 - r) * (ux * turn_[1][s] - uy * turn_[0][s]);
   }
 
   // From the plane to the facet: theory (S10), (S11).

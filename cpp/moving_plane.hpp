@@ -12,8 +12,8 @@ struct Rows2 {
   explicit operator bool() const { return x; }
 };
 
-// The plane turns with the corners of its facet. That its origin and its axes move within it changes no integral, so they
-// are taken as fixed: only the tilt remains, the change of its normal along e1 and e2.
+// The plane turns with the corners of its facet. That its origin and its axes move within it changes no integral, so
+// they are taken as fixed: only the tilt remains, the change of its normal along e1 and e2.
 class MovingPlane {
 public:
   explicit MovingPlane(const Contactor3 &c) : c_(c), own_(6 * c.facet.nodes) {
@@ -205,7 +205,7 @@ private:
     }
   }
 
-  // The frame's own part: a vector w in it changes by (-a w3, -b w3, a w1 + b w2) with tilts a and b.
+  // The frame's own part: theory (T4).
   void turn(const Look &at, const Gradient &g, int t, double *row) const {
     double vector[5][3], by[2] = {0, 0};
     for (int a = 0; a < 3; ++a) {

@@ -135,7 +135,7 @@ private:
         dh_[k][b] = dh[k][b];
   }
 
-  // x - y(eta) = g N, differentiated: the slope is exact, so that this is one step of Newton's method.
+  // x - y(eta) = g N, differentiated: theory (T3).
   void see(const Number *place, const Number *normal, const double *y) {
     double g = 0;
     for (int a = 0; a < D; ++a)

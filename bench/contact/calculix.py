@@ -3,8 +3,9 @@
 As a script, python bench/contact/calculix.py CASE DOFS KIND FOLDER writes FOLDER/deck.inp; KIND is mortar or penalty.
 
 Contact is hard, which CalculiX takes, in both kinds, for a linear pressure over penetration with a stiffness of 50 times
-Young's modulus (per mm here; it says so in its output): its own default, not ours. Slave is abut's contactor. One
-increment, which CalculiX may cut; everything else is left at its default.
+Young's modulus (per mm here; it says so in its output): its own default, not ours. With friction it asks for the stiffness of
+what sticks: a tenth of that, as its manual advises. Slave is abut's contactor. One increment, which CalculiX may cut; all
+else is left at its default.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ NAMES = {"hex8": "C3D8", "hex20": "C3D20", "tet10": "C3D10"}
 _HEX = ({0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5}, {1, 2, 5, 6}, {2, 3, 6, 7}, {0, 3, 4, 7})
 _TET = ({0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3})
 FACES = {"hex8": _HEX, "hex20": _HEX, "tet10": _TET}
+STICK = 5.0  # stiffness of what sticks over Young's modulus, per mm
 TYPES = {"mortar": "MORTAR", "penalty": "SURFACE TO SURFACE"}
 
 
@@ -67,6 +69,9 @@ def deck(case: abut.Model, kind: str) -> Iterator[str]:
     yield from _rows((mesh.nodes_of(case.supports[0].on) + 1).tolist())
     yield "*SURFACE INTERACTION, NAME=TOUCH"
     yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"
+    if contact.friction:
+        yield "*FRICTION"
+        yield f"{contact.friction!r}, {STICK * case.solids[0].material.young!r}"
     yield f"*CONTACT PAIR, INTERACTION=TOUCH, TYPE={TYPES[kind]}"
     yield "SLAVE, MASTER"
     yield "*STEP"

@@ -1,4 +1,5 @@
-"""The models that every code solves: two blocks pressed flat, two blocks with the upper one tilted, a ball on a block.
+"""The models that every code solves: two blocks pressed flat, two blocks with the upper one tilted, without friction and
+with, a ball on a block.
 
 A case is named GEOMETRY-CELL, as in flat-hex8, tilted-tet10, hertz-hex20; its size is chosen by the number of
 displacements wanted, fixed ones included. Units are mm, N and MPa.
@@ -19,6 +20,7 @@ CELLS = ("hex8", "hex20", "tet10")
 SIDE = 10.0  # of each block
 DEPTH = 0.02  # the top is pressed down by: a strain of 0.1 %
 TILT = 2.0 * DEPTH / SIDE  # radians: the gap at the open end is twice the depth, about half of the interface closes
+FRICTION = 0.3
 RADIUS, ZONE = 8.0, 1.1  # of the ball and of its fine zone
 INDENT = 0.12  # the ball is pressed down by; half of it on either side of the contact
 
@@ -58,6 +60,11 @@ def _tilted_blocks(n: int, cell: str) -> abut.Model:
     return _two_blocks(n, cell, True)
 
 
+def _rubbing(n: int, cell: str) -> abut.Model:
+    case = _two_blocks(n, cell, True)
+    return replace(case, contacts=[replace(own, friction=FRICTION) for own in case.contacts])
+
+
 def _hertz(n: int, cell: str) -> abut.Model:
     """A quarter of a ball's lower half on a quarter of a block; symmetry on x = 0 and y = 0."""
     m = max(1, round(0.75 * n))
@@ -79,7 +86,9 @@ def _hertz(n: int, cell: str) -> abut.Model:
     )
 
 
-GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {"flat": _flat, "tilted": _tilted_blocks, "hertz": _hertz}
+GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {
+    "flat": _flat, "tilted": _tilted_blocks, "friction": _rubbing, "hertz": _hertz,
+}  # fmt: skip
 
 
 def dofs(model: abut.Model) -> int:
@@ -120,7 +129,7 @@ def _nearest(size: Callable[[int], int], wanted: int) -> int:
 
 def with_options(case: abut.Model, *, linear: str, tied: bool) -> abut.Model:
     """The same model for another linear solver, or with the bodies tied."""
-    contacts = [replace(c, kind="tied" if tied else "contact") for c in case.contacts]
+    contacts = [replace(c, kind="tied", friction=0.0) if tied else c for c in case.contacts]
     return replace(case, contacts=contacts, solve=abut.SolveOptions(linear=linear))
 
 

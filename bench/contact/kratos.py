@@ -2,8 +2,8 @@
 
 As a script, python bench/contact/kratos.py CASE DOFS FOLDER writes them; kratos_child.py runs them.
 
-Frictionless augmented Lagrangian mortar contact with dual multipliers, Newton-Raphson, residual criterion, AMGCL, all
-with Kratos' own defaults; the slave side is abut's contactor.
+Augmented Lagrangian mortar contact with dual multipliers, frictionless or frictional, Newton-Raphson, residual criterion,
+AMGCL, all with Kratos' own defaults; the slave side is abut's contactor.
 """
 
 from __future__ import annotations
@@ -111,6 +111,8 @@ def parameters(case: abut.Model) -> dict[str, Any]:
         }
         for i, s in enumerate(case.supports)
     ]
+    friction = case.contacts[0].friction
+    kind = "Frictional" if friction else "Frictionless"
     contact = {
         "python_module": "alm_contact_process",
         "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
@@ -118,7 +120,8 @@ def parameters(case: abut.Model) -> dict[str, Any]:
             "model_part_name": "Structure",
             "contact_model_part": {"0": ["slave", "master"]},
             "assume_master_slave": {"0": ["slave"]},
-            "contact_type": "Frictionless",
+            "contact_type": kind,
+            **({"friction_coefficients": {"0": friction}} if friction else {}),
         },
     }
     return {
@@ -138,11 +141,12 @@ def parameters(case: abut.Model) -> dict[str, Any]:
             "model_import_settings": {"input_type": "mdpa", "input_filename": "case"},
             "material_import_settings": {"materials_filename": "materials.json"},
             "time_stepping": {"time_step": 1.1},
-            "contact_settings": {"mortar_type": "ALMContactFrictionless"},
+            "contact_settings": {"mortar_type": f"ALMContact{kind}"},
             "convergence_criterion": "contact_residual_criterion",
             "compute_reactions": True,
             "max_iteration": 50,
-            "linear_solver_settings": {"solver_type": "amgcl"},
+            # With friction it condenses multipliers, and then wants a number here where its default is a word.
+            "linear_solver_settings": {"solver_type": "amgcl", **({"block_size": 3} if friction else {})},
             "rotation_dofs": False,
         },
         "processes": {"constraints_process_list": supports, "contact_process_list": [contact]},

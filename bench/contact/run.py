@@ -30,7 +30,7 @@ import report
 from codes import CODES, Code, code
 from report import Row
 
-GEOMETRIES, CELLS = ("flat", "tilted", "hertz"), ("hex8", "hex20", "tet10")
+GEOMETRIES, CELLS = ("flat", "tilted", "friction", "hertz"), ("hex8", "hex20", "tet10")
 NAMES = [f"{geometry}-{cell}" for geometry in GEOMETRIES for cell in CELLS]
 MARGIN = 1.5  # times differ between runs on a busy machine: a run is left out only if it would be this much too long
 ENOUGH = 30.0  # seconds spent on one code and mesh after which no run is repeated
@@ -168,7 +168,7 @@ def arguments() -> argparse.Namespace:
         parser.error(f"no code {unknown[0]!r}; use {', '.join(CODES)}")
     wrong = [case for case in result.cases if case not in NAMES]
     if wrong:
-        parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,hertz}}-{{hex8,hex20,tet10}}")
+        parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,friction,hertz}}-{{hex8,hex20,tet10}}")
     if result.cores[-1] > count:
         parser.error(f"--cores {result.cores[-1]}: there are {count}")
     return result

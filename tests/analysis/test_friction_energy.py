@@ -92,7 +92,7 @@ def test_energy_is_balanced_exactly(name: str) -> None:
     own = [step.energy for step in solution.steps if step.energy is not None]
     assert max(energy.error for energy in own) < BALANCED
     assert any(energy.friction > 1e-6 * energy.size for energy in own)
-    assert all(energy.limit == 1e-8 for energy in own)
+    assert all(energy.limit <= 1e-7 for energy in own)
     assert checks(solution)["", "energy balance"].passed
     for check in solution.certificate:
         if check.name in ("force balance", "moment balance"):
@@ -133,7 +133,9 @@ def test_nothing_happens_for_a_while() -> None:
     model = pushed()
     off = abut.Amplitude([(0, 0), (0.2, 1), (0.4, 0), (1, 0)])
     still = replace(
-        model, loads=[replace(model.loads[0], amplitude=off)], supports=[*model.supports[:1], abut.Support("upper.top", x=0)]
+        model,
+        loads=[replace(model.loads[0], amplitude=off)],
+        supports=[*model.supports[:1], abut.Support("upper.top", x=0)],
     )
     solution = abut.solve(still)
     assert solution.converged

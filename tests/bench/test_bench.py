@@ -156,6 +156,26 @@ def test_kratos_model(name: str) -> None:
     assert set(parts) == every | {f"support_{i}" for i in range(len(case.supports))}
 
 
+def test_friction_of_every_code() -> None:
+    """The coefficient reaches CalculiX and Kratos, and nothing of it where there is none; a tie has none."""
+    rough, smooth = small("friction-hex8"), small("tilted-hex8")
+    assert rough.mesh.points.tolist() == smooth.mesh.points.tolist()
+    cards = blocks("\n".join(calculix.deck(rough, "mortar")))
+    assert cards["*FRICTION"] == [["0.3", repr(5.0 * cases.STEEL.young)]]
+    assert "*FRICTION" not in blocks("\n".join(calculix.deck(smooth, "mortar")))
+    (own,) = kratos.parameters(rough)["processes"]["contact_process_list"]
+    assert own["Parameters"]["contact_type"] == "Frictional"
+    assert own["Parameters"]["friction_coefficients"] == {"0": 0.3}
+    assert kratos.parameters(rough)["solver_settings"]["contact_settings"]["mortar_type"] == "ALMContactFrictional"
+    (other,) = kratos.parameters(smooth)["processes"]["contact_process_list"]
+    assert (other["Parameters"]["contact_type"], "friction_coefficients" in other["Parameters"]) == (
+        "Frictionless",
+        False,
+    )
+    assert cases.with_options(rough, linear="auto", tied=True).contacts[0].kind == "tied"
+    assert cases.with_options(rough, linear="auto", tied=False).contacts[0].friction == 0.3
+
+
 @pytest.mark.parametrize("name", [name for name in QUICK if name != "hertz-hex20"])
 def test_sizes(name: str) -> None:
     """The mesh comes near the number wanted (whole cells), and grows with it; the smallest is the one of two cells."""

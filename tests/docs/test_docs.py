@@ -21,7 +21,7 @@ CODE = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "cpp").glob("*.[ch]pp")])
 DOCUMENTS = sorted([ROOT / "README.md", ROOT / "examples" / "README.md", *(ROOT / "docs").rglob("*.md")])
 
 TAG = re.compile(r"\\tag\{([^}]*)\}")
-LABEL = re.compile(r"\(([FSQPLVER]\d+)\)")
+LABEL = re.compile(r"\(([DFSQPLVERT]\d+)\)")
 CITATION = re.compile(r"\btheory((?:,? \([A-Z]\d+\))+)")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 

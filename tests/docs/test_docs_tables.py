@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "make"))
 
+import ccx_friction  # noqa: E402
 import inf_sup as constants  # noqa: E402
 import methods  # noqa: E402
 import pressure  # noqa: E402
@@ -170,3 +171,12 @@ def test_reported_pressure(table: str, key: tuple[str, ...], row: Callable[[], l
 
 def test_rates_are_those_of_the_benchmarks() -> None:
     assert [list(r.values()) for r in read_table(pressure.PAGE, "rates")] == pressure.rate_rows()
+
+
+def test_friction_beside_calculix() -> None:
+    """What the page says of abut, and that CalculiX is no further away than the text has it."""
+    printed = read_table(methods.PAGE, "friction")
+    for row, own in zip(printed, ccx_friction.by_abut(), strict=True):
+        assert agrees(row["abut, N m"], float(own[1]))
+        assert agrees(row["2 pi r^2 L mu p, N m"], float(own[2]))
+        assert float(row["CalculiX, N m"]) == pytest.approx(float(own[1]), rel=0.025)

@@ -210,6 +210,27 @@ def profile(solution: abut.Solution) -> tuple[Array, Array, Array, Cattaneo]:
     return x[order], drag[order], contact.friction.status[:, :2].ravel()[order], exact
 
 
+def rubbed(n: int = 4, cell: str = "hex8") -> abut.Model:
+    """A block pressed askew on a wider one, its top moved along both axes, back and to the other side: some of it opens,
+    some sticks, some slips."""
+    parts = {
+        "lower": make.box([0, 4], [0, 4], [0, 2], cells=[n + 1, n + 1, n // 2], cell=cell),
+        "upper": make.box([1, 3], [1, 3], [2, 3], cells=[n, n, n // 2], cell=cell),
+    }
+    down, along = abut.Amplitude([(0, 0), (0.25, 1)]), abut.Amplitude([(0.25, 0), (0.5, 1), (1, -1)])
+    return abut.Model(
+        make.join(parts),
+        [abut.Solid(name, abut.LinearElastic(1e4, POISSON)) for name in parts],
+        [
+            abut.Support("lower.bottom", x=0, y=0, z=0),
+            abut.Support("upper.top", z=lambda x: -0.015 + 0.02 * (x[:, 0] - 1.0), amplitude=down),
+            abut.Support("upper.top", x=0.006, y=0.003, amplitude=along),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        solve=abut.SolveOptions(times=[0.25, 0.5, 0.75, 1.0]),
+    )
+
+
 @dataclass(frozen=True)
 class Hooke(OwnMaterial):
     """Linear elasticity as a user's own material: Newton's method goes round again where it need not."""

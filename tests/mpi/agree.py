@@ -107,6 +107,20 @@ def clevis() -> Any:
     return replace(built, supports=[*built.supports, abut.Support("pin.top", x=0.01, y=0, z=0)])
 
 
+def rubbed(n: int = 4) -> Any:
+    """Friction in space: a block moved to and fro on another one, where some of it opens, sticks and slips."""
+    from models.friction import rubbed as model
+
+    return model(n)
+
+
+def pushed() -> Any:
+    """Friction in the plane, to and fro."""
+    from models.friction import pushed as model
+
+    return model()
+
+
 def example(path: str) -> Any:
     """Of the examples."""
     from abut.job import load_job
@@ -132,6 +146,8 @@ CASES: dict[str, Callable[[], Any]] = {
     "alone": alone,
     "rigid": rigid,
     "clevis": clevis,
+    "rubbed": rubbed,
+    "pushed": pushed,
     "two-rings": lambda: example("two-rings/job.toml"),
     "hertz-line": lambda: example("hertz-line/quad8.toml"),
     "ball": ball,
@@ -142,7 +158,8 @@ CASES: dict[str, Callable[[], Any]] = {
 
 
 def compare(name: str, team: Team) -> dict[str, Any]:
-    """Largest differences of displacement, pressure, stress and reactions, each over the largest value."""
+    """Largest differences of displacement, pressure, stress and reactions, with friction of traction and slip too, each over
+    the largest value."""
     import numpy as np
 
     import abut
@@ -168,6 +185,10 @@ def compare(name: str, team: Team) -> dict[str, Any]:
             worst["pressure"] = max(worst["pressure"], far(c.pressure, d.pressure))
             assert [check.passed for check in c.checks] == [check.passed for check in d.checks]
             assert (c.segments, c.active) == (d.segments, d.active)
+            if c.friction is not None:
+                assert np.array_equal(c.friction.status, d.friction.status)
+                worst["traction"] = max(worst.get("traction", 0.0), far(c.friction.traction, d.friction.traction))
+                worst["slip"] = max(worst.get("slip", 0.0), far(c.friction.total_slip, d.friction.total_slip))
     owner = team.store["owner"]
     sides = [[np.bincount(owner[s.cells], minlength=team.size).tolist() for s in (c.contactor, c.target)]
              for c in many.contacts]  # fmt: skip

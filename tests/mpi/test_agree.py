@@ -27,6 +27,7 @@ def compared(mpirun: Run, n: int, cases: list[str], *options: str, timeout: floa
     for row in found.values():
         assert row["converged"]
         assert max(row[what] for what in ("displacement", "pressure", "stress", "reaction")) < AGREE, row
+        assert max(row.get(what, 0.0) for what in ("traction", "slip")) < AGREE, row
         assert len(row["cells"]) == n
     return found
 
@@ -43,6 +44,23 @@ def test_multigrid(mpirun: Run, n: int) -> None:
     """The same by iterations, with bodies that contact alone holds in one direction."""
     for row in compared(mpirun, n, ["hex8", "tet10-hex20", "tied", "press", "larger"], "-pc_type", "gamg").values():
         assert "gamg" in row["solver"]
+
+
+@pytest.mark.parametrize("n", [2, 3])
+@pytest.mark.parametrize("option", ["mumps", "gamg"])
+def test_friction(mpirun: Run, n: int, option: str) -> None:
+    """Several steps with reversal, in which contact opens, sticks and slips: status, traction and slip of every step as on
+    one process, by factors of an unsymmetric matrix and by iterations."""
+    options = ["-pc_type", "gamg"] if option == "gamg" else []
+    found = compared(mpirun, n, ["pushed", "rubbed"], *options)
+    assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
+
+
+def test_friction_is_not_symmetric(mpirun: Run) -> None:
+    """MINRES would not converge to the solution: it is refused by its name."""
+    result = mpirun(2, "pushed", "-ksp_type", "minres", program=(PROGRAM,))
+    assert result.returncode != 0
+    assert "-ksp_type minres is for symmetric matrices" in result.stderr
 
 
 def test_other_solvers(mpirun: Run) -> None:

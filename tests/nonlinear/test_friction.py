@@ -234,18 +234,12 @@ def test_no_traction_across_a_plane_of_symmetry() -> None:
         ({"friction": -0.1}, "friction: expected a coefficient >= 0"),
         ({"friction": "smooth"}, 'a coefficient >= 0, "rough", or pairs'),
         ({"friction": 0.2, "kind": "tied"}, "a tie holds in all directions"),
-        ({"friction": 0.2, "law": "constraint-function"}, "law complementarity"),
         ({"friction": 0.2, "method": "node-to-segment"}, "method segment-to-segment"),
     ],
 )
 def test_refused(options: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
         abut.Contact("a", "b", **options)
-
-
-def test_multigrid_is_refused() -> None:
-    with pytest.raises(InputError, match="does not know friction"):
-        abut.solve(replace(pushed(), solve=abut.SolveOptions(linear="amg")))
 
 
 def test_no_friction_is_the_contact_without() -> None:

@@ -12,7 +12,7 @@ from abut.contact.friction_bound import FrictionBound, PressureCurve
 from abut.contact.laws import Coulomb, LawState
 from abut.errors import InputError
 from abut.mesh import make
-from abut.verify import law_tangents
+from abut.verify import inf_sup, interface_patch, law_tangents
 from models.friction import FRICTION, PRESSURE, errors, pushed, sheared
 from models.patch import two_blocks
 
@@ -108,6 +108,57 @@ def test_coefficient_over_time() -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+def test_every_form_in_one_model() -> None:
+    """Six blocks on a plate, each under unit pressure and pushed far: every contact has friction of its own."""
+    forms: dict[str, dict] = {
+        "number": {"friction": 0.2},
+        "table": {"friction": [[0.0, 0.3], [0.01, 0.15]]},
+        "place": {"friction": lambda x: np.full(len(x), 0.1)},
+        "fading": {"friction": 0.4, "friction_amplitude": abut.Amplitude([(0, 1), (1, 0.25)])},
+        "smooth": {"friction": 0.3, "law": "constraint-function"},
+        "none": {},
+    }
+    parts = {"plate": make.rectangle([0, 12], [0, 1], cells=[36, 3])}
+    parts |= {n: make.rectangle([0.5 + 2 * i, 1.5 + 2 * i], [1, 1.5], cells=[4, 2]) for i, n in enumerate(forms)}
+    model = abut.Model(
+        make.join(parts),
+        [abut.Solid(name, abut.LinearElastic(1e3, 0.3)) for name in parts],
+        [abut.Support("plate.bottom", x=0, y=0), *(abut.Support(f"{name}.top", x=0.2) for name in forms)],
+        [abut.Pressure(f"{name}.top", 1.0, amplitude=abut.Amplitude([(0, 1)])) for name in forms],
+        [abut.Contact(f"{name}.bottom", "plate.top", name=name, **own) for name, own in forms.items()],
+        plane="strain",
+    )
+    solution = abut.solve(model)
+    assert solution.converged
+    along = {contact.name: -contact.force[0] for contact in solution.contacts}
+    expected = {"number": 0.2, "table": 0.15, "place": 0.1, "fading": 0.1, "smooth": 0.3, "none": 0.0}
+    assert along == pytest.approx(expected, abs=1e-6)  # the smooth one is off by epsilon
+    assert all(check.passed for check in solution.certificate)
+
+
+@pytest.mark.parametrize("law", ["complementarity", "constraint-function"])
+def test_axisymmetric(law: str) -> None:
+    """A rod pressed on a softer disc, which would widen under it: friction over radius and over pressure, in the section."""
+    parts = {"disc": make.rectangle([0, 3], [0, 1], [18, 6]), "rod": make.rectangle([0, 1], [1, 3], [7, 10])}
+    model = abut.Model(
+        make.join(parts),
+        [abut.Solid("disc", abut.LinearElastic(1e3, 0.4)), abut.Solid("rod", abut.LinearElastic(1e5, 0.3))],
+        [abut.Support("disc.bottom", y=0)],
+        [abut.Pressure("rod.top", 10.0)],
+        [abut.Contact("disc.top", "rod.bottom", law=law)],
+        plane="axisymmetric",
+    )
+    smooth = abut.solve(model)
+    for friction in (lambda x: 0.1 + 0.1 * x[:, 0], ((0.0, 0.2), (20.0, 0.1)), "rough"):
+        solution = abut.solve(replace(model, contacts=[replace(model.contacts[0], friction=friction)]))
+        assert solution.converged
+        assert all(check.passed for check in solution.certificate)
+        contact = solution.contacts[0]
+        assert contact.force[1] == pytest.approx(smooth.contacts[0].force[1], rel=1e-9)
+        # The disc would widen under the rod: friction holds it back.
+        assert contact.force[0] * smooth.displacement[model.mesh.nodes_of("disc.top")][:, 0].max() < 0.0
+
+
 @pytest.mark.parametrize("components", [2, 3])
 def test_law_of_a_table_against_differences(components: int) -> None:
     """Slipping points, away from the points of the table; central differences are good to 1e-9 of the largest entry."""
@@ -153,3 +204,10 @@ def test_refused(options: dict, words: str) -> None:
 def test_functions_refused(function: object, words: str) -> None:
     with pytest.raises(InputError, match=words):
         abut.solve(two_on_a_plate(friction=function))
+
+
+@pytest.mark.parametrize("options", [{"law": "constraint-function"}, {"friction_amplitude": abut.Amplitude([(0, 1)])}])
+def test_tests_of_the_interface_leave_friction_out(options: dict) -> None:
+    model = two_on_a_plate(friction=0.1, **options)
+    assert inf_sup(model).levels[0].trace > 0.1
+    assert all(part.passed for part in interface_patch(model))

@@ -13,11 +13,13 @@ import pytest
 
 import abut
 from abut import write
+from abut.cli.progress import Progress
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.examine import check
 from abut.errors import InputError
 from abut.job import load_job
 from abut.output.restart import description, load_steps, save_step
+from abut.solution.grids import contact_grid
 from models.decks import BRICKS, PAIR, load
 from models.friction import FRICTION, Hooke, on_a_slope, pushed
 
@@ -55,14 +57,83 @@ def test_summary_and_history(written: Path) -> None:
     assert own["work"] > 0.0
     assert steps[4]["contacts"][0]["friction"]["max_total_slip"] > 0.0
     rows = list(csv.DictReader((written / "history.csv").open()))
-    assert float(rows[2]["slipping_area"]) == own["slipping_area"]
-    assert float(rows[2]["friction_work"]) == own["work"]
+    names = {"friction_work": "work", "total_friction_work": "total_work", "friction_force_by_area": "force_by_area"}
+    names |= {"friction_force_limit": "force_limit", "largest_friction_share": "largest_share"}
+    names |= {name: name for name in ("slipping_area", "max_traction", "max_slip", "max_total_slip")}
+    assert {name: float(rows[2][name]) for name in names} == {name: own[key] for name, key in names.items()}
+    assert float(rows[2]["friction_force_x"]) == own["force"][0]
+    assert sum(step["contacts"][0]["friction"]["work"] for step in steps) == pytest.approx(
+        steps[4]["contacts"][0]["friction"]["total_work"]
+    )
+    assert list(rows[0])[-1] == "max_total_slip"  # more columns come last
+
+
+def test_numbers_of_sliding(tmp_path: Path) -> None:
+    """All of it slides: friction is the coefficient times the load of 100 on a width of 2, on the block's bottom against
+    its way; it takes that force times the slip, which is the same all over but for what the blocks give way."""
+    solution = abut.solve(pushed(far=0.05))
+    own = solution.steps[2].contacts[0].friction
+    assert own.force == pytest.approx([-FRICTION * 200.0, 0.0], abs=1e-7)
+    assert own.force_by_area == pytest.approx(FRICTION * 200.0, rel=1e-9)
+    assert own.force_limit == pytest.approx(FRICTION * 200.0, rel=1e-9)
+    assert own.largest_share == pytest.approx(1.0, abs=1e-9)
+    used = np.isfinite(own.traction_limit)
+    assert np.linalg.norm(own.traction, axis=2)[used] == pytest.approx(own.traction_limit[used], rel=1e-6, abs=1e-6)
+    least = np.linalg.norm(own.slip, axis=2)[own.status > 0].min()
+    assert own.force_by_area * least < own.work < own.force_by_area * own.max_slip
+    both = [solution.steps[i].contacts[0].friction for i in (1, 2)]
+    assert np.nansum(both[1].total_work_per_area) == pytest.approx(
+        np.nansum(both[0].total_work_per_area) + np.nansum(both[1].work_per_area)
+    )
+
+
+def test_energy_in_the_summary(written: Path) -> None:
+    for step in json.loads((written / "summary.json").read_text())["steps"]:
+        own = step["energy"]
+        assert own["loads"] + own["supports"] + own["contact"] == pytest.approx(
+            own["stored"] + own["friction"] + own["stepping"]
+        )
+        assert own["friction"] == step["contacts"][0]["friction"]["work"]
+
+
+def test_log_counts_points(written: Path) -> None:
+    """With friction every iteration says how many points stick and slip: all that are in contact."""
+    rows = [json.loads(line) for line in (written / "run.jsonl").read_text().splitlines() if "iteration" in line]
+    rows = [row for row in rows if "iteration" in row]
+    assert rows
+    assert all(row["sticking"] + row["slipping"] == row["active"] <= 12 for row in rows)  # 11 facets, 12 nodes
+    assert any(row["slipping"] for row in rows)
+    assert any(row["sticking"] for row in rows)
+
+
+def test_table_of_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    """Columns for stick and slip with friction, the usual ones without."""
+    for model, words in ((pushed(), "sticks    slips"), (pushed(friction=0.0), "active  changed")):
+        with Progress(plain=True) as show:
+            rows = [row for step in abut.solve(model).steps for row in step.iterations]
+            show(rows[0])
+        head, line = capsys.readouterr().out.splitlines()
+        assert words in head
+        assert len(head.split()) == len(line.split())
+        assert line.split()[2] == str(rows[0].active)
 
 
 def test_fields_of_the_contact(written: Path) -> None:
+    """On the contactor what the record says, on the target nothing."""
+    solution = abut.solve(pushed())
+    grid = contact_grid(solution.steps[2], solution.steps[2].contacts[0])
     (file,) = written.glob("contact_*_0003.vtu")
     text = file.read_bytes()
-    assert all(f'Name="{name}"'.encode() in text for name in ("traction", "slip", "total_slip", "friction_status"))
+    own, data = solution.steps[2].contacts[0].friction, grid.point_data
+    names = {"traction": own.traction, "slip": own.slip, "total_slip": own.total_slip, "friction_status": own.status}
+    names |= {"friction_work": own.work_per_area, "total_friction_work": own.total_work_per_area}
+    count = 3 * len(own.status)  # line3
+    for name, values in names.items():
+        assert f'Name="{name}"'.encode() in text
+        wanted = values[:, :3].reshape(count, *values.shape[2:])
+        shown = data[name][:count] if values.ndim == 2 else data[name][:count, :2]
+        assert np.array_equal(shown, wanted), name
+        assert not data[name][count:].any()
 
 
 def test_no_columns_without_friction(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 import abut
 from abut.cells import CELLS
 from abut.mesh import make
+from models.friction import pushed
 
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "wedge15")
 PLANE = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -149,6 +150,21 @@ def test_a_picture_has_a_picture_in_it(what: str, tmp_path: Path) -> None:
     assert len(np.unique(np.round(pixels, 2), axis=0)) > 50  # shades and a scale of colours
     with pytest.raises(abut.InputError, match="what"):
         solved("tri3").plot("pressur")
+
+
+def test_friction_in_pictures(tmp_path: Path) -> None:
+    """Traction and slip are there with friction, and refused where no contact has any."""
+    pytest.importorskip("pyvista")
+    solution = abut.solve(pushed())
+    for what in ("traction", "slip"):
+        plotter = solution.plot(what, path=tmp_path / f"{what}.png")
+        own = solution.contacts[0].friction
+        assert plotter.mapper.scalar_range[1] == pytest.approx(
+            {"traction": own.max_traction, "slip": own.max_total_slip}[what]
+        )
+    assert {"traction", "friction_status"} <= set(solution.to_pyvista()["contacts"][0]["contactor"].point_data)
+    with pytest.raises(abut.InputError, match="needs a contact with friction"):
+        solved("tri3").plot("slip", path=tmp_path / "none.png")
 
 
 def test_pyvista_is_optional(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,6 +27,7 @@ from abut.output.restart import load_steps, save_step
 from abut.problem.kinematics import Frozen, Jump
 from abut.problem.problem import ContactProblem
 from abut.verify import law_tangents, material_tangent
+from models.friction import rubbed
 from models.oracle import assembled
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "own-law"))
@@ -57,9 +58,12 @@ def counted(patch: pytest.MonkeyPatch, module: Any, name: str, calls: list[str])
     patch.setattr(module, name, lambda *args, **options: (calls.append(name), function(*args, **options))[1])
 
 
+@pytest.mark.parametrize("model", [blocks, rubbed], ids=["frictionless", "friction"])
 @pytest.mark.parametrize("linear", ["direct", "amg"])
-def test_a_linear_model_is_factorised_once(linear: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One elimination, or one hierarchy, for all iterations of all load steps."""
+def test_a_linear_model_is_factorised_once(
+    linear: str, model: Callable[[], abut.Model], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One elimination, or one hierarchy, for all iterations of all load steps; with friction too, to and fro."""
     if linear == "direct" and direct.solver_name() != "PARDISO":
         pytest.skip("only PARDISO condenses")
     calls: list[str] = []
@@ -68,8 +72,8 @@ def test_a_linear_model_is_factorised_once(linear: str, monkeypatch: pytest.Monk
         (static_condensation, "_flexibility"),
     ):  # fmt: skip
         counted(monkeypatch, module, name, calls)
-    model = blocks()
-    solution = abut.solve(replace(model, solve=replace(model.solve, linear=linear)))
+    own = model()
+    solution = abut.solve(replace(own, solve=replace(own.solve, linear=linear)))
     assert solution.converged
     assert sum(len(step.iterations) for step in solution.steps) >= 4
     matrices = [name for name in calls if name != "_flexibility"]

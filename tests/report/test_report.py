@@ -16,11 +16,14 @@ import abut
 from abut.cli import main
 from abut.mesh import make
 from abut.report import Origin, read_origin, write_report
+from abut.report.friction import arrow_nodes, at_arrows
 from abut.report.lines import pressure_lines
 from abut.report.origin import comparison
 from abut.report.scene import scene, thin
 from abut.report.surface_triangles import patch, skin
+from models.friction import FRICTION, pushed
 from models.page import Page
+from models.twisted import twisted
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 STEEL = abut.LinearElastic(1000.0, 0.3)
@@ -294,6 +297,71 @@ def test_run_writes_the_report(tmp_path: Path) -> None:
     assert "Two steel blocks with independent meshes" in page.text
 
 
+def test_friction_is_in_the_page(tmp_path: Path) -> None:
+    """Its table, its numbers over the steps, traction and limit along the line, the words of the fields."""
+    solution = abut.solve(pushed())
+    page = Page(write_report(solution, tmp_path / "report.html"))
+    own = solution.contacts[0].friction
+    assert "largest share of the limit" in page.text
+    for value in (own.sticking_area, own.force_by_area, own.max_total_slip, own.total_work):
+        assert f"{value:.6g}" in page.text
+    data = json.loads(page.data)
+    history = data["history"]["contacts"][0]["friction"]
+    each = [step.contacts[0].friction for step in solution.steps]
+    assert history["force"] == pytest.approx([f.force_by_area for f in each], rel=1e-6)
+    assert history["work"] == pytest.approx([f.total_work for f in each], rel=1e-6)
+    assert history["limit"] == pytest.approx([FRICTION * 200.0] * 5, rel=1e-6)
+    line = data["lines"][0]
+    assert np.max(line["traction"]) == pytest.approx(own.max_traction, rel=1e-6)
+    assert line["limit"] == pytest.approx(FRICTION * np.array(line["pressure"]), rel=1e-5, abs=1e-6)
+    assert len(data["convergence"]["slipping"]) == len(data["convergence"]["step"])
+
+
+def test_no_friction_no_words(tmp_path: Path) -> None:
+    page = Page(write_report(solution_of("quad4"), tmp_path / "report.html"))
+    assert "riction" not in page.text
+    data = json.loads(page.data)
+    assert data["history"]["contacts"][0]["friction"] is None
+    assert "arrows" not in data["scene"]["contacts"][0]
+    assert "traction" not in data["scene"]["steps"][0]["contacts"][0]
+
+
+def test_rough_contacts_have_no_limit(tmp_path: Path) -> None:
+    page = Page(write_report(abut.solve(pushed(friction="rough")), tmp_path / "report.html"))
+    assert "no limit" in page.text
+    assert json.loads(page.data)["history"]["contacts"][0]["friction"]["limit"] == [None] * 5
+
+
+def test_arrows_are_the_traction() -> None:
+    """Arrows stand at the corners of facets and are the reported traction there; status is drawn in the order of zones."""
+    solution = abut.solve(twisted(3))
+    data, contact = scene(solution).data, solution.contacts[0]
+    side, step = data["contacts"][0], data["steps"][-1]["contacts"][0]
+    points, arrows = (unpack(a).reshape(-1, 3) for a in (side["arrows"]["points"], step["arrows"]["traction"]))
+    nodes = np.unique(contact.contactor.nodes[:, :4])
+    assert points == pytest.approx(solution.model.mesh.points[nodes], abs=1e-6)
+    assert np.linalg.norm(arrows, axis=1).max() == pytest.approx(
+        np.linalg.norm(contact.friction.traction[:, :4], axis=2).max(), rel=1e-6
+    )
+    normals = unpack(side["arrows"]["normals"]).reshape(-1, 3)
+    assert np.abs(np.einsum("ij,ij->i", normals, arrows)).max() < 1e-5 * np.abs(arrows).max()
+    round_ = np.cross([0, 0, 1], points)
+    assert (np.einsum("ij,ij->i", round_, arrows) < 0.0).all()  # against the turn
+    assert set(np.unique(unpack(step["status"]))) == {1.0}  # slips all over: between open and stuck
+    assert unpack(step["traction"]).max() == pytest.approx(contact.friction.max_traction, rel=1e-3)
+
+
+def test_many_arrows_are_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("abut.report.friction.MOST", 10)
+    contact = abut.solve(twisted(3)).contacts[0]
+    nodes = arrow_nodes(contact)
+    assert len(nodes) == 10
+    drawn = at_arrows(contact, nodes, contact.friction.traction)
+    for node, arrow in zip(nodes, drawn):
+        own = contact.friction.traction[contact.contactor.nodes == node]
+        assert arrow == pytest.approx(own.mean(axis=0), rel=1e-9)
+
+
 TOUCH_EVERYTHING = """<script>(() => {
   document.documentElement.dataset.before = abut.view.count().pixels;
   const change = (e, value) => { e.value = value; for (const k of ["input", "change"]) e.dispatchEvent(new Event(k)); };
@@ -309,6 +377,7 @@ TOUCH_EVERYTHING = """<script>(() => {
     if (hit) { found.add(hit.name); if (!("displacement" in hit.values)) throw Error("nothing known at " + hit.name); }
   }
   document.documentElement.dataset.found = found.size;
+  document.documentElement.dataset.arrows = abut.view.arrows.reduce((n, own) => n + own.shown, 0);
 })();</script>"""
 
 
@@ -332,6 +401,35 @@ def test_a_browser_draws_it(case: str, tmp_path: Path) -> None:
     assert int(root["found"]) >= 2  # values under the pointer, of both bodies or of a body and a contact
     assert int(root["pixels"]) > 20_000  # the picture is still there after everything has been touched
     assert int(root["colours"]) > 30
+
+
+STATUS_ONLY = """<script>(() => {
+  const s = abut.view.state, data = document.documentElement.dataset;
+  Object.assign(s, { field: "status", mesh: false, arrows: false });
+  abut.view.apply();
+  data.plain = abut.view.count().colours;
+  s.arrows = true;
+  abut.view.apply();
+  data.arrows = abut.view.arrows[0].shown;
+  data.more = abut.view.count().colours;
+})();</script>"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_browser_draws_friction(dim: int, tmp_path: Path) -> None:
+    """Every field, the status and the arrows: an arrow for each node of a facet's corner, which changes the picture; three
+    more plots; no error."""
+    solution = abut.solve(pushed() if dim == 2 else twisted(3))
+    path = write_report(solution, tmp_path / "report.html")
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("</body>", TOUCH_EVERYTHING + STATUS_ONLY + "</body>"), encoding="utf-8")
+    root = in_browser(path)
+    assert (root.get("ready"), root["errors"]) == ("true", "0"), root
+    contactor = solution.contacts[0].contactor
+    assert int(root["arrows"]) == len(np.unique(contactor.nodes[:, : 2 if dim == 2 else 4]))
+    assert int(root["more"]) > int(root["plain"])
+    assert int(root["plots"]) >= 9
 
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -30,6 +30,7 @@ from abut.contact.nodal_recovery import (
 )
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult, PressureStatistics, Resultant
@@ -123,11 +124,12 @@ def contact_result(
     nodal = raw if at is None else at_facet_nodes(at.surface, _reported(own, at))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, own, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
-        contactor=pair.contactor,
-        target=pair.target,
+        contactor=_undeformed(mesh, pair.contactor),
+        target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
         area=own.area,
@@ -154,10 +156,15 @@ def contact_result(
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
-        friction=None if at is None else friction_result(
-            pair, at, own.multipliers, own.status, own.slips, own.limit, earlier and earlier.friction
-        ),
+        friction=None
+        if at is None
+        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, before),
     )
+
+
+def _undeformed(mesh: Mesh, surface: Surface) -> Surface:
+    """The surface where it was at the outset, as results show it."""
+    return surface if surface.points is mesh.points else replace(surface, points=mesh.points)
 
 
 def _statistics(
@@ -176,7 +183,7 @@ def _statistics(
     ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
-        resultant(mesh.points[ids], forces[ids], mesh.axisymmetric, none),
+        resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
-from abut.analysis.statistics import cross
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
+from abut.contact.smooth_friction import slip_of
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
@@ -121,6 +122,15 @@ def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
     return np.where(mine, force, 0.0), np.where(mine, 0.0, force)
 
 
+def _creep(pair: Pair, size: Vector, bound: Vector) -> Vector:
+    """Slip (n_functions,) that the constraint function leaves to points that stick under tractions of that size, twice over
+    for what is left of its residual; none with Coulomb's law itself."""
+    if not pair.smooth:
+        return np.zeros(len(size))
+    epsilon = float(np.sqrt(pair.contact.epsilon))
+    return 2.0 * slip_of(size, np.where(np.isfinite(bound), bound, 0.0), epsilon) / pair.stiffness
+
+
 def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | None:
     """Relative errors of force and moment between the two sides with pressure and traction; None without friction.
 
@@ -174,7 +184,7 @@ def friction_checks(
          "tangential traction beyond the coefficient times the pressure, over the largest pressure"),
         ("slip direction", float(against.max(initial=0.0)) / most, OPPOSED,
          "power that is missing because slip is not opposite to the traction, over the largest"),
-        ("sticking", float(way[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
+        ("sticking", float((way - _creep(pair, size, bound))[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
          "slip of sticking points in the step, as a pressure over the largest pressure"),
         ("friction work", max(-float(work.min(initial=0.0)), 0.0) / unit, WORK,
          "work that friction gives back at a point in the step, over the largest that it takes"),

@@ -9,15 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
-from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.contact_results import PairState, contact_result
+from abut.analysis.covered import covered
+from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
 from abut.model.conditions import weights
 from abut.model.offset import offsets
+from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.finite import FiniteProblem
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
@@ -64,13 +67,14 @@ def step_result(
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
-    acting, balance = _energy(end, acted, contacts, before) if attempt.converged else (None, None)
+    acting, balance = _energy(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
     step = Step(
         number=attempt.number,
         factor=state.time,
         converged=attempt.converged,
+        reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=assembled.bodies.stress(end.motion),
@@ -101,8 +105,12 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     """Forces and pressures of the state that a load step ended with."""
     bodies, state = assembled.bodies, attempt.state
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
-    displacement = problem.springs.without_motions(problem.displacement(state))
+    displacement = problem.displacement(state)
+    if not problem.model.finite:  # small turns would strain it
+        displacement = problem.springs.without_motions(displacement)
     system = problem.linearise(state, state)
+    if isinstance(problem, FiniteProblem):
+        system, state = covered(problem, system, state, displacement)
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -119,20 +127,23 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
 
 
 def _energy(
-    end: _End, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
+    end: _End, attempt: Attempt, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acting | None, Energy | None]:
-    """What acts at the end of a step, and the energy over it; None without friction."""
+    """What acts at the end of a step, and the energy over it; None without friction, where it did not converge, and where
+    the operator changes with the displacements."""
     system, held = end.system, end.problem.held
-    if not any(pair.frictional for pair in system.pairs):
+    if not attempt.converged or end.problem.model.finite or not any(pair.frictional for pair in system.pairs):
         return None, None
+    largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
         end.displacement, held.prescribed @ system.factors, end.internal, end.loads, end.reaction,
         pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE),
     )  # fmt: skip
     if acted is None:
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
-    slips = [history[pair.contact.name][:, 0] if pair.frictional else None for pair in system.pairs]
+    slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
     earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
     return now, energy(system, acted, now, slips, contacts, earlier)
 
@@ -153,7 +164,8 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
         constant, varying = offsets(model, pair.contact)
-        overlap = overlaps(pair, end.nodal, constant + float(varying @ system.factors))
+        moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
+        overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
         around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -18,11 +18,14 @@ from abut.errors import SingularModelError
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.nonlinear.large_steps import march_finite
 from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.pace import pace_of
 from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
+from abut.problem.finite import FiniteProblem
 from abut.problem.restraint import require_balance
 from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
@@ -96,8 +99,8 @@ class Run:
         self.clock.mark("results")
         return done[-1].state
 
-    def march(self, first: State) -> None:
-        """Solve the steps that are left, each told and kept as it ends."""
+    def march(self, first: State, done: Sequence[Saved] = ()) -> None:
+        """Solve the steps that are left, each told and kept as it ends. done: those before."""
         problem, observe, solve = self.assembled.problem, self.told.observe, self.model.solve
         times = [t for t in solve.ends if not self.steps or t > first.time * (1.0 + 1e-12)]
         count = len(self.steps) + len(times)
@@ -105,8 +108,9 @@ class Run:
         def begins(number: int, time: float) -> None:
             of_all = max(count, number)
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
-            loads = problem.held.free.T @ (self.assembled.loaded.forces @ weights(self.model.histories, time))
-            require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
+            factors = weights(self.model.histories, time)
+            loads = problem.held.free.T @ (self.assembled.loaded.forces @ factors)
+            require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
 
         def prepares(what: LinearSolver) -> None:
             observe(Phase(*setting_up(what, problem)))
@@ -118,9 +122,18 @@ class Run:
             )
 
         halve = self.model.finite or any(pair.frictional for pair in problem.pairs)
-        schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
         control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
-        for attempt in march(problem, first, schedule, self.solver, control, len(self.steps) + 1):
+        attempts: Iterator[Attempt]
+        if isinstance(problem, FiniteProblem):
+            pace = pace_of(solve.steps, solve.times, self.model.histories)
+            for saved in done:
+                pace.repeat(saved.state.time, len(saved.iterations))
+            states = [problem.start(), *(saved.state for saved in done)]
+            attempts = march_finite(problem, states, pace, self.solver, control)
+        else:
+            schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
+            attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)
+        for attempt in attempts:
             self.clock.mark("solve")
             observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
             self._end(attempt)

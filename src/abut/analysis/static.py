@@ -58,5 +58,5 @@ def solve(
     """
     run = Run.of(model, observer or _silent, on_step or _silent, team, resume)
     first = run.restore(resume)
-    run.march(first)
+    run.march(first, resume)
     return run.so_far(complete=True)

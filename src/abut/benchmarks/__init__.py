@@ -2,7 +2,23 @@
 
 from __future__ import annotations
 
-from abut.benchmarks import beam, contrast, convergence, fits, hertz, patch, punches, stability
+from abut.benchmarks import (
+    beam,
+    contrast,
+    convergence,
+    finite_beams,
+    finite_contact,
+    finite_rubber,
+    finite_uniform,
+    fits,
+    friction,
+    friction_balls,
+    friction_statics,
+    hertz,
+    patch,
+    punches,
+    stability,
+)
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
 __all__ = ["BENCHMARKS", "Benchmark", "Outcome", "Reference", "run"]
@@ -15,8 +31,15 @@ BENCHMARKS: dict[str, Benchmark] = {
         *fits.BENCHMARKS,
         *punches.BENCHMARKS,
         *contrast.BENCHMARKS,
+        *friction.BENCHMARKS,
+        *friction_balls.BENCHMARKS,
+        *friction_statics.BENCHMARKS,
         *beam.BENCHMARKS,
         *stability.BENCHMARKS,
         *convergence.BENCHMARKS,
+        *finite_uniform.BENCHMARKS,
+        *finite_beams.BENCHMARKS,
+        *finite_rubber.BENCHMARKS,
+        *finite_contact.BENCHMARKS,
     )
 }

@@ -1,4 +1,4 @@
-"""Forces, tangent stiffness, stresses and strain energy of solids under finite strains; theory (D1) to (D8)."""
+"""Forces, tangent stiffness, stresses and strain energy of solids under finite strains; theory (D1), (D2)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Inverted(Unsound):
             if determinant <= 0.0
             else f"has no stretch out of the plane without stress there (det F = {determinant:.3g})"
         )
-        super().__init__(f"cell {cell} of body '{body}' {what}; smaller load steps or a finer mesh there may help")
+        super().__init__(f"cell {cell} of body '{body}' {what}")
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,23 @@ def cauchy_stress(solids: Solids, displacement: Array, temperature: TemperatureC
     total, count = np.zeros((len(solids.points), 6)), np.zeros(len(solids.points))
     moved = np.ascontiguousarray(displacement, dtype=float)
     for group in solids.groups():
-        rule = stress_rule(group.kind)
-        nodal = to_nodes(group.kind, rule[0]), total, count
-        _integrate(solids, group, moved, temperature, nodal=nodal, rule=rule)
+        try:
+            sums = _nodal_sums(solids, group, moved, temperature, stress_rule(group.kind))
+        except Inverted:  # though sound at the integration points
+            sums = _nodal_sums(solids, group, moved, temperature, cell_rule(group.kind, group.integration))
+        total, count = total + sums[0], count + sums[1]
     return averaged(total, count)
+
+
+def _nodal_sums(
+    solids: Solids, group: Group, moved: Array, temperature: TemperatureChange, rule: Rule
+) -> tuple[Array, Array]:
+    """Stresses of a group's cells at the points, (n_points, 6), and of how many cells (n_points,)."""
+    total, count = np.zeros((len(solids.points), 6)), np.zeros(len(solids.points))
+    _integrate(
+        solids, group, moved, temperature, nodal=(to_nodes(group.kind, rule[0]), total, count), rule=rule
+    )  # fmt: skip
+    return total, count
 
 
 def is_symmetric(solids: Solids) -> bool:

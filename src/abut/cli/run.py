@@ -219,7 +219,8 @@ def _failure(solution: Solution, directory: Path) -> str:
 
     step = solution.steps[-1]
     places = [str(place) for place in unsettled(step)]
-    where = "; ".join(places) or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
+    where = "; ".join(places) or step.reason
+    where = where or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
     tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
     return f"step {step.number} did not converge: {where}. The last state is in {directory}." + (f" Try{tries}" if tries else "")
 
@@ -227,13 +228,12 @@ def _failure(solution: Solution, directory: Path) -> str:
 def _print_result(solution: Solution, directory: Path) -> None:
     from abut.diagnosis.advice import remedies
     from abut.diagnosis.cures import cure
-    from abut.report.contact_words import lines
+    from abut.report.contact_words import force, lines
 
     for contact in solution.contacts:
-        force = ", ".join(f"{value:.6g}" for value in contact.force)
         print(
-            f"contact '{contact.name}': force on the contactor ({force}), largest pressure {contact.max_pressure:.6g}, "
-            f"area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
+            f"contact '{contact.name}': force on the contactor {force(contact)}, largest pressure "
+            f"{contact.max_pressure:.6g}, area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
         for line in lines(contact):
             print(f"  {line}")

@@ -8,7 +8,7 @@ pressure spaces of ``abut.contact.pressure_space`` are combinations of these row
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -106,30 +106,43 @@ def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
     return float(adjust + rounding)
 
 
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Integration points per direction, and subdivisions, of each facet of both surfaces, as decided in one configuration:
+    theory (Q5), (S7). With it the coupling is a smooth function of the coordinates until facets meet others."""
+
+    contactor_points: NDArray[np.int32]
+    contactor_divisions: NDArray[np.int32]
+    target_points: NDArray[np.int32]
+    target_divisions: NDArray[np.int32]
+
+
 @dataclass(frozen=True)
 class CouplingOptions:
     """How ``couple`` cuts and integrates, and what it keeps.
 
     rule:   "gauss" or "newton-cotes".
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
-            theory (Q4), (Q5) (newton-cotes: as far as its nine points go).
+            theory (Q4), (Q5) (newton-cotes: as far as its nine points go); or what ``plan_pair`` decided.
     reach:  largest distance between the surfaces, length; see ``default_reach``.
     adjust: gaps and overlaps up to this size count as zero, length.
     hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
             only, theory (S12).
     componentwise: without the normal, for one displacement component (ties).
+    normals: (n_facets, 9, dim) unit normals at the contactor's facets' nodes; ``nodal_normals`` where left out.
     keep_points: keep the integration points; keep_sights: keep corners and middles of the segments, which takes a tenth of
             the time.
     """
 
     rule: str = "gauss"
-    points: int | str = "auto"
+    points: int | str | Plan = "auto"
     reach: float | None = None
     adjust: float = 0.0
     hidden: bool = False
     componentwise: bool = False
     keep_points: bool = False
     keep_sights: bool = False
+    normals: NDArray[np.float64] | None = None
 
 
 def couple(
@@ -200,14 +213,15 @@ def cutting_arguments(
     across: Smoothing | None,
 ) -> Json:
     """What the compiled core is told about the cutting and the rules for some facets of the contactor."""
-    tables = rule_tables(options.rule)
-    normals = nodal_normals(contactor, across)
+    normals = nodal_normals(contactor, across) if options.normals is None else options.normals
     part = contactor if len(facets) == len(contactor) else contactor.part(facets)
-    turning = turning_within(part, normals[facets])
-    order_c, split_c = _plan(part, tables, options.points, turning)
-    order_t, split_t = _plan(target, tables, options.points, _turning_of_target(target))
-    if options.points == "auto":
-        order_c = np.where(turning > SAME_NORMAL, np.maximum(order_c, CURVED_POINTS[contactor.dim]), order_c)
+    plan = _plan_part(part, target, options, normals[facets])
+    if isinstance(options.points, Plan):
+        plan = replace(
+            plan,
+            contactor_points=plan.contactor_points[facets],
+            contactor_divisions=plan.contactor_divisions[facets],
+        )
     return {
         "points_c": part.points,
         "kinds_c": part.kinds,
@@ -216,11 +230,11 @@ def cutting_arguments(
         "points_t": target.points,
         "kinds_t": target.kinds,
         "nodes_t": target.nodes,
-        "rules": tables,
-        "order_c": order_c.astype(np.int32),
-        "order_t": order_t,
-        "subdivide_c": split_c,
-        "subdivide_t": split_t,
+        "rules": rule_tables(options.rule),
+        "order_c": plan.contactor_points,
+        "order_t": plan.target_points,
+        "subdivide_c": plan.contactor_divisions,
+        "subdivide_t": plan.target_divisions,
         "axisymmetric": contactor.axisymmetric,
         "reach": default_reach(contactor, target) if options.reach is None else options.reach,
         "rounding": no_gap(contactor, target, options.adjust),
@@ -241,6 +255,25 @@ def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
         if name in raw:
             result[name] = facets[raw[name]].astype(raw[name].dtype)
     return result
+
+
+def plan_pair(contactor: Surface, target: Surface, options: CouplingOptions, across: Smoothing | None = None) -> Plan:
+    """What ``couple`` decides about integration points and subdivisions; ``replace(options, points=...)`` holds on to it.
+    Raises InputError as ``couple`` does."""
+    check_pair(contactor, target)
+    return _plan_part(contactor, target, options, nodal_normals(contactor, across))
+
+
+def _plan_part(part: Surface, target: Surface, options: CouplingOptions, normals: NDArray[np.float64]) -> Plan:
+    """normals: (n_facets, 9, dim) of the contactor or a part of it."""
+    if isinstance(options.points, Plan):
+        return options.points
+    tables = rule_tables(options.rule)
+    turning = turning_within(part, normals)
+    points, divisions = _plan(part, tables, options.points, turning)
+    if options.points == "auto":
+        points = np.where(turning > SAME_NORMAL, np.maximum(points, CURVED_POINTS[part.dim]), points).astype(np.int32)
+    return Plan(points, divisions, *_plan(target, tables, options.points, _turning_of_target(target)))
 
 
 def _plan(

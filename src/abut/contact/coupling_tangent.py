@@ -1,4 +1,4 @@
-"""Derivatives of a contact pair's coupling by the coordinates of both surfaces: theory page "Derivatives of the coupling".
+"""Derivatives of a contact pair's coupling by the coordinates of both surfaces, theory (T1).
 
 What ``abut.contact.coupling.couple`` integrates is differentiated as it computes it: places where nodes are projected,
 clipping, integration points, normals, areas, rays. Only decisions are constants: which facets meet and hide each other,
@@ -54,7 +54,7 @@ def coupling_tangent(
     only: NDArray[np.bool_] | None = None,
     across: Smoothing | None = None,
 ) -> CouplingTangent:
-    """Differentiate ``couple(contactor, target, degree, options, only, across)`` at the surfaces' points.
+    """Differentiate ``couple(contactor, target, degree, options, only, across)`` by the surfaces' points: theory (T1).
 
     pressure, traction: (9 n_facets,) and (9 n_facets, dim), coefficients of the facet-wise functions.
     Gaps that ``couple`` takes as none, being within ``options.adjust`` or rounding, change like others.
@@ -86,7 +86,8 @@ def coupling_tangent(
 
 
 def normal_derivative(contactor: Surface, across: Smoothing | None = None) -> Sparse:
-    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded."""
+    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded;
+    theory (T2)."""
     across = across or smoothing(contactor)
     used = np.flatnonzero(contactor.nodes.ravel() >= 0)
     visits = _turning(contactor, across, np.arange(len(used)), len(contactor.points))
@@ -139,7 +140,9 @@ def _turning(surface: Surface, across: Smoothing, visits: NDArray[np.int64], n_p
     sums = sp.csr_matrix((np.ones(len(here)), (here, other)), shape=(len(visits), len(own)))
     n = np.arange(len(visits) + 1)
     project = sp.bsr_matrix((across_it, n[:-1], n))
-    return (project.tocsr() @ (sp.kron(sums, sp.identity(surface.dim), format="csr") @ _swelling(surface, n_points))).tocsr()
+    return (
+        project.tocsr() @ (sp.kron(sums, sp.identity(surface.dim), format="csr") @ _swelling(surface, n_points))
+    ).tocsr()
 
 
 def _swelling(surface: Surface, n_points: int) -> Sparse:
@@ -161,9 +164,7 @@ def _swelling(surface: Surface, n_points: int) -> Sparse:
     step = np.arange(dim)
     i = np.broadcast_to(dim * row[:, None, None] + step[:, None], value.shape)
     j = np.broadcast_to(dim * column[:, None, None].astype(np.int64) + step, value.shape)
-    return sp.csr_matrix(
-        (value.ravel(), (i.ravel(), j.ravel())), shape=(dim * int(used.sum()), dim * n_points)
-    )
+    return sp.csr_matrix((value.ravel(), (i.ravel(), j.ravel())), shape=(dim * int(used.sum()), dim * n_points))
 
 
 def _area_rates(surface: Surface, kind: str, nodes: Array) -> NDArray[np.float64]:

@@ -27,8 +27,8 @@ class SlipOperators:
 
 
 def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
-    """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D three,
-    the axes less their normal parts. points: (n_points, dim) of the mesh."""
+    """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D the
+    three axes less their normal parts. points: (n_points, dim) of the mesh."""
     normal = at.normal
     dim = normal.shape[1]
     entries = at.gap_operator.tocoo()
@@ -62,6 +62,11 @@ def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
 def turned(normal: Array) -> Array:
     """Unit normals (n, 2) turned by a right angle, against the clock."""
     return np.column_stack([-normal[:, 1], normal[:, 0]])
+
+
+def quarter(n_points: int) -> Sparse:
+    """What turns rows of forces (.., 2 n_points) by a right angle, against the clock."""
+    return sp.kron(sp.identity(n_points), np.array([[0.0, 1.0], [-1.0, 0.0]]), format="csr")
 
 
 def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:

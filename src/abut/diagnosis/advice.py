@@ -13,6 +13,7 @@ from abut.contact.contactor_choice import FINER
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import facet_sizes
 from abut.diagnosis.contactor import swap
+from abut.materials.elastic import LinearElastic
 from abut.model import LAWS, METHODS, SolveOptions
 from abut.solution import Solution, Step
 
@@ -80,7 +81,11 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
     """At most three pieces of advice, the most likely first, for a run that did not converge, or whose certificate finds
     surfaces that overlap; else none. Only such as have been seen to help: the search for the contact status converges
     independently of the mesh, the load steps and the choice of the contactor."""
-    found = _by_overlap(solution) if solution.converged else (*_by_law(solution), *_by_limit(solution))
+    found = _by_overlap(solution) if solution.converged else (
+        *_by_deformation(solution),
+        *_by_law(solution),
+        *_by_limit(solution),
+    )
     return tuple(found)[:COUNT]
 
 
@@ -126,6 +131,21 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
             f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
             "active set needs no smoothing",
         )
+
+
+def _by_deformation(solution: Solution) -> Iterator[Remedy]:
+    """Of finite deformation, where load steps have been halved in vain."""
+    model = solution.model
+    if not model.finite or solution.converged:
+        return
+    if any(isinstance(solid.material, LinearElastic) for solid in model.solids):
+        yield Remedy(
+            'material kind = "neo-hooke"', "a linear elastic one gives way when it is pressed to about half its length"
+        )
+    yield Remedy(
+        f"solve.steps = {4 * len(model.solve.ends)}",
+        "steps are halved six times at most; a load that no deformation balances stays out of reach",
+    )
 
 
 def _by_limit(solution: Solution) -> Iterator[Remedy]:

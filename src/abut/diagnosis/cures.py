@@ -36,7 +36,7 @@ def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
 
 MODEL = {
     "model balance": f'solve again with solve.linear = "direct"; if it stays, {SINGULAR_HINT}',
-    "energy balance": 'solve again with solve.linear = "direct"; if it stays, raise solve.max_iterations: a step is not final',
+    "energy balance": 'solve again with solve.linear = "direct"; if it stays, raise solve.max_iterations',
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "

@@ -8,6 +8,7 @@ from abut.diagnosis.constraints import constraints
 from abut.diagnosis.contactor import sides
 from abut.diagnosis.cost import cost
 from abut.diagnosis.finding import Finding, Motion, Report, from_error, in_order
+from abut.diagnosis.friction import friction
 from abut.diagnosis.interface import MIXED, interface, not_facing
 from abut.diagnosis.probes import probes
 from abut.diagnosis.quality import quality
@@ -36,6 +37,7 @@ def check(model: Model) -> Report:
         findings += about
     except InputError as error:  # loads that cannot be evaluated
         findings.append(from_error(error, "loads"))
+    findings += friction(model, held, built)
     if len(built) == len(model.contacts):
         findings += cost(model, held, built)
     if not any(MIXED in f.what for f in findings):  # one mistake, said once

@@ -88,6 +88,8 @@ def _loads(model: Model) -> list[Finding]:
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
+        if large and model.finite:
+            continue
         says = "more than small strains allow" if large else "which is close to zero"
         findings.append(
             Finding(
@@ -111,7 +113,7 @@ def _prescribed(model: Model) -> list[Finding]:
             (body_size(model.mesh, b) for b in model.mesh.bodies if np.isin(nodes, model.mesh.nodes_of(b)).any()),
             default=np.inf,
         )
-        if largest > FAR * size:
+        if largest > FAR * size and not model.finite:
             findings.append(
                 Finding(
                     "warning",

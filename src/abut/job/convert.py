@@ -14,6 +14,7 @@ from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
 from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material
 from abut.mesh.write import write_mesh
 from abut.model import (
@@ -42,6 +43,9 @@ KINDS: dict[type, str] = {
 }
 
 
+MATERIALS: dict[type, str] = {LinearElastic: "linear-elastic", NeoHooke: "neo-hooke"}
+
+
 def write_job(path: Path, job: Job) -> list[Path]:
     """Write the job file ``path`` and its mesh, of the same name with the ending .vtu; return both.
 
@@ -60,15 +64,18 @@ def job_table(model: Model, mesh: str) -> Json:
     """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
     materials: dict[Material, str] = {}
     for solid in model.solids:
-        if not isinstance(solid.material, LinearElastic):
-            raise InputError(f"solid '{solid.body}': job files know linear elastic materials only, not one of your own")
+        if type(solid.material) not in MATERIALS:
+            raise InputError(f"solid '{solid.body}': job files know materials of abut's own only, not one of yours")
         materials.setdefault(solid.material, f"material-{len(materials) + 1}")
     table: Json = {"schema": 1, "mesh": {"file": mesh}}
-    if model.plane is not None:
-        table["model"] = {"plane": model.plane}
-    table["materials"] = {n: {"kind": "linear-elastic", **_plain(m)} for m, n in materials.items()}
+    table["model"] = {"plane": model.plane} if model.plane is not None else {}
+    if model.finite:
+        table["model"]["kinematics"] = model.kinematics
+    if not table["model"]:
+        del table["model"]
+    table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
-    for name in ("supports", "loads", "contacts", "equations", "rigid", "probes"):
+    for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "probes"):
         records = [_load(own) if name == "loads" else _plain(own) for own in getattr(model, name)]
         if records:
             table[name] = records

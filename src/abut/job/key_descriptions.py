@@ -28,6 +28,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contacts": "pairs of surfaces that may touch, or are tied",
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
+        "rotations": "surfaces, node sets and bodies that turn about an axis; finite kinematics only",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go",
@@ -37,12 +38,27 @@ MEANINGS: dict[str, dict[str, str]] = {
         "bodies": "bodies meshed by abut, by name",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
-    "ModelTable": {"plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)"},
+    "ModelTable": {
+        "plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)",
+        "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration",
+    },
     "MaterialTable": {
         "kind": "the material law",
         "young": "Young's modulus, > 0 [force/length^2]",
         "poisson": "Poisson's ratio, between -1 and 0.5",
         "density": "mass per volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "NeoHookeTable": {
+        "kind": "the material law, for finite kinematics",
+        "young": "Young's modulus at small strains, > 0; with poisson [force/length^2]",
+        "poisson": "Poisson's ratio at small strains, between -1 and 0.5; with young",
+        "shear": "shear modulus mu, > 0; with bulk or lame, in place of young and poisson [force/length^2]",
+        "bulk": "bulk modulus K = lambda + 2 mu / 3, > 0; with shear [force/length^2]",
+        "lame": "Lame's first constant lambda; with shear [force/length^2]",
+        "volumetric": "energy of volume changes J = det F: square-log is lambda/2 ((J^2 - 1)/2 - ln J), log-squared "
+        "lambda/2 (ln J)^2; isochoric is K/2 (J - 1)^2 beside shear at constant volume",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
     "SolidTable": {
@@ -55,7 +71,12 @@ MEANINGS: dict[str, dict[str, str]] = {
         "on": "name of the surface or node set",
         "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
     },
-    "PressureTable": {"kind": "pressure on a surface", "value": "positive into the body [force/length^2]"},
+    "PressureTable": {
+        "kind": "pressure on a surface",
+        "value": "positive into the body [force/length^2]",
+        "follows": "finite kinematics: along the normal and on the area of the deformed surface, or (false) of the "
+        "undeformed one, as a dead load; the other loads are dead",
+    },
     "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
     "ForceTable": {
         "kind": "total force, spread evenly over a surface",
@@ -85,6 +106,12 @@ MEANINGS: dict[str, dict[str, str]] = {
         "component": "axis of the displacement",
         "coefficient": "its factor in the sum",
     },
+    "RotationTable": {
+        "on": "name of the surface, node set or body, all of whose points turn",
+        "angle": "counterclockwise seen against the axis; follows the amplitude [radians]",
+        "centre": "a point of the axis [length]",
+        "axis": "direction of the axis, of any length; 3D only",
+    },
     "RigidTable": {
         "body": "name of the body in the mesh; it needs no solid",
         "reference": "point that translations and moments refer to; left out: the body's centre [length]",
@@ -101,8 +128,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
-        "law": "complementarity is exact; the constraint function is smooth up to the edge of contact",
-        "epsilon": "smoothing of the constraint function, over the square of a reference pressure",
+        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick",
+        "epsilon": "smoothing of the constraint function, over the square of a reference pressure (of friction: its root)",
         "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
         "offset": "added to the gap; negative: interference [length]",
@@ -130,8 +157,10 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one. With friction, a step that does not converge is "
-        "taken in parts, of which only the end is written",
-        "times": "ends of the load steps, rising to 1, where they are unequal",
+        "taken in parts, of which only the end is written. With contact under finite kinematics a number gives the longest "
+        "step, and auto leaves all of them to abut",
+        "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
+        "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
     },

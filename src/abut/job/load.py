@@ -13,9 +13,10 @@ from pydantic import BaseModel, ValidationError
 
 from abut.errors import InputError, nearest
 from abut.job.contacts import Resolved, resolve_contacts
-from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable
+from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable, NeoHookeTable
 from abut.job.values import values
 from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import NeoHooke
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -29,6 +30,7 @@ from abut.model import (
     Pressure,
     Probe,
     Rigid,
+    Rotation,
     Solid,
     SolveOptions,
     Support,
@@ -50,6 +52,11 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 LOADS: Mapping[str, Callable[..., Load]] = {
     "pressure": Pressure, "traction": Traction, "force": Force, "nodal-force": NodalForce, "temperature": Temperature,
     "gravity": Gravity,
+}  # fmt: skip
+
+
+MATERIALS: Mapping[str, Callable[..., LinearElastic | NeoHooke]] = {
+    "linear-elastic": LinearElastic, "neo-hooke": NeoHooke,
 }  # fmt: skip
 
 
@@ -129,6 +136,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     model = Model(
         mesh=resolved.mesh,
         plane=file.model.plane,
+        kinematics=file.model.kinematics,
         solids=solids,
         supports=[Support(**values(s, f"supports[{i}]")) for i, s in enumerate(file.supports)],
         loads=[_load(load, f"loads[{i}]") for i, load in enumerate(file.loads)],
@@ -136,6 +144,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         solve=SolveOptions(**file.solve.model_dump()),
         equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
         rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
+        rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved
@@ -149,9 +158,10 @@ def _equation(table: EquationTable, where: str) -> Equation:
         raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
-def _material(name: str, table: MaterialTable) -> LinearElastic:
+def _material(name: str, table: MaterialTable | NeoHookeTable) -> LinearElastic | NeoHooke:
+    given = table.model_dump()
     try:
-        return LinearElastic(table.young, table.poisson, table.density, table.expansion)
+        return MATERIALS[given.pop("kind")](**given)
     except InputError as error:
         raise InputError(f"materials.{name}.{error}") from None
 
@@ -198,7 +208,7 @@ def _refined(arguments: Json, generator: Callable[..., Mesh], times: int) -> Jso
 
 def _explain(error: Json, data: Json) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
-    location = [part for part in error["loc"] if part not in LOADS and part not in CHOICES]
+    location = [part for part in error["loc"] if part not in (*LOADS, *MATERIALS, *CHOICES)]
     place = ""
     for part in location:
         place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)
@@ -207,6 +217,10 @@ def _explain(error: Json, data: Json) -> str:
         return f"{place}: unknown key{_suggest(location, data)}"
     if kind == "missing":
         return f"{place}: missing"
+    if kind == "union_tag_not_found":
+        return f"{place}.kind: missing"
+    if kind == "union_tag_invalid":
+        return f"{place}.kind: expected one of {error['ctx']['expected_tags']}, got {error['ctx']['tag']!r}"
     if kind == "finite_number":
         return f"{place}: expected a finite number, got {error['input']!r}"
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"

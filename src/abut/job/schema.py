@@ -9,7 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
 from abut.job.key_descriptions import describe
+from abut.materials.hyperelastic import VOLUMETRIC
 from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.kinematics import KINEMATICS
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.types import Json
 
@@ -74,12 +76,27 @@ class MeshTable(Table):
 
 class ModelTable(Table):
     plane: Literal["strain", "stress", "axisymmetric"] | None = None
+    kinematics: Annotated[str, OneOf(KINEMATICS)] = KINEMATICS[0]
 
 
 class MaterialTable(Table):
     kind: Literal["linear-elastic"]
     young: Number
     poisson: Number
+    density: Number = 0.0
+    expansion: Number = 0.0
+
+
+class NeoHookeTable(Table):
+    """young and poisson, or shear and bulk, or shear and lame"""
+
+    kind: Literal["neo-hooke"]
+    young: Number | None = None
+    poisson: Number | None = None
+    shear: Number | None = None
+    bulk: Number | None = None
+    lame: Number | None = None
+    volumetric: Annotated[str, OneOf(VOLUMETRIC)] = VOLUMETRIC[0]
     density: Number = 0.0
     expansion: Number = 0.0
 
@@ -115,7 +132,7 @@ class EquationTable(Table):
 
 
 class RigidTable(Table):
-    """translation of the reference (length) and small turns (radians); what is left out is free"""
+    """translation of the reference (length) and turns (radians); what is left out is free"""
 
     body: str
     reference: list[Number] | None = None
@@ -125,6 +142,16 @@ class RigidTable(Table):
     rx: Number | None = None
     ry: Number | None = None
     rz: Number | None = None
+    amplitude: Points | None = None
+
+
+class RotationTable(Table):
+    """rotation about an axis, exactly on arcs"""
+
+    on: str
+    angle: Number
+    centre: list[Number]
+    axis: list[Number] | None = None
     amplitude: Points | None = None
 
 
@@ -148,6 +175,7 @@ class VectorTable(Table):
 
 class PressureTable(ScalarTable):
     kind: Literal["pressure"]
+    follows: bool = True
 
 
 class TractionTable(VectorTable):
@@ -239,13 +267,14 @@ class JobFile(Table):
     schema_: Literal[1] = Field(alias="schema")
     mesh: MeshTable
     model: ModelTable = ModelTable()
-    materials: dict[str, MaterialTable]
+    materials: dict[str, Annotated[MaterialTable | NeoHookeTable, Field(discriminator="kind")]]
     solids: list[SolidTable]
     supports: list[SupportTable] = []
     loads: list[LoadTable] = []
     contacts: list[ContactTable] = []
     equations: list[EquationTable] = []
     rigid: list[RigidTable] = []
+    rotations: list[RotationTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()

@@ -43,11 +43,17 @@ def chosen(
             'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
             'couple points; choose "direct" or "auto"'
         )
+    smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
+    if linear == "amg" and smooth:
+        raise InputError(
+            f"solve.linear: \"amg\" knows friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
+            'function for it; choose "direct" or "auto", or law "complementarity"'
+        )
     if linear != "auto":
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not coupled and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
+    able = not (coupled or smooth) and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 

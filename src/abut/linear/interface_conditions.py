@@ -68,26 +68,27 @@ def _selection(own: NDArray[np.bool_]) -> Sparse:
 
 def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Conditions:
     """Rows with slip eliminated."""
-    forces, lower = (few.push @ operator).tocsr(), -(few.pull @ operator).tocsr()
-    single = few.single >= 0
-    diagonal = few.pull.power(2) @ pressures.diagonal  # across the slip too
-    inverse = _swept_inverse(few, diagonal, schur_inverse(pressures.parts, single), pressures)
-    sizes = np.where(few.soft > 0.0, np.sqrt(pressures.unit / (diagonal + few.soft)), pressures.scale)
-    corner = sp.diags(-few.soft, format="csr")
+    diagonal, soft = few.pull.multiply(few.pull) @ pressures.diagonal, np.abs(few.corner.diagonal())
+    sizes = np.where(soft > 0.0, np.sqrt(pressures.unit / (diagonal + soft)), pressures.scale)
     return Conditions(
-        lower, forces, corner, few.residual, sizes, sizes, inverse, few.push, few.fixed, few.symmetric
-    )
+        -(few.pull @ operator).tocsr(), (few.push @ operator).tocsr(), few.corner, few.residual, sizes, sizes,
+        _parted_inverse(few, diagonal, pressures), few.push, few.fixed, few.symmetric,
+    )  # fmt: skip
 
 
-def _swept_inverse(few: Reduced, diagonal: NDArray[np.float64], by_gap: Apply, pressures: PressureBlock) -> Apply:
-    """That of pull S push^T + soft: pressures and tractions of what sticks component by component, springs across the slip
-    by themselves."""
-    m = int((few.single >= 0).sum())
+def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
+    """That of pull S push^T - corner, theory (V25): what is closed or sticks component by component, springs across the slip
+    by themselves; where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of pull S push^T."""
+    m = int(few.single.sum())
+    if few.corner[:m].data.any():
 
-    def apply(r: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.concatenate([by_gap(r[:m]), r[m:] / (diagonal + few.soft)[m:]])
+        def multiply(q: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(few.pull @ pressures.forward(few.push.T @ q) - few.corner @ q)
 
-    return apply
+        return _roughly(multiply, spla.splu((sp.diags(diagonal) - few.corner).tocsc()).solve, len(diagonal))
+    by_gap = schur_inverse(pressures.parts, few.single)
+    springs = diagonal[m:] - few.corner.diagonal()[m:]
+    return lambda r: np.concatenate([by_gap(r[:m]), r[m:] / springs])
 
 
 def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
@@ -133,11 +134,17 @@ def _mixed_inverse(
         p[closed] = by_gap(rest / share[closed])
         return p
 
-    whole, first = (spla.LinearOperator((n, n), matvec=f, dtype=float) for f in (multiply, split))
+    roughly = _roughly(multiply, split, n)
+    return lambda r: -roughly(r)
+
+
+def _roughly(multiply: Apply, precondition: Apply, n: int) -> Apply:
+    """The inverse by Krylov iterations to ``ACCURACY``."""
+    whole, first = (spla.LinearOperator((n, n), matvec=f, dtype=float) for f in (multiply, precondition))
 
     def apply(r: NDArray[np.float64]) -> NDArray[np.float64]:
         if not r.any():
             return np.zeros(n)
-        return np.asarray(-spla.gmres(whole, r, rtol=ACCURACY, restart=ITERATIONS, maxiter=1, M=first)[0])
+        return np.asarray(spla.gmres(whole, r, rtol=ACCURACY, restart=ITERATIONS, maxiter=1, M=first)[0])
 
     return apply

@@ -37,8 +37,8 @@ class Saddle:
 
 
 def saddle(unit: float, operator: Sparse, rows: Rows, residual: NDArray[np.float64]) -> Saddle:
-    """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked; residual:
-    K u - B^T p - f."""
+    """What stands beside the stiffness. unit: size of its entries; operator B: (n, n_u), all pairs stacked, whose
+    transpose gives forces; residual: K u - B^T p - f."""
     known, fixed = rows.decoupled, rows.fixed
     s = unit / _row_max(operator)
     soft = np.where(known, 0.0, -rows.by_pressure.diagonal()) if rows.symmetric else np.zeros(len(s))
@@ -66,9 +66,10 @@ def newton_step(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
-    stiffness: (n_u, n_u) sparse symmetric; operator and residual as in ``saddle``."""
+    stiffness: (n_u, n_u) sparse, symmetric if the rows are; operator and residual as in ``saddle``."""
     if len(pressure) == 0:
-        return direct.solve(sp.triu(stiffness, format="csr"), -residual, symmetric=True), pressure
+        matrix = sp.triu(stiffness, format="csr") if rows.symmetric else store_diagonal(stiffness)
+        return direct.solve(matrix, -residual, symmetric=rows.symmetric), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
     matrix = _whole(stiffness, s)
     solution = direct.solve(matrix, np.concatenate([s.rhs_u, s.rhs_p]), symmetric=s.symmetric)
@@ -108,7 +109,7 @@ class SaddlePoint:
             symmetric, matrix = self.system.symmetric, self.system.stiffness
             matrix = store_diagonal(sp.triu(matrix, format="csr") if symmetric else matrix)
             return self.repeated.solve(matrix, -residual, symmetric=symmetric), pressure
-        return newton_step(self.system.stiffness, self.system.operator, rows, residual, pressure)
+        return newton_step(self.system.stiffness, self.system.columns, rows, residual, pressure)
 
     def factorise(self, rows: Rows) -> Solve:
         """As in ``Prepared``."""

@@ -18,13 +18,16 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.contact.geometry import facet_stiffness
-from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
 from abut.problem.contact_pairs import Pair
 from abut.types import Sparse
 
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
+ALONG = (
+    1.2  # compliance along a half space's surface over the one across: (1 - nu/2) / (1 - nu), the mean of directions
+)
+STIFFER = 0.2  # how much stiffer elements are than half spaces under waves of their own size: measured
 SOFT_ACCURACY, SOFT_ITERATIONS = 0.1, 30
 FORESEEN, SOLVES = 1e-4, 100  # of gaps closed on the interface alone, where the edge of contact is sharp; iterations
 LOOSE = 1e-9  # resistance of rows to a motion, over the largest, below which it is none
@@ -36,8 +39,8 @@ Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 @dataclass(frozen=True)
 class Interface:
     """One pair (or one component of a tied one): its rows in the system, L + M / l^2 and M of ordinary functions, what these
-    integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of ordinary functions M itself), kappa and
-    1 / l^2."""
+    integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of ordinary functions M itself), kappa,
+    1 / l^2, and the area below which elements are stiffer than half spaces, theory (V23)."""
 
     rows: NDArray[np.int64]
     full: Sparse
@@ -45,21 +48,23 @@ class Interface:
     coupled: Sparse
     compliance: float
     lowest: float
+    stiffer: float = 0.0
 
 
 def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
     """Everything about the interfaces that stays the same over all active sets."""
     result, first = [], 0
     for pair in pairs:
-        for space in pair.components:
+        for component, space in enumerate(pair.components):
             if len(space):
-                result.append(_interface(pair, space, first + np.arange(len(space))))
+                result.append(_interface(pair, component, first + np.arange(len(space))))
             first += len(space)
     return result
 
 
-def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Interface:
-    """space: of one component of the pair's multipliers."""
+def _interface(pair: Pair, component: int, rows: NDArray[np.int64]) -> Interface:
+    """Of one component of the pair's multipliers."""
+    space = pair.components[component]
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     lowest = (2.0 / extent) ** 2
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
@@ -72,7 +77,10 @@ def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Int
     coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
     laplacian = (plain.T @ slopes @ plain).tocsr()
-    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest)
+    compliance = (ALONG if component and pair.frictional else 1.0) * pair.compliance
+    return Interface(
+        rows, (laplacian + lowest * mass).tocsr(), mass, coupled, compliance, lowest, STIFFER * pair.size**2
+    )
 
 
 def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Apply:
@@ -310,10 +318,12 @@ def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
     undo = spla.splu(part.coupled[own][:, own].tocsc()).solve
     ordinary = part.coupled is part.mass
+    lumped = np.asarray(mass.sum(axis=1)).ravel()
+    stiffer = np.where(lumped > 0.0, part.stiffer / np.where(lumped > 0.0, lumped, 1.0), 0.0)
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
         weighted = gap if ordinary else mass @ undo(gap)
-        rooted = sum(w * solve(weighted) for w, solve in zip(weights, solves))
-        return np.asarray(undo(full @ rooted) / part.compliance)
+        rooted = full @ sum(w * solve(weighted) for w, solve in zip(weights, solves))
+        return np.asarray(undo(rooted + full @ (stiffer * rooted)) / part.compliance)
 
     return apply

@@ -6,8 +6,9 @@ holds multipliers alone, and across it a spring. Pressures, tractions of what st
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,40 +24,40 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Reduced:
-    """The rows as residual - pull dg - soft q = 0 in m unknowns q, dp = fixed + push^T q, dg the change of the n weighted
-    gaps. push, pull: (m, n) sparse; soft: (m,) >= 0; single: (n,) the number of the unknown that each multiplier is by
-    itself, -1 for none; ``symmetric``: push is pull."""
+    """The rows as residual - pull dg + corner q = 0 in m unknowns q, dp = fixed + push^T q, dg the change of the n weighted
+    gaps. push, pull: (m, n), corner: (m, m), sparse; single: (n,) bool, multipliers that are unknowns by themselves, the
+    first ones; ``symmetric``: push is pull, and corner diagonal and negative."""
 
     residual: Vector
     push: Sparse
     pull: Sparse
-    soft: Vector
+    corner: Sparse
     fixed: Vector
-    single: NDArray[np.int64]
+    single: NDArray[np.bool_]
     symmetric: bool
 
 
 def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
     """Rows at the multipliers, of complementarity, ties and Coulomb's law; None of any other."""
-    if rows.by_gap is None or rows.by_multiplier is None:
+    by_gap, by_multiplier = rows.by_gap, rows.by_multiplier
+    if by_gap is None or by_multiplier is None:
         return None
     found, first = [], 0
     for pair in pairs:
         if pair.frictional:
-            found.append(_slips(rows, np.where(pair.index >= 0, pair.index + first, -1)))
+            found.append(_slips(rows, by_gap, by_multiplier, np.where(pair.index >= 0, pair.index + first, -1)))
         first += len(pair)
     slips = _joined(found)
     n, own = len(rows.residual), ~rows.decoupled
     own[slips.number[slips.number >= 0]] = False
-    plain, soft = np.flatnonzero(own), -rows.by_multiplier.diagonal()
-    if (rows.by_gap.diagonal()[own] != -1.0).any() or (soft[own] < 0.0).any():
+    plain, corner = np.flatnonzero(own), by_multiplier[own][:, own]
+    if (by_gap.diagonal()[own] != -1.0).any():
         return None
     m, across = len(plain), slips.across
-    single = np.full(n, -1)
-    single[plain] = np.arange(m)
+    place = np.cumsum(own) - 1
     fixed = rows.fixed
     fixed[slips.number[slips.there]] = slips.known[slips.there]
-    dragged = _entries(single[slips.normal], slips.number, slips.drag, (m, n))
+    dragged = _entries(place[slips.normal], slips.number, slips.drag, (m, n))
     select = sp.csr_matrix((np.ones(m), (np.arange(m), plain)), shape=(m, n))
     turned = _entries(np.arange(len(across.row)), slips.number[across.row], across.direction, (len(across.row), n))
     pull = sp.vstack([select, turned]).tocsr()
@@ -64,10 +65,10 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
         residual=np.concatenate([rows.residual[plain], across.residual]),
         push=sp.vstack([select + dragged, turned]).tocsr(),
         pull=pull,
-        soft=np.concatenate([soft[plain], across.soft]),
+        corner=sp.block_diag([corner, sp.diags(-across.soft)], format="csr"),
         fixed=fixed,
-        single=single,
-        symmetric=dragged.nnz == 0,
+        single=own,
+        symmetric=dragged.nnz == 0 and _negative_diagonal(corner),
     )
 
 
@@ -97,9 +98,9 @@ class _Slips:
         return self.number >= 0
 
 
-def _slips(rows: Rows, index: NDArray[np.int64]) -> _Slips:
+def _slips(rows: Rows, by_gap: Sparse, by_multiplier: Sparse, index: NDArray[np.int64]) -> _Slips:
     """index: (n_functions, c) numbers of a pair's multipliers."""
-    gaps, own = _blocks(rows.by_gap, index), _blocks(rows.by_multiplier, index)
+    gaps, own = _blocks(by_gap, index), _blocks(by_multiplier, index)
     tangents = np.eye(index.shape[1])[1:]
     sticks = (gaps[:, 1:] == -tangents).all(axis=2) | (gaps[:, 1:] == 0.0).all(axis=2)
     slips = ~(sticks | (index[:, 1:] < 0)).all(axis=1)
@@ -110,14 +111,14 @@ def _slips(rows: Rows, index: NDArray[np.int64]) -> _Slips:
     seen, main = np.linalg.eigh(gaps[:, 1:, 1:])
     main = np.where(there[:, :, None], main, 0.0)
     give = np.einsum("kai,kab,kbi->ki", main, own[:, 1:, 1:], main)
-    give = np.where(give < 0.0, give, -1.0)
-    along = seen > -STRAIGHT
-    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / give, 0.0)
-    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / give, 0.0)
-    row, i = np.nonzero(~along & (np.abs(main).max(axis=1) > 0.5 / index.shape[1]))
+    along = (seen > -STRAIGHT) & (give < 0.0)
+    by = np.where(along, give, -1.0)
+    known = np.where(along, -np.einsum("kai,ka->ki", main, left) / by, 0.0)
+    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / by, 0.0)
+    row, i = np.nonzero((seen <= -STRAIGHT) & (np.abs(main).max(axis=1) > 0.0))
     yields = -seen[row, i]
     turned = np.einsum("ka,ka->k", main[row, :, i], left[row]) / yields
-    across = _Across(row, main[row, :, i], turned, -give[row, i] / yields)
+    across = _Across(row, main[row, :, i], turned, np.maximum(-give[row, i], 0.0) / yields)
     known, drag = (np.einsum("kai,ki->ka", main, values) for values in (known, drag))
     return _Slips(index[:, 0], number, drag, known, across)
 
@@ -132,6 +133,11 @@ def _blocks(matrix: Sparse, index: NDArray[np.int64]) -> Vector:
     return result
 
 
+def _negative_diagonal(matrix: Sparse) -> bool:
+    diagonal = matrix.diagonal()
+    return np.count_nonzero(matrix.data) == np.count_nonzero(diagonal) and bool((diagonal <= 0.0).all())
+
+
 def _entries(
     row: NDArray[np.int64], columns: NDArray[np.int64], values: Vector, shape: tuple[int, int]
 ) -> sp.csr_matrix:
@@ -143,12 +149,21 @@ def _entries(
 
 def _joined(parts: Sequence[_Slips]) -> _Slips:
     """Of all pairs, which have as many components each."""
+
+    def stack(values: Iterable[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(list(values))
+
     starts = np.cumsum([0, *(len(part.normal) for part in parts)])[:-1]
     across = [part.across for part in parts]
     return _Slips(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("normal", "number", "drag", "known")),
-        _Across(
-            np.concatenate([own.row + start for own, start in zip(across, starts)]),
-            *(np.concatenate([getattr(own, name) for own in across]) for name in ("direction", "residual", "soft")),
+        normal=stack(part.normal for part in parts),
+        number=stack(part.number for part in parts),
+        drag=stack(part.drag for part in parts),
+        known=stack(part.known for part in parts),
+        across=_Across(
+            row=stack(own.row + start for own, start in zip(across, starts)),
+            direction=stack(own.direction for own in across),
+            residual=stack(own.residual for own in across),
+            soft=stack(own.soft for own in across),
         ),
     )

@@ -31,7 +31,7 @@ class NeoHooke:
 
     >>> import abut
     >>> rubber = abut.NeoHooke(shear=0.8, bulk=400.0, volumetric="isochoric")
-    >>> round(rubber.poisson, 4)
+    >>> round(rubber.linear.poisson, 4)
     0.499
     """
 

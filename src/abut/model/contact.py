@@ -44,7 +44,8 @@ class Contact:
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
-    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure);
+    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
+    that of friction by its square root);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
     a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, a function of position,
     points (n, dim) -> (n,), taken in the undeformed mesh, pairs of pressure and coefficient, linear between and constant
@@ -88,7 +89,7 @@ class Contact:
                 f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "
                 "complementarity and pressure auto; leave them out, or use segment-to-segment"
             )
-        if self.law == LAWS[1] and self.pressure.startswith("dual"):
+        if self.law == LAWS[1] and self.pressure.startswith("dual") and not self.frictional:
             raise InputError(
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
@@ -116,9 +117,12 @@ class Contact:
             return
         if self.kind == "tied":
             raise InputError(f"{where}: friction: a tie holds in all directions; leave friction or kind out")
-        if self.method != METHODS[0] or self.law != LAWS[0]:
+        if self.method != METHODS[0]:
+            raise InputError(f"{where}: friction: goes with method segment-to-segment; leave the other one out")
+        if not isinstance(self.law, str):
             raise InputError(
-                f"{where}: friction: goes with method segment-to-segment and law complementarity; leave out the others"
+                f"{where}: friction: a law of your own looks at the gap and the pressure alone; leave friction out, or take "
+                f"law {' or '.join(LAWS)}"
             )
 
     def _check_friction_amplitude(self, where: str) -> None:

@@ -11,10 +11,11 @@ from abut.errors import InputError
 from abut.materials.hyperelastic import NeoHooke, law
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import Equation, Rigid, Support
-from abut.model.contact import Contact
+from abut.model.contact import LAWS, METHODS, Contact
 from abut.model.solid import Solid
 
 KINEMATICS = ("small", "finite")
+NON_NEGATIVE = ("auto", "P1", "P2")  # pressures whose functions are nowhere negative: part of one may be covered
 
 
 def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
@@ -33,6 +34,23 @@ def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
             )
 
 
+def _check_contact(contact: Contact) -> None:
+    """Raise InputError for what goes with contact between undeformed surfaces only."""
+    where, why = f"contact '{contact.name}'", 'goes with kinematics = "small" only; leave it out'
+    if contact.kind == "tied":
+        return
+    if contact.method != METHODS[0]:
+        raise InputError(f"{where}: method: {contact.method} {why}")
+    if contact.law != LAWS[0]:
+        raise InputError(f"{where}: law: {contact.law if isinstance(contact.law, str) else 'a law of your own'} {why}")
+    if contact.adjust:
+        raise InputError(f"{where}: adjust {why}, and close the gap in the mesh")
+    if contact.pressure not in NON_NEGATIVE:
+        raise InputError(
+            f"{where}: pressure: {contact.pressure} {why}, or choose P1 or P2, whose functions are nowhere negative"
+        )
+
+
 def check_finite(
     mesh: Mesh,
     contacts: Sequence[Contact],
@@ -41,8 +59,8 @@ def check_finite(
     supports: Sequence[Support],
 ) -> None:
     """Raise InputError for what finite deformation does not go with."""
-    if contacts:
-        raise InputError(f'contact \'{contacts[0].name}\': kinematics "finite" has no contact yet; use "small"')
+    for contact in contacts:
+        _check_contact(contact)
     for i, support in enumerate(supports):
         if support.normal:
             raise InputError(

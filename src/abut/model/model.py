@@ -17,7 +17,7 @@ from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
-from abut.model.contact import LAWS, Contact
+from abut.model.contact import Contact
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
@@ -36,7 +36,7 @@ class Model:
     one of ``solids`` or ``rigid``.
 
     ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
-    forces and pressures in the deformed configuration, theory (D1)).
+    forces and pressures in the deformed configuration; theory (D1)).
 
     >>> import abut
     >>> from abut.mesh import make
@@ -77,7 +77,6 @@ class Model:
         check_supports(self.mesh, self.supports)
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid})
         self._check_contacts()
-        self._check_laws()
         check_kinematics(self.kinematics, self.solids)
         check_rotations(self.mesh, self.rotations, self.supports, self.rigid, self.kinematics)
         if self.finite:
@@ -198,16 +197,6 @@ class Model:
         for i, (contact, own) in enumerate(zip(self.contacts, every)):
             check_own(own, contact.contactor, contact.target, f"contacts[{i}]")
         check_twice([contact.name for contact in self.contacts], every)
-
-    def _check_laws(self) -> None:
-        """Raise InputError for friction beside other laws than complementarity: they are searched for in different ways."""
-        friction = [contact for contact in self.contacts if contact.frictional]
-        other = [contact for contact in self.contacts if contact.kind != "tied" and contact.law != LAWS[0]]
-        if friction and other:
-            raise InputError(
-                f"contact '{other[0].name}': its law does not go with the friction of contact '{friction[0].name}' in one "
-                "model; use complementarity"
-            )
 
     def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
         if rigid >= bodies_of(self.mesh, contact.target):

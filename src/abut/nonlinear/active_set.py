@@ -44,7 +44,10 @@ def solve_step(
     set" to give up as soon as the set of ``begin`` changes (``cycling`` then says where); settle: the set of ``begin`` is
     likely to be the final one."""
     if any(pair.frictional for pair in solver.system.pairs):
-        return solve_friction(solver, begin, increment, limit, observe, earlier)
+        found = solve_friction(solver, begin, increment, limit, observe, earlier)
+        if not found.converged:
+            return found
+        return finish_smooth(solver, found.state, increment, limit, list(found.iterations), observe)
     tied = solver.system.tied
     course = Course(solver, tied)
     state = begin

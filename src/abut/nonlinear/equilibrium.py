@@ -26,6 +26,7 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
         raise TypeError("finite deformation needs all displacements")
     state, rows, error, reason = replace(before, time=time), list[Iteration](), np.inf, ""
     system = problem.begin(before, time)
+    known = _error(system, state, task)
     while len(rows) < task.limit:
         start = clock.perf_counter()
         try:
@@ -35,8 +36,11 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
             system = problem.linearise(before, trial)
         except (Unsound, SingularModelError) as failure:
             reason = str(failure)
+            rows.append(_row(task, len(rows) + 1, known, clock.perf_counter() - start))
+            task.observe(rows[-1])
             break
         state, last, error = trial, error, _error(system, trial, task)
+        known = error
         rows.append(_row(task, len(rows) + 1, error, clock.perf_counter() - start))
         task.observe(rows[-1])
         if not np.isfinite(error):
@@ -44,8 +48,8 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
         if error <= BALANCED or (error <= ROUNDING and error > 0.5 * last):
             prepared = task.solver.prepare(system, prepared)
             return Found(state, tuple(rows), True, np.zeros(0, dtype=bool), active_laws), prepared
-    if not rows or not np.isfinite(error):
-        state = before
+    if not np.isfinite(error):
+        state = before  # whose forces are known to be sound
     return Found(state, tuple(rows), False, np.zeros(0, dtype=bool), active_laws, reason), prepared
 
 

@@ -34,7 +34,7 @@ def solve_friction(
     course = Course(solver, increment, list(earlier), observe)
     found, error = None, None
     try:
-        found = newton(course, begin.with_status(_completed(solver.system, begin)), limit, foresee=True)
+        found = newton(course, begin.with_status(_completed(solver.system, begin)), limit)
     except SingularModelError as reason:
         error = reason
     found = found or search(course, begin, limit) or course.failed()

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import ROUGH, STRIDE, TOLD
+from abut.nonlinear.exact import ROUGH, STRIDE
+from abut.nonlinear.friction_foresight import advanced, foreseen
 from abut.nonlinear.iteration import (
     FLAT,
     NO_PRESSURE,
     Found,
     Increment,
-    advance,
     largest_pressure,
     points,
     report,
@@ -31,7 +31,6 @@ from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 TOLERANCE = 1e-10  # of the laws over the largest pressure, and of equilibrium over the largest force
 ROUNDING = 1e-7  # the same that may be left where it no longer falls
 PATIENCE = 3  # iterations in which neither fewer change than ever nor less is left than half of ever
-SIGHTS = 2  # guesses at least at what will be in contact, before they have to be better than the one before
 RECENT = 6  # iterations whose statuses tell which multipliers keep changing
 Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
@@ -87,20 +86,18 @@ class Course:
         return Found(state, tuple(self.done), False, changing, friction_laws, between=between)
 
 
-def newton(
-    course: Course, first: State, limit: int, patience: int = PATIENCE, foresee: bool = False
-) -> Found | None:
+def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -> Found | None:
     """Semi-smooth Newton from a state and its status, in whole steps; None where it gives up.
 
-    It does as soon as a status comes back, or nothing gets better any more. foresee: guess what will be in contact, as
-    long as ever fewer change."""
+    It does as soon as a status comes back, or nothing gets better any more."""
     system, state = course.solver.system, first
     seen: set[bytes] = set()
     fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
-    tolerance, accuracy, foresee = tolerated(course.solver), ROUGH, foresee
+    tolerance, accuracy = tolerated(course.solver), ROUGH
+    foresees, last = False, 0
     for _ in range(limit):
         clock = time.perf_counter()
-        following = advance(course.solver, state, friction_laws(system, state), accuracy)
+        following = advanced(course.solver, state, friction_laws, course.increment, accuracy)
         wanted = next_status(system, following, course.increment)
         changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
@@ -111,41 +108,15 @@ def newton(
         idle = 0 if better else idle + 1
         if idle >= patience or (changed and wanted.tobytes() in seen):
             return None
-        foresee = foresee and 0 < changed and (changed < fewest or len(seen) < SIGHTS)
         fewest, least = min(fewest, changed), min(least, left)
         before = left if not changed else np.inf
         accuracy = ROUGH if changed else max(0.3 * tolerance / left, STRIDE)
         seen.add(wanted.tobytes())
-        if foresee and (course.solver.exact or course.done[-1].residual <= TOLD):
-            state = state.with_status(_foreseen(course.solver, state))
+        foresees = changed > 0 and not (foresees and changed >= last)  # not twice in a row where it misled
+        last = changed
+        if foresees:
+            state = state.with_status(foreseen(course.solver, following, wanted))
     return None
-
-
-def _foreseen(solver: Prepared, state: State) -> Status:
-    """The status with what half spaces under the present pressures would have in contact; what is new slips."""
-    system = solver.system
-    gap, pressure, fixed = system.gap(state), state.multipliers.copy(), system.tied
-    away = np.abs(gap).max(initial=0.0) + 1.0
-    for pair, own, push in zip(system.pairs, system.split(gap), system.split(pressure)):
-        if pair.frictional:
-            own[pair.tangential], push[pair.tangential] = away, 0.0
-    closed = state.closed & _normal(system)
-    guess = solver.foresee(gap, pressure, closed | fixed, fixed)
-    whole = [
-        pair.of_functions(own[pair.normal]) if pair.frictional else own
-        for pair, own in zip(system.pairs, system.split(guess))
-    ]
-    closed = system.join(whole).astype(bool)
-    return np.where(closed, np.where(state.closed, state.status, np.where(fixed, CLOSED, SLIPPING)), OPEN).astype(np.int8)
-
-
-def _normal(system: Linearised) -> NDArray[np.bool_]:
-    """Multipliers that are pressures, or of ties."""
-    flags = [np.ones(len(pair), dtype=bool) for pair in system.pairs]
-    for pair, own in zip(system.pairs, flags):
-        if pair.frictional:
-            own[pair.tangential] = False
-    return system.join(flags).astype(bool)
 
 
 def tolerated(solver: Prepared) -> float:
@@ -157,9 +128,7 @@ def friction_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(
-            pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None
-        )
+        at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None)
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 
@@ -169,6 +138,11 @@ def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
         return Tied()
     if not pair.frictional:
         return Complementarity(pair.stiffness)
+    return coulomb(pair, system)
+
+
+def coulomb(pair: Pair, system: Linearised) -> Coulomb:
+    """The law of a pair with friction."""
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 

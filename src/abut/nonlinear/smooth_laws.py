@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.laws import TENSION_START, Complementarity, ConstraintFunction, Tied
+from abut.contact.smooth_friction import SmoothCoulomb
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
+from abut.nonlinear.friction_newton import coulomb, friction_laws, next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,
@@ -28,7 +30,7 @@ from abut.problem.laws import LawRows, at_multipliers, in_the_mean
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
 from abut.solution import Iteration
-from abut.solution.state import State
+from abut.solution.state import CLOSED, OPEN, State
 
 UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
 NO_PRESSURE = 1e-12  # over Young's modulus: a contact that presses less does not press at all
@@ -47,11 +49,12 @@ def finish_smooth(
     done: list[Iteration],
     observe: Callable[[Iteration], None],
 ) -> Found:
-    """Pairs with the constraint function: Newton on it, from the solution of the complementarity law,
-    until theory (V10). The active sets of other pairs go on changing with it."""
+    """Pairs with the constraint function: Newton on it, from the solution of the complementarity law (with friction: of
+    Coulomb's), until theory (V10). The status of other pairs goes on changing with it."""
     system = solver.system
     none = np.zeros(len(state.status), dtype=bool)
-    exact = Found(state, tuple(done), True, none, active_laws)
+    friction = any(pair.frictional for pair in system.pairs)
+    exact = Found(state, tuple(done), True, none, friction_laws if friction else active_laws)
     if not any(pair.smooth for pair in system.pairs):
         return exact
     reference = largest_pressure(state, increment)
@@ -97,9 +100,9 @@ def _newton(
     search does. ``done`` grows."""
     solver, increment = smooth.solver, smooth.increment
     system = solver.system
-    tied, sharp = (
+    tied, sharp, rubs = (
         system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
-        for flag in (lambda pair: pair.tied, lambda pair: not pair.smooth)
+        for flag in (lambda pair: pair.tied, lambda pair: not pair.smooth, lambda pair: pair.frictional)
     )
     before, violation, tries, unsettled = np.inf, np.zeros(len(state.status)), 0, True
     for _ in range(limit):
@@ -118,11 +121,12 @@ def _newton(
             break
         following, found = _line_search(smooth, state, following, laws)
         before = error
-        wanted, _ = next_active(system, following, increment, tied)
-        active = np.where(sharp, wanted, system.join([law.closed for law in near]).astype(bool))
-        changed = int((active != state.closed).sum())
-        unsettled = bool((active != state.closed)[sharp].any())
-        state = following.with_closed(active)
+        wanted = _wanted(system, following, increment, tied)
+        closed = np.where(system.join([law.closed for law in near]).astype(bool), CLOSED, OPEN)
+        status = np.where(sharp | rubs, wanted, closed)
+        changed = int((status != state.status).sum())
+        unsettled = bool((status != state.status)[sharp].any())
+        state = following.with_status(status)
         row = report(system, state, increment, len(done) + 1, changed, np.zeros(1), time.perf_counter() - clock)
         row = replace(row, contact_residual=law_error)
         done.append(row)
@@ -130,10 +134,19 @@ def _newton(
         if softness > HARDEST and law_error < MET:
             softness, before = (softness * HARDEN if softness > 1e-5 else HARDEST), np.inf
         elif law_error < TOLERANCE and row.residual < 1e-8 and not unsettled:
-            return Found(state, tuple(done), True, np.zeros(len(active), dtype=bool), laws)
+            return Found(state, tuple(done), True, np.zeros(len(status), dtype=bool), laws)
         elif not found and (tries := tries + 1) > TRIES:
             break
     return Found(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0), smooth.laws(HARDEST))
+
+
+def _wanted(
+    system: Linearised, state: State, increment: Increment, tied: NDArray[np.bool_]
+) -> NDArray[np.int8] | NDArray[np.bool_]:
+    """The status that the laws ask for of pairs without a smooth one."""
+    if any(pair.frictional for pair in system.pairs):
+        return next_status(system, state, increment)
+    return np.where(next_active(system, state, increment, tied)[0], CLOSED, OPEN)
 
 
 def _accuracy(error: float, before: float) -> float:
@@ -150,13 +163,17 @@ def _unbalanced(system: Linearised, state: State, increment: Increment) -> float
 
 def _smooth_laws(system: Linearised, state: State, reference: float, softness: float) -> list[LawRows]:
     laws = []
-    for pair, g, p, closed in zip(
-        system.pairs, system.split(system.gap(state)), system.split(state.multipliers), system.split(state.closed)
-    ):
+    parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
+    for pair, g, p, closed, slips in zip(system.pairs, *map(system.split, parts)):
         at, own = pair.points, pair.contact.law
-        if at is not None:
+        epsilon, tension = max(pair.contact.epsilon, softness**2), max(TENSION_START, softness)
+        if pair.frictional and pair.smooth:
+            law = SmoothCoulomb(pair.stiffness, pair.friction(system.factors), float(np.sqrt(epsilon)), reference)
+            laws.append(at_multipliers(pair, law, g, p, closed))
+        elif pair.frictional:
+            laws.append(at_multipliers(pair, coulomb(pair, system), g, p, closed, slips))
+        elif at is not None:
             gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
-            epsilon, tension = max(pair.contact.epsilon, softness**2), max(TENSION_START, softness)
             laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, reference, tension), gap, p))
         elif pair.tied or isinstance(own, str):
             laws.append(at_multipliers(pair, Tied() if pair.tied else Complementarity(pair.stiffness), g, p, closed))

@@ -30,7 +30,8 @@ def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
     step: index into ``solution.steps``. Points of bodies have displacement (n, 3), stress (n, 6: xx yy zz xy yz zx) and
     von_mises; points of contacts pressure, multiplier and gap (NaN where there is none), displacement, contact_force (of the
     mesh's point ``node``: points of that number repeat it), with friction traction, slip, total_slip, friction_status,
-    friction_work and total_friction_work; cells status and side (as in ``contact_*.vtu``). Raises InputError without PyVista, or where there is no such step.
+    friction_work and total_friction_work; cells status and side (as in ``contact_*.vtu``). Raises InputError
+    without PyVista, or where there is no such step.
 
     >>> import abut
     >>> from abut.mesh import make

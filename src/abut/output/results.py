@@ -203,7 +203,7 @@ def _history(solution: Solution) -> str:
 
 
 def _log(solution: Solution) -> str:
-    lines = [{"note": note} for note in solution.notes]
+    lines: list[Json] = [{"note": note} for note in solution.notes]
     lines += [row.row for step in solution.steps for row in step.iterations]
     return "".join(json.dumps(line) + "\n" for line in lines)
 

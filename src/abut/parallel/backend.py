@@ -90,8 +90,8 @@ def deal_out(model: Model, team: Team) -> DistributedBodies:
     """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
     if not model.deformable.constant:
         raise InputError(
-            'solve.linear "petsc" and several processes know linear elastic materials only; run without mpiexec, with '
-            'linear = "auto"'
+            'solve.linear "petsc" and several processes know linear elastic materials under small strains only; run without '
+            'mpiexec, with linear = "auto"'
         )
     owner = owners(model.mesh, team)
     points = point_owners(model.mesh, owner)

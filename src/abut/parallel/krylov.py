@@ -51,7 +51,8 @@ class Answer:
 @dataclass(frozen=True)
 class Conditions:
     """What stands beside the stiffness, on process 0: coupled, lower (n, n_places), corner (n, n) and right-hand side as in
-    ``abut.linear.saddle_point.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,)."""
+    ``abut.linear.saddle_point.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,), roughly of
+    -(lower K^-1 coupled^T + corner)."""
 
     coupled: Foreign
     lower: Foreign
@@ -100,10 +101,11 @@ def iterate(
 
     matrix = store["matrix"]
     own = conditions or NONE
-    lower = _rows(matrix, n, own.lower)
+    pulls, lower = _rows(matrix, n, own.coupled), _rows(matrix, n, own.lower)
+    pulls.scale(-1.0)
     operator = matrix
     if n:
-        upper, corner = PETSc.Mat().createTranspose(lower), _square(matrix.comm, n, own.corner)
+        upper, corner = PETSc.Mat().createTranspose(pulls), _square(matrix.comm, n, own.corner)
         operator = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
@@ -112,7 +114,7 @@ def iterate(
     solver.setGMRESRestart(RESTART)
     solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
     solver.setFromOptions()
-    blocks = Blocks(store["stiffness solver"], lower, loose, small, own.inverse, solver.getType() == "minres")
+    blocks = Blocks(store["stiffness solver"], pulls, loose, small, own.inverse, solver.getType() == "minres")
     solver.getPC().setType("python")
     solver.getPC().setPythonContext(blocks)
     answer = _solve(solver, operator, share, own.rhs)
@@ -201,12 +203,12 @@ class Blocks:
     displacements; for MINRES, which wants it symmetric, each by itself."""
 
     def __init__(
-        self, stiffness: Foreign, lower: Foreign, loose: Vector, small: Vector, inverse: Foreign, apart: bool
+        self, stiffness: Foreign, pulls: Foreign, loose: Vector, small: Vector, inverse: Foreign, apart: bool
     ) -> None:
-        self.stiffness, self.lower, self.loose, self.small = stiffness, lower, loose, small
+        self.stiffness, self.pulls, self.loose, self.small = stiffness, pulls, loose, small
         self.inverse, self.apart = inverse, apart
         self.residual, self.answer = stiffness.getOperators()[0].createVecs()
-        self.pressure = lower.createVecLeft()
+        self.pressure = pulls.createVecLeft()
 
     def apply(self, _: Foreign, x: Foreign, y: Foreign) -> None:
         """y = P x, for PETSc."""
@@ -217,9 +219,9 @@ class Blocks:
             out[n:] = q if self.apart else -q
             self.pressure.array[:] = out[n:]
         self.residual.array[:] = into[:n]
-        if not self.apart and self.lower.getSize()[0]:
+        if not self.apart and self.pulls.getSize()[0]:
             self.pressure.scale(-1.0)
-            self.lower.multTransposeAdd(self.pressure, self.residual, self.residual)
+            self.pulls.multTransposeAdd(self.pressure, self.residual, self.residual)
         self.stiffness.solve(self.residual, self.answer)
         out[:n] = self.answer.array_r
         if self.small.size:

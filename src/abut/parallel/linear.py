@@ -13,7 +13,7 @@ from abut.linear.choice import chosen
 from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
-from abut.linear.iterative import RESPONSE, compliance
+from abut.linear.iterative import RESPONSE, compliance, require_held
 from abut.linear.saddle_point import saddle
 from abut.linear.schur_preconditioner import (
     Predict,
@@ -44,6 +44,7 @@ from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
 from abut.types import Sparse
 
+SYMMETRIC = ("minres", "cg", "symmlq")  # Krylov methods for such matrices
 ACCURATE = 1e-11  # of equilibrium and of closed gaps: results differ by less than 1e-8 from those of a direct solver
 Vector = NDArray[np.float64]
 
@@ -76,22 +77,24 @@ class Iterative:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        fixed, active = rows.fixed, ~rows.decoupled
-        operator, own = self.system.operator[active], conditions(rows, self.system.operator, self.pressures)
-        motions = self.system.motions
-        s, inverse, layout = own.columns, own.inverse, self.matrix.layout
-        small = compliance(operator @ motions, inverse) if motions.shape[1] else np.zeros((0, 0))
-        lower, corner = spread(sp.diags(s) @ own.lower, layout), sp.diags(s) @ own.corner @ sp.diags(s)
+        own = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
+        motions, layout, inverse = self.system.motions, self.matrix.layout, own.inverse
+        small = np.zeros((0, 0))
+        if motions.shape[1]:
+            small = compliance(own.forces @ motions, inverse, -np.asarray(own.lower @ motions))
+            left = residual - self.system.operator.T @ own.fixed
+            require_held(motions, small, left, float(np.abs(self.system.forces).sum()))
+        by_column, by_row = sp.diags(own.columns), sp.diags(own.rows)
         beside = Conditions(
-            lower, lower, corner.tocsr(), -s * rows.residual[active],
-            lambda gap: inverse(gap / s) / s if len(gap) else gap,
+            spread(by_column @ own.forces, layout), spread(by_row @ own.lower, layout),
+            (by_row @ own.corner @ by_column).tocsr(), -own.rows * own.residual,
+            lambda gap: inverse(gap / own.rows) / own.columns if len(gap) else gap,
         )  # fmt: skip
-        answers = self._solve(accuracy, -residual + self.system.operator.T @ fixed, small, beside)
+        answers = self._solve(accuracy, -residual + self.system.operator.T @ own.fixed, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
-        fixed[active] = s * answers[0].pressure
-        return solution, fixed
+        return solution, own.multipliers(own.columns * answers[0].pressure)
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As ``abut.linear.iterative.Iterative.respond``."""
@@ -206,6 +209,12 @@ class PetscIterations:
                 f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
                 '"complementarity", or leave the option -pc_type out'
             )
+        rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
+        if rubs and krylov_method() in SYMMETRIC:
+            raise InputError(
+                f"-ksp_type {krylov_method()} is for symmetric matrices, which friction does not leave (contact "
+                f"'{rubs[0]}'): leave the option out"
+            )
         if previous is None or previous.system.stiffness is not matrix:
             matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))
         pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
@@ -254,12 +263,6 @@ class PetscDirect:
 
 def choose(problem: ContactProblem) -> str:
     """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
-    friction = [pair.contact.name for pair in problem.pairs if pair.frictional]
-    if friction:
-        raise InputError(
-            f"PETSc does not know friction, which contact '{friction[0]}' has: run it on one process, with solve.linear "
-            '"direct" or "auto"'
-        )
     coupled = problem.held.coupled
     if wants_factors():
         return "direct"
@@ -279,6 +282,13 @@ def preconditioner() -> str:
     options = PETSc.Options()
     given = options.getString("pc_type", MULTIGRID["pc_type"])
     return str(options.getString(STIFFNESS + "pc_type", given))
+
+
+def krylov_method() -> str:
+    """What the user's PETSc options name, else nothing."""
+    from petsc4py import PETSc
+
+    return str(PETSc.Options().getString("ksp_type", ""))
 
 
 def wants_factors() -> bool:

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.model import Model
+from abut.model.conditions import weights
 from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.finite import finite_problem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import regularise
@@ -21,6 +23,7 @@ from abut.problem.loads import Loads, followers, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
+from abut.problem.whole_pairs import whole_pairs
 from abut.solution import Observer, Phase
 
 
@@ -51,7 +54,8 @@ def assemble(
     reduced = backend.reduce(held)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    every = pairs(model, held, backend.couple)
+    sliding = model.finite and bool(model.contacts)
+    every = whole_pairs(model, held) if sliding else pairs(model, held, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
@@ -61,7 +65,8 @@ def assemble(
         note(text)
     held_by, reduced = held_by.helped_by(springs.gram), springs.added_to(reduced)
     forces = [held.free.T @ force for force in loaded.at_ends(model)]
-    require_balance(held_by, forces[0], " in step 1" if len(forces) > 1 else "")
+    first = held_by.at(weights(model.histories, model.solve.ends[0]))
+    require_balance(first, forces[0], " in step 1" if len(forces) > 1 else "")
     require_unmoved(held_by, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
@@ -83,6 +88,7 @@ def assemble(
         motions=held.coordinates(held_by.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
+    problem = finite_problem(problem) if sliding else problem
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

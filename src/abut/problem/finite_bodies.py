@@ -15,7 +15,7 @@ from abut.problem.terms import Motion, Share, Vector
 
 @dataclass(frozen=True)
 class FiniteBodies:
-    """Hyperelastic bodies under finite strains, theory (D1) to (D8). ``evaluate`` and ``stress`` raise
+    """Hyperelastic bodies under finite strains, theory (D2). ``evaluate`` and ``stress`` raise
     ``abut.bodies.finite.Inverted`` at displacements that turn a cell inside out."""
 
     model: Model

@@ -62,7 +62,8 @@ class Linearised:
     (n, n_free), all pairs stacked; offset g0: (n,); compliance C: (n, n) where displacements have been condensed,
     theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
     contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation;
-    about: under finite deformation, else None.
+    about: under finite deformation, else None; B q is then B (q - at). Contact forces may have other columns than gaps have
+    rows: F^T p with ``pushing`` F (n, n_free); forgotten: (n,) multipliers of friction without a past, which carry nothing.
     """
 
     time: float
@@ -78,6 +79,8 @@ class Linearised:
     unit: float
     compliance: NDArray[np.float64] | None = None
     about: Expansion | None = None
+    pushing: Operator | None = None
+    forgotten: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         """Number of multipliers."""
@@ -106,6 +109,11 @@ class Linearised:
         return self.join([pair.weight for pair in self.pairs])
 
     @property
+    def columns(self) -> Operator:
+        """(n, n_free): forces by multiplier; the operator where nothing else is said."""
+        return self.operator if self.pushing is None else self.pushing
+
+    @property
     def symmetric(self) -> bool:
         """Whether the stiffness is."""
         return self.about is None or self.about.symmetric
@@ -126,21 +134,21 @@ class Linearised:
         else:
             residual = (self.internal(state) if internal is None else internal) - self.load
         if len(state.multipliers):
-            residual = residual - self.operator.T @ state.multipliers
+            residual = residual - self.columns.T @ state.multipliers
         return np.asarray(residual)
 
     def gap(self, state: State) -> Vector:
         """Weighted gaps of all multipliers, (n,)."""
         if not len(self.offset):
             return self.offset
-        gap = self.offset + self.operator @ state.unknowns
+        gap = self.offset + self.operator @ (state.unknowns if self.about is None else state.unknowns - self.about.at)
         return np.asarray(gap if self.compliance is None else gap + self.compliance @ state.multipliers)
 
     def rows(self, laws: Sequence[LawRows]) -> Rows:
         """The laws of all pairs in terms of the unknowns."""
         if not self.pairs:
             none = np.zeros(0)
-            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), True)
+            return Rows(none, self.operator, sp.csr_matrix((0, 0)), none.astype(bool), self.symmetric)
         by_displacement, by_compliance, first = [], [], 0
         for pair, law in zip(self.pairs, laws):
             here = slice(first, first + len(pair))
@@ -159,7 +167,7 @@ class Linearised:
             by_displacement=sp.vstack(by_displacement).tocsr(),
             by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
             decoupled=np.concatenate([law.decoupled for law in laws]),
-            symmetric=not at_points and all(law.symmetric for law in laws),
+            symmetric=self.symmetric and not at_points and all(law.symmetric for law in laws),
             by_gap=None if at_points else sp.block_diag([law.by_gap for law in laws]).tocsr(),
             by_multiplier=by_pressure,
         )

@@ -33,6 +33,11 @@ def centre(contact: ContactResult) -> str:
     return _point(contact.resultant.centre, contact)
 
 
+def force(contact: ContactResult) -> str:
+    """The resultant on the contactor; 0 where forces cancel, as round a press fit."""
+    return vector(contact.force, float(np.linalg.norm(contact.contactor_forces, axis=1).sum()))
+
+
 def moment(contact: ContactResult) -> str:
     """The moment on the contactor about the origin."""
     sizes = np.linalg.norm(contact.contactor_forces, axis=1)

@@ -29,8 +29,8 @@ def friction_rows(solution: Solution) -> list[list[str]]:
     for contact in solution.contacts:
         own = contact.friction
         if own is not None:
-            numbers = (own.force_by_area, own.force_limit, own.largest_share, own.max_traction, own.max_slip)
-            numbers += (own.max_total_slip, own.work, own.total_work)
+            numbers = [own.force_by_area, own.force_limit, own.largest_share, own.max_traction, own.max_slip]
+            numbers += [own.max_total_slip, own.work, own.total_work]
             areas = [number(own.sticking_area), number(own.slipping_area)]
             rows.append([contact.name, *areas, vector(own.force, own.force_by_area), *map(_bounded, numbers)])
     return rows
@@ -68,7 +68,7 @@ def friction_fields(own: FrictionResult, at: Patch) -> dict[str, Vector]:
 
 def arrow_nodes(contact: ContactResult) -> NDArray[np.int64]:
     """Nodes of a contactor with an arrow, sorted: the corners of its facets, at most ``MOST``, spread over it."""
-    ids = np.unique(contact.contactor.nodes[_corners(contact)])
+    ids = np.unique(contact.contactor.nodes[_corners(contact)]).astype(np.int64)
     if len(ids) > MOST:
         ids = np.sort(np.random.default_rng(0).permutation(ids)[:MOST])
     return ids

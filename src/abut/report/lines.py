@@ -24,8 +24,8 @@ OFF = 1e-3  # cuts pass beside the node of largest pressure, as a share of the w
 
 @dataclass(frozen=True)
 class Line:
-    """points (n, dim), distance along them (n,) with 0 at the largest pressure, pressure and gap (n,); with friction the size
-    of the tangential traction and its limit (n,), the coefficient times the pressure.
+    """points (n, dim), distance along them (n,) with 0 at the largest pressure, pressure and gap (n,); with friction the
+    size of the tangential traction and its limit (n,), the coefficient times the pressure.
 
     Two points in one place with different pressures are a jump between facets; gap is NaN where nothing lies opposite.
     """

@@ -37,6 +37,12 @@ def read_origin(path: Path, text: str) -> Origin:
     return Origin(title, text, entry if isinstance(entry, dict) else {})
 
 
+OF_FRICTION = (
+    "sticking_area", "slipping_area", "force_by_area", "force_limit", "largest_share", "max_traction", "max_slip",
+    "max_total_slip", "work", "total_work",
+)  # fmt: skip
+
+
 def quantities(step: Step) -> dict[str, float]:
     """What ``expected.json`` may speak of, by its names there: the first contact, and the peaks of all probes."""
     known: dict[str, float] = {}
@@ -46,6 +52,10 @@ def quantities(step: Step) -> dict[str, float]:
     for contact in step.contacts[:1]:
         known |= {"contact.max_pressure": contact.max_pressure, "contact.area": contact.area}
         known |= {f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)}
+        turns = "z" if contact.contactor.dim == 2 else "xyz"
+        known |= {f"contact.moment.{axis}": float(value) for axis, value in zip(turns, contact.resultant.moment)}
+        if contact.friction is not None:
+            known |= {f"contact.friction.{name}": float(getattr(contact.friction, name)) for name in OF_FRICTION}
     return known
 
 

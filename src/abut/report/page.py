@@ -17,7 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
-from abut.report.contact_words import centre, moment, number, on_bodies, place, vector
+from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import Line, pressure_lines
@@ -91,10 +91,10 @@ def _head(solution: Solution, origin: Origin) -> str:
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
     if solution.contacts:
         top = max(solution.contacts, key=lambda c: c.max_pressure)
-        force = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
+        most = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
         facts = [
             ("largest pressure", number(top.max_pressure)),
-            ("contact force", number(float(np.linalg.norm(force.force)))),
+            ("contact force", number(float(np.linalg.norm(most.force)))),
             ("contact area", number(sum(c.area for c in solution.contacts))),
             *facts,
         ]
@@ -154,7 +154,7 @@ def _contacts(solution: Solution) -> str:
     rows = [
         [
             c.name,
-            vector(c.force),
+            force(c),
             number(c.max_pressure),
             number(c.area),
             number(c.max_penetration),

@@ -94,10 +94,12 @@ def _body(mesh: Mesh, name: str, own: Skin) -> Json:
 def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
     surface: Any = getattr(contact, role)
     body = next((i for i, cells in enumerate(mesh.bodies.values()) if np.isin(surface.cells[:1], cells).any()), 0)
-    arrows = {}
+    arrows: Json = {}
     if role == "contactor" and contact.friction is not None:
         nodes = arrow_nodes(contact)
-        arrows = {"arrows": {"points": pack(vectors(mesh.points[nodes])), "normals": pack(arrow_normals(contact, nodes))}}
+        arrows = {
+            "arrows": {"points": pack(vectors(mesh.points[nodes])), "normals": pack(arrow_normals(contact, nodes))}
+        }
     return {
         **arrows,
         "contact": contact.name,
@@ -120,7 +122,7 @@ def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches
     for (c, role), own in zip(sides, patches):
         contact = step.contacts[c]
         pressure = contact.pressure if role == "contactor" else contact.target_pressure
-        values = {
+        values: Json = {
             "displacement": pack(own.of_points(moved)),
             "von Mises": pack(own.of_points(stress)),
             "pressure": pack(own.nodal(pressure)),

@@ -69,9 +69,9 @@ class FrictionResult:
 
     coefficient: the largest, infinite for "rough"; traction: (n_contactor_facets, 9, dim) on the contactor, at the facets'
     own nodes, tangential force per area; traction_limit: (n_contactor_facets, 9) what its size can be there at most, the
-    coefficient times the pressure, infinite for "rough"; slip, total_slip: the same, length, of the contactor over the target, in this step
-    and in all steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 sticking, 2 slipping, of a node without a
-    multiplier the highest of its facet; NaN (0) where padded.
+    coefficient times the pressure, infinite for "rough"; slip, total_slip: as traction, length, of the contactor over the
+    target, in this step and in all steps while in contact; status: (n_contactor_facets, 9) 0 open, 1 sticking, 2 slipping,
+    of a node without a multiplier the highest of its facet; NaN (0) where padded.
     sticking_area, slipping_area: as ``ContactResult.area``.
     work, total_work: that friction takes, force times length, in this step and in all; work_per_area, total_work_per_area:
     (n_contactor_facets, 9) the same at the nodes.

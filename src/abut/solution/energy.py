@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-ENERGY = 1e-8  # limit of the error of the balance: the linear solution's
-ROUNDED = 1e-5  # the same at most, where far motions of stiff parts leave no more digits
+ENERGY = 1e-8  # limit of the error of the balance
+ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and where far motions leave no more digits
 
 
 @dataclass(frozen=True)
@@ -14,11 +14,11 @@ class Energy:
     friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
-    the bodies, where interference grows or gaps close or open within the step; stored: change of the strain energy; friction:
-    that friction takes with the traction at the step's end, as in ``FrictionResult.work``; stepping: what the work of a
-    traction that grows in proportion over the step differs from that, of second order in the step.
-    size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; rounding: what
-    displacements in double precision leave open.
+    the bodies, where interference grows or gaps close or open within the step; stored: change of the strain energy;
+    friction: that friction takes with the traction at the end of the step, as ``FrictionResult.work``; stepping: what the
+    work of a traction that grows in proportion over the step differs from that, of second order in the step.
+    size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
+    displacements in double precision and the tolerance of equilibrium may leave open.
     """
 
     loads: float
@@ -28,7 +28,7 @@ class Energy:
     friction: float
     stepping: float
     size: float
-    rounding: float
+    left: float
 
     @property
     def error(self) -> float:
@@ -38,5 +38,5 @@ class Energy:
 
     @property
     def limit(self) -> float:
-        """Of the error: that of the linear solution, or what rounding leaves."""
-        return min(max(ENERGY, self.rounding / self.size), ROUNDED)
+        """Of the error: at least and at most fixed shares of the size."""
+        return min(max(ENERGY, self.left / self.size), ROUNDED)

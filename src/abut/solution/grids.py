@@ -129,11 +129,19 @@ def _friction(friction: FrictionResult, facets: NDArray[np.int64], n_nodes: int,
     """Tangential traction and slips (n, 3), status (0 open, 1 sticking, 2 slipping), and work per area in the step and in
     all, at the nodes of facets."""
     names = {name: name for name in ("traction", "slip", "total_slip")}
-    names |= {"friction_work": "work_per_area", "total_friction_work": "total_work_per_area", "friction_status": "status"}
+    names |= {
+        "friction_work": "work_per_area",
+        "total_friction_work": "total_work_per_area",
+        "friction_status": "status",
+    }
     result: dict[str, Array] = {}
     for name, attribute in names.items():
         values = getattr(friction, attribute)
-        here = values[facets, :n_nodes] if side == CONTACTOR else np.zeros_like(values, shape=(len(facets), n_nodes, *values.shape[2:]))
+        here = (
+            values[facets, :n_nodes]
+            if side == CONTACTOR
+            else np.zeros_like(values, shape=(len(facets), n_nodes, *values.shape[2:]))
+        )
         flat = np.nan_to_num(here).reshape(-1, *values.shape[2:])
         result[name] = vectors(flat) if flat.ndim == 2 else flat
     return result

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 class Iteration:
     """One Newton iteration: one row of the live table, one line of run.jsonl.
 
-    active: multipliers in contact, over all pairs, with friction points; changed: how many changed since the iteration before;
+    active: multipliers in contact, over all pairs, with friction points; changed: how many did since the iteration before;
     residual: equilibrium residual over the reference force; contact_residual: largest violation of the contact law over
     the reference pressure; penetration: largest penetration over the contactor's facet size; sticking, slipping: how many of
     the active ones of pairs with friction do, None where there is none.

@@ -98,6 +98,7 @@ class Step:
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
+    reason: str = ""  # why it did not converge, where more can be said
     energy: Energy | None = None  # of a converged step of a model with friction
 
     @property
@@ -206,7 +207,7 @@ class Solution:
                 "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
-            model = [balance, response, strain]
+            model = [balance, response] if self.model.finite else [balance, response, strain]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip

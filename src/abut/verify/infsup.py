@@ -18,7 +18,7 @@ from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.errors import InputError, nearest
 from abut.linear import direct
 from abut.mesh.surface import Surface
-from abut.model import Model
+from abut.model import LAWS, Model
 from abut.problem.constraints import Supports, supports
 from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
 from abut.types import Sparse
@@ -102,7 +102,7 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
         raise InputError(f"inf-sup: contact '{wanted.name}' is tied; the test is for the normal pressure of a contact")
     if wanted.frictional:  # the pressure alone, in the space that friction takes
         space = DUAL if wanted.pressure in ("auto", DUAL_P1) else wanted.pressure
-        wanted = replace(wanted, friction=0.0, pressure=space)
+        wanted = replace(wanted, friction=0.0, friction_amplitude=None, law=LAWS[0], pressure=space)
     held = supports(model)
     if held.free.shape[1] == 0:
         raise InputError("inf-sup: supports hold every displacement (rigid bodies only); leave some free")

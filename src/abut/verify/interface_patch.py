@@ -73,7 +73,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
         raise InputError(
             f"verify: contact '{contact.name}' is {contact.method}, whose pressure is not unique; take another method"
         )
-    contact = replace(contact, kind="contact", law="complementarity", offset=0.0, friction=0.0)
+    contact = replace(contact, kind="contact", law="complementarity", offset=0.0, friction=0.0, friction_amplitude=None)
     sides = model.sides(contact)
     normal = _plane_normal(model.mesh.axisymmetric, sides)
     bodies = Model(

@@ -1,0 +1,73 @@
+"""What results look at after large sliding: the multipliers that have a target opposite now."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.contact.coupling import Coupling
+from abut.contact.pressure_space import PressureSpace, only
+from abut.problem.contact_pairs import Pair
+from abut.problem.current import Current
+from abut.problem.finite import FiniteProblem, bare
+from abut.problem.linearised import Linearised
+from abut.problem.problem import CONTACTS
+from abut.solution.state import State
+
+Array = NDArray[np.float64]
+
+
+def covered(problem: FiniteProblem, system: Linearised, state: State, here: Array) -> tuple[Linearised, State]:
+    """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
+    nothing is opposite to; weights are those of the part that is covered."""
+    pairs, keeps, slips = [], [], state.history.of(CONTACTS)
+    for pair, kind in zip(system.pairs, problem.moving):
+        keep = np.ones(len(pair), dtype=bool)
+        if kind is not None:
+            under = ~bare(pair)
+            keep = pair.of_functions(under if under.any() else np.ones_like(under))
+            pair = _of_covered(pair, kind, keep, here) if under.any() else pair
+        pairs.append(pair)
+        keeps.append(keep)
+    keep = np.concatenate([np.zeros(0, bool), *keeps])
+    slips = {p.contact.name: slips[p.contact.name][own] for p, own in zip(pairs, keeps) if p.contact.name in slips}
+    assert system.pushing is not None
+    smaller = replace(
+        system, pairs=pairs, operator=system.operator[keep], offset=system.offset[keep], pushing=system.pushing[keep],
+        forgotten=None if system.forgotten is None else system.forgotten[keep],
+    )  # fmt: skip
+    history = state.history.with_term(CONTACTS, slips)
+    return smaller, replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
+
+
+def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array) -> Pair:
+    """A pair without some multipliers, keep (n,), with the weights of what is covered now."""
+    coupling = kind.shown(here)
+    ends = np.cumsum([len(part) for part in pair.components])[:-1]
+    components = [_weighed(only(part, own), coupling) for part, own in zip(pair.components, np.split(keep, ends))]
+    functions = keep[pair.normal]
+    number = np.where(keep, np.cumsum(keep) - 1, -1)
+    index = np.where(pair.index >= 0, number[np.maximum(pair.index, 0)], -1)[functions]
+    weight = np.concatenate([part.weight for part in components])
+    return replace(
+        pair, coupling=coupling, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
+        components=tuple(components), index=index, rows=pair.rows[keep], operator=pair.operator[keep], gap=pair.gap[keep],
+        prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
+        slip=None
+        if pair.slip is None
+        else replace(
+            pair.slip,
+            tangents=pair.slip.tangents[functions],
+            points=pair.slip.points[functions],
+            normals=pair.slip.normals[functions],
+        ),
+        values=None
+        if pair.values is None
+        else replace(pair.values, coefficient=pair.values.coefficient[functions]),
+    )  # fmt: skip
+
+
+def _weighed(space: PressureSpace, coupling: Coupling) -> PressureSpace:
+    return replace(space, weight=space.transfer.T @ coupling.weight)

@@ -1,0 +1,126 @@
+"""Large sliding in 2D: shallow ironing, a half ring crushed on a block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.benchmarks.record import Benchmark, Reference
+from abut.materials.hyperelastic import NeoHooke
+from abut.mesh.make import join, rectangle, ring
+from abut.mesh.mesh import Mesh
+from abut.model import Amplitude, Contact, Model, Solid, Support
+from abut.solution import Solution
+
+DIE, RADIUS, GAP = (1.2, 1.2), 0.75, 0.2  # of the die: width and height, of its arc; to the slab at the outset
+PRESS = Amplitude(((0.0, 0.0), (1 / 6, 0.5), (1 / 3, 1.0), (1.0, 1.0)))
+SLIDE = Amplitude(((0.0, 0.0), (1 / 3, 0.0), (2 / 3, 0.5), (1.0, 1.0)))
+RING, DEPTH = (0.085, 0.090, 0.095), 0.07  # radii; how far the ring's ends go down
+MESH = (
+    "two or three digits; the prototype's die mesh is not known, and dies of 6 to 24 facets differ by 2 %, 1 %, 0.8 %"
+)
+
+
+def _die(level: int) -> Mesh:
+    mesh = rectangle((-1.0, 1.0), (0.0, 1.0), (8 * 2**level, 8 * 2**level), "quad4")
+    x, y = mesh.points.T
+    half = 0.5 * DIE[0]
+    turn = np.arcsin(half / RADIUS) * x
+    arc = np.column_stack([RADIUS * np.sin(turn), RADIUS * (1.0 - np.cos(turn))])
+    top = np.column_stack([half * x, np.full(len(x), DIE[1])])
+    points = (1.0 - y)[:, None] * arc + y[:, None] * top
+    return replace(mesh, points=points + np.array([0.2 + half, 4.0 + GAP]))
+
+
+def _ironing(level: int) -> Model:
+    slab = rectangle((0.0, 12.0), (0.0, 4.0), (60 * 2**level, 12 * 2**level), "quad4")
+    rubber = {
+        name: NeoHooke(young, 0.32, volumetric="log-squared") for name, young in (("slab", 68.96e7), ("die", 68.96e8))
+    }
+    return Model(
+        join({"slab": slab, "die": _die(level)}),
+        [Solid(name, material) for name, material in rubber.items()],
+        [
+            Support("slab.bottom", x=0.0, y=0.0), Support("die.top", y=-1.0, amplitude=PRESS),
+            Support("die.top", x=10.0, amplitude=SLIDE),
+        ],
+        contacts=[Contact("slab.top", ("die.bottom", "die.left", "die.right"), friction=0.3)],
+        plane="strain", kinematics="finite",
+    )  # fmt: skip
+
+
+def _forces(solution: Solution) -> Mapping[str, float]:
+    """On the die, at the times that the amplitudes name."""
+    at = {round(step.factor, 9): step.reactions["die.top"] for step in solution.steps}
+    half, down, along = (at[round(time, 9)] for time in (1 / 6, 1 / 3, 2 / 3))
+    return {
+        "force half down": -half[1], "force down": -down[1], "force along the slab": along[0],
+        "force on the slab": -along[1], **_effort(solution),
+    }  # fmt: skip
+
+
+def _effort(solution: Solution) -> Mapping[str, float]:
+    iterations = sum(len(step.iterations) for step in solution.steps)
+    return {"iterations": float(iterations), "steps": float(len(solution.steps))}
+
+
+def _crushed(friction: float) -> Model:
+    base = rectangle((-0.125, 0.125), (-0.145, -RING[2]), (50, 6), "quad8")
+    outer = ring(RING[1:], (180.0, 360.0), cells=(1, 32), cell="quad8")
+    inner = ring(RING[:2], (180.0, 360.0), cells=(1, 32), cell="quad8")
+    ends = [Support(f"{name}.{end}", x=0.0, y=-DEPTH) for name in ("outer", "inner") for end in ("start", "end")]
+    moduli = {"base": 3e8, "outer": 1e9, "inner": 1e11}
+    return Model(
+        join({"base": base, "outer": outer, "inner": inner}),
+        [Solid(name, NeoHooke(young, 0.3)) for name, young in moduli.items()],
+        [Support("base.bottom", x=0.0, y=0.0), *ends],
+        contacts=[
+            Contact("inner.outer", "outer.inner", kind="tied"), Contact("outer.outer", "base.top", friction=friction)
+        ],
+        plane="strain", kinematics="finite",
+    )  # fmt: skip
+
+
+def _middle(solution: Solution) -> Mapping[str, float]:
+    mesh = solution.model.mesh
+    nodes = mesh.nodes_of("outer.outer")
+    lowest = nodes[np.argmin(np.abs(mesh.points[nodes] - [0.0, -RING[2]]).sum(axis=1))]
+    moved: NDArray[np.float64] = solution.displacement[lowest]
+    return {"rise of the middle": float(moved[1]), **_effort(solution)}
+
+
+def _few(most: float, of: str) -> Reference:
+    return Reference(0.5 * most, 1.0, "what it took when it was written, and half as much again", f"the number of {of}")
+
+
+SOURCE = (
+    "own prototype, total Lagrangian, same mesh, 10 and 50 equal steps; Poulios and Renard's plots as shown by Kratos "
+    "Examples lie between plane strain and plane stress"
+)
+BENCHMARKS = (
+    Benchmark(
+        "shallow-ironing", "a die pressed into a slab and drawn along it, friction 0.3", _ironing, _forces,
+        {
+            "force half down": Reference(0.94e8, 0.01, SOURCE, MESH),
+            "force down": Reference(3.17e8, 0.01, SOURCE, MESH),
+            "force on the slab": Reference(4.04e8, 0.01, SOURCE, MESH),
+            "force along the slab": Reference(1.31e8, 0.015, SOURCE, MESH + "; the force swings by 1 % from facet to facet"),
+            "iterations": _few(300.0, "linear solutions"),
+            "steps": _few(60.0, "load steps"),
+        },
+    ),
+    Benchmark(
+        "crushed-ring", "a half ring crushed on a block until its middle rises", lambda level: _crushed(0.0), _middle,
+        {
+            "rise of the middle": Reference(
+                0.0624, 0.01, "own prototype, quad8, 17 steps; Kratos Examples' plot in 3D: 0.057",
+                "the block of the 3D model is free sideways",
+            ),
+            "iterations": _few(100.0, "linear solutions"),
+            "steps": _few(30.0, "load steps"),
+        },
+    ),
+)  # fmt: skip

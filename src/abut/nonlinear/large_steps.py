@@ -1,0 +1,77 @@
+"""Load stepping at large displacements: automatic step lengths, each step begun by extrapolation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from abut.linear.solver import LinearSolver
+from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.pace import Pace
+from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.nonlinear.stepping import Control
+from abut.problem.finite import FiniteProblem
+from abut.solution.state import State
+
+MOST = 25  # iterations in a step, above which it is halved
+CAREFUL = 2  # cuts in a row from which on a line search shortens iterations
+
+
+def march_finite(
+    problem: FiniteProblem, done: Sequence[State], pace: Pace, solver: LinearSolver, control: Control
+) -> Iterator[Attempt]:
+    """Load step after load step. done: the converged states so far, from the start on; pace: after the last of them.
+
+    A failed attempt is yielded only where no other follows it."""
+    before, cuts = done[-1], 0
+    earlier = done[-2] if len(done) > 1 else None
+    number = len(done)
+    control.prepared(f"{solver.name}, unsymmetric, new in every iteration")
+    while (time := pace.end) is not None:
+        if cuts == 0:
+            control.begins(number, time)
+        guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
+        increment = Increment(number, before.largest)
+        step = Step(
+            problem, before, solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
+        )
+        attempt = _ended(step, solve_finite(step, guess, time), time)
+        if attempt.converged:
+            pace.take(len(attempt.iterations))
+            yield attempt
+            earlier, before, number, cuts = before, attempt.state, number + 1, 0
+            continue
+        cuts += 1
+        pace.halve()
+        if pace.stuck:
+            yield attempt
+            return
+        control.halves(attempt, pace.end or time)
+
+
+def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:
+    """A guess at ``time`` from the last two converged states, theory (G9): pressures stay open or pushing."""
+    ratio = (time - before.time) / (before.time - earlier.time)
+    ahead = before.multipliers + ratio * (before.multipliers - earlier.multipliers)
+    first = 0
+    for pair in problem.pairs:
+        if not pair.tied:
+            own = slice(first + pair.normal.start, first + pair.normal.stop)
+            ahead[own] = np.where(before.multipliers[own] > 0.0, np.maximum(ahead[own], 0.0), before.multipliers[own])
+        first += len(pair)
+    ahead = np.where(before.closed, ahead, before.multipliers)
+    return replace(
+        before, time=time, multipliers=ahead, unknowns=before.unknowns + ratio * (before.unknowns - earlier.unknowns)
+    )
+
+
+def _ended(step: Step, found: Found, time: float) -> Attempt:
+    none = np.zeros(len(found.state.status), dtype=bool)
+    state = replace(found.state, time=time)
+    if found.converged:
+        system = step.problem.linearise(step.before, state)
+        state = step.problem.accepted(step.before, replace(state, largest=largest_of(system, state, step.increment)))
+    return Attempt(step.increment.number, state, found.converged, found.iterations, none, none, time, step.failed)

@@ -1,0 +1,116 @@
+"""Automatic load steps at large displacements: how long the next one is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from abut.model.conditions import History
+
+FIRST = 0.1  # of the way to the next goal
+EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
+HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
+SMALLEST = 1.0 / 4096.0  # of the way to the next goal
+STRAIGHT = 1e-9  # change of slope over the slope that is none
+SAME = 1e-12  # times that differ by less are the same
+
+
+class Pace:
+    """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
+    goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
+    ahead is new."""
+
+    def __init__(
+        self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
+        kinks: Sequence[float] = (),
+    ) -> None:  # fmt: skip
+        self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
+        self._legs = [*legs, goals[-1]]
+        self.time = 0.0
+        self._length = self._fresh()
+
+    @property
+    def goal(self) -> float | None:
+        """The next one; None at the end."""
+        return next((goal for goal in self._goals if goal > self.time + SAME), None)
+
+    @property
+    def end(self) -> float | None:
+        """Of the next step."""
+        goal = self.goal
+        if goal is None:
+            return None
+        left = goal - self.time
+        if left <= self._length * (1.0 + SAME):
+            return goal
+        return self.time + min(self._length, 0.5 * left if left < 2.0 * self._length else left)
+
+    @property
+    def turned(self) -> bool:
+        """Whether the way ahead is new."""
+        return any(abs(self.time - kink) < SAME for kink in self._kinks)
+
+    @property
+    def stuck(self) -> bool:
+        """Whether steps have become too short."""
+        return self._length < SMALLEST * self._leg
+
+    def halve(self) -> None:
+        """After a step that failed."""
+        end = self.end
+        assert end is not None
+        self._length = 0.5 * (end - self.time)
+
+    def take(self, iterations: int) -> None:
+        """The step to ``end`` has converged in so many iterations."""
+        end = self.end
+        assert end is not None
+        self.time = end
+        if any(abs(end - leg) < SAME for leg in self._legs):
+            self._length = self._fresh()
+            return
+        factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+        self._length = min(factor * self._length, self._longest)
+
+    def repeat(self, time: float, iterations: int) -> None:
+        """Take a step of an earlier run that ended at ``time``."""
+        while self.end is not None and self.end > time + SAME and not self.stuck:
+            self.halve()
+        self.take(iterations)
+        self.time = time
+
+    @property
+    def _leg(self) -> float:
+        begin = max((leg for leg in self._legs[:-1] if leg <= self.time + SAME), default=0.0)
+        return next(leg for leg in self._legs if leg > begin + SAME) - begin
+
+    def _fresh(self) -> float:
+        return min(self._share * self._leg, self._longest)
+
+
+def _named(histories: Sequence[History]) -> tuple[list[float], list[float]]:
+    """Times between the ends at which what is prescribed has a point of its table, and those of them where its direction
+    changes."""
+    named, turns = set(), set()
+    for history in histories:
+        points = () if history is None else history.points
+        for i, (time, factor) in enumerate(points):
+            if not 0.0 < time < 1.0:
+                continue
+            named.add(time)
+            before = 0.0 if i == 0 else (factor - points[i - 1][1]) / (time - points[i - 1][0])
+            after = 0.0 if i == len(points) - 1 else (points[i + 1][1] - factor) / (points[i + 1][0] - time)
+            if abs(after - before) > STRAIGHT * max(abs(before), abs(after)):
+                turns.add(time)
+    return sorted(named), sorted(turns)
+
+
+def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
+    """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this; times
+    are met, each in one step if it can be."""
+    named, turns = _named(histories)
+    if times:
+        goals = [time for time in sorted({*named, *times}) if time <= times[-1]]
+        return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
+    if isinstance(steps, str):
+        return Pace([*named, 1.0], legs=turns, kinks=turns)
+    return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns)

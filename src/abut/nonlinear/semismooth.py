@@ -1,0 +1,193 @@
+"""One load step at large displacements: semi-smooth Newton on geometry, material, contact and friction together, by
+theory (G7), (G8)."""
+
+from __future__ import annotations
+
+import time as clocks
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.errors import SingularModelError, Unsound
+from abut.linear.solver import LinearSolver
+from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
+from abut.problem.finite import FiniteProblem, bare
+from abut.problem.laws import LawRows
+from abut.problem.linearised import Linearised
+from abut.solution import Iteration
+from abut.solution.state import CLOSED, OPEN, Largest, State
+
+BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
+ROUNDING = 1e-7  # the same that may be left where it no longer falls
+FAINT = 1e-5  # pressure over Young's modulus that counts as small
+HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together."""
+
+    system: Linearised
+    state: State
+    laws: Sequence[LawRows]
+    force: float
+    law: float
+    size: float
+    changed: NDArray[np.bool_]
+
+    @property
+    def error(self) -> float:
+        return max(self.force, self.law)
+
+
+@dataclass
+class Step:
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. done: its
+    iterations, which grow; failed: why it ended without a solution."""
+
+    problem: FiniteProblem
+    before: State
+    solver: LinearSolver
+    increment: Increment
+    limit: int
+    observe: Callable[[Iteration], None]
+    careful: bool = False
+    done: list[Iteration] = field(default_factory=list)
+    failed: str = ""
+
+
+def solve_finite(step: Step, guess: State | None, time: float) -> Found:
+    """The state at ``time``, from a guess there; None: from the last converged state, whose tangent carries what is
+    prescribed further."""
+    none = np.zeros(len(step.before.status), dtype=bool)
+    try:
+        state = _newton(step, guess, time)
+    except (SingularModelError, Unsound) as reason:
+        step.failed = str(reason)
+        return Found(step.before, tuple(step.done), False, none, friction_laws)
+    return Found(state, tuple(step.done), not step.failed, none, friction_laws)
+
+
+def _newton(step: Step, guess: State | None, time: float) -> State:
+    begun, before = clocks.perf_counter(), np.inf
+    here = _balance(step, _carried(step, time) if guess is None else guess)
+    if guess is None:
+        begun = _report(step, here, begun)
+    while guess is not None or not _balanced(here, before):
+        if len(step.done) >= step.limit:
+            step.failed = f"{step.limit} iterations"
+            break
+        there = _balance(step, advance(step.solver.prepare(here.system, None), here.state, here.laws))
+        if step.careful:
+            there = _shortened(step, here, there)
+        if not np.isfinite(there.size):
+            step.failed = "forces are not finite"
+            break
+        before, here, guess = here.error, there, None
+        begun = _report(step, here, begun)
+    return here.state
+
+
+def _balanced(here: Balance, before: float) -> bool:
+    """Whether nothing is left but rounding. before: the error of the iteration before."""
+    return here.error <= BALANCED or (here.error <= ROUNDING and here.error > 0.5 * before)
+
+
+def _carried(step: Step, time: float) -> State:
+    """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes
+    as far as it takes to hold every body."""
+    system = step.problem.ahead(step.before, time)
+    state = replace(step.before, time=time)
+    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
+    state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
+    return advance(step.solver.prepare(system, None), state, laws_of(system, state))
+
+
+def laws_of(system: Linearised, state: State) -> list[LawRows]:
+    """The laws of all pairs with the status as it is; multipliers of friction without a past carry nothing."""
+    laws = friction_laws(system, state)
+    if system.forgotten is None or not system.forgotten.any():
+        return laws
+    parts = zip(system.pairs, laws, system.split(system.forgotten), system.split(state.multipliers))
+    return [_without(law, forgotten, pair.scale, own) for pair, law, forgotten, own in parts]
+
+
+def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
+    """Rows that set some multipliers to zero."""
+    if not forgotten.any():
+        return law
+    keep = sp.diags((~forgotten).astype(float))
+    return replace(
+        law,
+        residual=np.where(forgotten, -scale * multipliers, law.residual),
+        by_gap=(keep @ law.by_gap).tocsr(),
+        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(forgotten, scale, 0.0))).tocsr(),
+        decoupled=law.decoupled | forgotten,
+    )
+
+
+def _balance(step: Step, state: State) -> Balance:
+    """The problem near a state, with the status that the laws ask for there."""
+    system = step.problem.linearise(step.before, state)
+    wanted = np.where(_bare(system), OPEN, next_status(system, state, step.increment)).astype(np.int8)
+    changed = wanted != state.status
+    state = state.with_status(wanted)
+    laws = laws_of(system, state)
+    so_far = largest_of(system, state, step.increment)
+    modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
+    forces, pressures = max(so_far.force, 1e-300), max(so_far.pressure, FAINT * modulus)
+    left = system.unbalanced(state) / forces
+    open_ = [law.residual / pair.weight * pair.stiffness / pressures for pair, law in zip(system.pairs, laws)]
+    law = np.concatenate([np.zeros(0), *open_])
+    return Balance(
+        system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
+        float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+    )  # fmt: skip
+
+
+def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
+    """Force and pressure, now or in a step before."""
+    pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
+    return Largest(largest_force(system, state, system.load, increment), float(pressure))
+
+
+def _bare(system: Linearised) -> NDArray[np.bool_]:
+    parts = [np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]
+    return np.concatenate([np.zeros(0, bool), *parts])
+
+
+def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
+    """The whole step, or the part of it that halving finds to be better."""
+    share, best = 1.0, full
+    for _ in range(HALVINGS):
+        if best.size <= (1.0 - LESS * share) * here.size:
+            return best
+        share *= 0.5
+        best = _balance(step, part_of(here.state, full.state, share))
+    return best if np.isfinite(best.size) else full
+
+
+def _report(step: Step, here: Balance, begun: float) -> float:
+    now = clocks.perf_counter()
+    depth = [
+        float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
+        for pair, gap in zip(here.system.pairs, here.system.split(here.system.gap(here.state)))
+        if not pair.tied
+    ]
+    system, state = here.system, here.state
+    rubbing = any(pair.frictional for pair in system.pairs)
+    row = Iteration(
+        step=step.increment.number, iteration=len(step.done) + 1, active=points(system, state.closed),
+        changed=int(here.changed.sum()), residual=here.force, contact_residual=here.law,
+        penetration=max(depth, default=0.0), seconds=now - begun,
+        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
+        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
+    )  # fmt: skip
+    step.done.append(row)
+    step.observe(row)
+    return now

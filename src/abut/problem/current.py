@@ -1,0 +1,203 @@
+"""Contact at current positions, for large sliding: gaps, slips and forces of a pair with their exact derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling_tangent import coupling_tangent
+from abut.contact.geometry import Smoothing, facet_sizes, smoothing
+from abut.contact.tangential import SlipOperators, quarter, slip_operators
+from abut.mesh.surface import Surface
+from abut.problem.contact_pairs import Pair
+from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
+from abut.problem.tangent_frames import Frames, anchors, tangents_2d
+from abut.types import Sparse
+
+Array = NDArray[np.float64]
+KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
+NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
+
+
+@dataclass(frozen=True)
+class ContactNow:
+    """A pair at a state. pair: with surfaces, rows (of the forces) and weights as they are now; gap: (n,) weighted gaps and
+    slips; by_position: (n, dim n_points) their derivative; bending: (dim n_points, dim n_points) derivative of the contact
+    forces; without_history: (n_functions,) whose slip does not count."""
+
+    pair: Pair
+    gap: Array
+    by_position: Sparse
+    bending: Sparse
+    without_history: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
+    None without friction; offset: what is added to the gap now."""
+
+    displacement: Array
+    before: Array
+    points: SlipPoints | None
+    offset: float
+
+
+@dataclass(frozen=True)
+class Current:
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``."""
+
+    pair: Pair
+
+    def at(self, place: Place, multipliers: Array) -> ContactNow:
+        """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
+        pair = self.pair
+        contactor, target = self.surfaces(place.displacement)
+        options = self._options(place.displacement - place.before)
+        coupling = couple(contactor, target, pair.coupling.degree, options, across=self._across)
+        pressure = pair.space.transfer @ multipliers[pair.normal]
+        by = coupling_tangent(contactor, target, pair.coupling.degree, options, pressure, across=self._across)
+        down = pair.space.transfer.T
+        weight = np.asarray(down @ coupling.weight)
+        slope = by.gap if place.offset == 0.0 or by.weight is None else by.gap + place.offset * by.weight
+        now = ContactNow(
+            replace(
+                pair, contactor=contactor, target=target, coupling=coupling, space=replace(pair.space, weight=weight),
+                rows=(down @ coupling.operator).tocsr(),
+            ),
+            np.asarray(down @ coupling.gap + place.offset * weight),
+            (down @ slope).tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
+        )  # fmt: skip
+        return self._with_friction(now, place, options, multipliers) if pair.frictional else now
+
+    def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
+        """Contactor and target at a displacement (dim n_points,)."""
+        points = np.ascontiguousarray(self.pair.contactor.points + displacement.reshape(-1, self.pair.contactor.dim))
+        return replace(self.pair.contactor, points=points), replace(self.pair.target, points=points)
+
+    def points(self, displacement: Array) -> SlipPoints:
+        """The integration points at a displacement, from which the next step's slip counts."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_points=True)
+        surfaces = self.surfaces(displacement)
+        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options, across=self._across))
+
+    def shown(self, displacement: Array) -> Coupling:
+        """With what results ask for beside it."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_sights=True)
+        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+
+    def _options(self, moved: Array) -> CouplingOptions:
+        rule = self.pair.contact.integration
+        nodes = self._nodes
+        way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
+        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
+
+    @cached_property
+    def _across(self) -> Smoothing:
+        """Creases are those of the undeformed contactor: forces do not jump when an angle grows."""
+        return smoothing(self.pair.contactor)
+
+    @cached_property
+    def _nodes(self) -> NDArray[np.int64]:
+        return np.union1d(self.pair.contactor.node_ids, self.pair.target.node_ids)
+
+    @cached_property
+    def _facet(self) -> float:
+        return float(max(facet_sizes(self.pair.contactor).max(), facet_sizes(self.pair.target).max()))
+
+    @cached_property
+    def _anchors(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        return anchors(self.pair.contactor, self.pair.space)
+
+    @cached_property
+    def _frames(self) -> Frames:
+        assert self.pair.slip is not None
+        return Frames.of(self.pair.contactor, self.pair.space, self.pair.slip.tangents)
+
+    def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
+        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
+        pair, own = self.pair, now.pair
+        assert place.points is not None
+        slip = slip_now(place.points, own.contactor, own.target, self._across)
+        rubbed = self._in_plane if own.contactor.dim == 2 else self._in_space
+        made = rubbed(own, slip, options, multipliers)
+        covered = pair.space.plain.T @ place.points.moments(len(own.contactor))
+        assert pair.slip is not None
+        moved = replace(pair.slip, operators=made.operators, tangents=made.tangents)
+        return ContactNow(
+            replace(own, rows=sp.vstack([own.rows, made.rows]).tocsr(), slip=moved),
+            np.concatenate([now.gap, made.slip]),
+            sp.vstack([now.by_position, made.by_position]).tocsr(),
+            (now.bending + made.bending).tocsr(),
+            covered < KNOWN * pair.weight[pair.normal],
+        )  # fmt: skip
+
+    def _in_plane(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+        """2D: forces of a traction are those of a pressure, turned by a right angle at every point."""
+        part = self.pair.components[1].transfer
+        turn = quarter(len(own.contactor.points))
+        along = part @ multipliers[self.pair.tangential]
+        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, across=self._across)
+        turned_rows = (own.coupling.operator @ turn).tocsr()
+        return Rubbing(
+            rows=part.T @ turned_rows, slip=np.asarray(part.T @ slip.value[:, 0]), by_position=part.T @ slip.by_position[0],
+            bending=turn.T @ by.force_tangent, tangents=tangents_2d(own.contactor, self._across, *self._anchors),
+            operators=SlipOperators((turned_rows,), own.coupling.gap[:, None]),
+        )  # fmt: skip
+
+    def _in_space(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+        """3D: two components along tangents that turn with the surface."""
+        pair, x = self.pair, own.contactor.points
+        kept = replace(options, keep_points=True)
+        at = couple(own.contactor, own.target, own.coupling.degree, kept, across=self._across).points
+        assert at is not None
+        operators = slip_operators(at, x)
+        fields = [pair.space.transfer.T @ along for along in operators.along]
+        value = pair.space.transfer.T @ slip.value
+        change = [pair.space.transfer.T @ by for by in slip.by_position]
+        tangents, by_tangent = self._frames.at(own.contactor, self._across)
+        rows, slips, slopes, bending = [], [], [], sp.csr_matrix((x.size, x.size))
+        traction = np.zeros((len(pair.space), 3))
+        for b, by in enumerate(by_tangent):
+            has = pair.index[:, 1 + b] >= 0
+            t = np.where(has, multipliers[np.maximum(pair.index[:, 1 + b], 0)], 0.0)
+            traction += t[:, None] * tangents[:, b]
+            parts = [by[a::3] for a in range(3)]
+            rows.append(sum(sp.diags(tangents[:, b, a]) @ fields[a] for a in range(3)).tocsr()[has])
+            slips.append(np.einsum("nd,nd->n", value, tangents[:, b])[has])
+            slopes.append(
+                sum(
+                    sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)
+                ).tocsr()[has]
+            )
+            bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
+        by_force = coupling_tangent(
+            own.contactor, own.target, own.coupling.degree, options, np.zeros(len(own.coupling.gap)),
+            pair.space.transfer @ traction, across=self._across,
+        )  # fmt: skip
+        return Rubbing(
+            sp.vstack(rows),
+            np.concatenate(slips),
+            sp.vstack(slopes),
+            bending + by_force.force_tangent,
+            tangents,
+            operators,
+        )
+
+
+@dataclass(frozen=True)
+class Rubbing:
+    """What friction adds, m rows. rows: (m, dim n_points) of the forces; slip: (m,) weighted; by_position: its derivative;
+    bending: derivative of the forces; tangents: (n_functions, dim - 1, dim); operators: of the slip, facet by facet."""
+
+    rows: Sparse
+    slip: Array
+    by_position: Sparse
+    bending: Sparse
+    tangents: Array
+    operators: SlipOperators

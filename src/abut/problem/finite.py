@@ -1,0 +1,162 @@
+"""A contact problem at large displacements and sliding: linearised anew at every state, contact at current positions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.model.conditions import weights
+from abut.model.offset import offsets
+from abut.problem.contact_pairs import Pair
+from abut.problem.current import ContactNow, Current, Place
+from abut.problem.linearised import Linearised
+from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
+from abut.problem.slip_points import SlipPoints
+from abut.problem.terms import Motion, Share
+from abut.solution.state import State, at_rest
+
+POINTS = "points"  # whose history is the integration points of the last step
+BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FiniteProblem(ContactProblem):
+    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties."""
+
+    moving: Sequence[Current | None] = ()
+
+    @property
+    def constant(self) -> bool:
+        """As in ``Problem``."""
+        return False
+
+    def start(self) -> State:
+        """As in ``Problem``: multipliers that touch at the outset are closed."""
+        rest = at_rest(self.n_free, int(self.operator.shape[0]))
+        closed = []
+        for pair, now in zip(self.pairs, self._contacts(rest, rest, self.displacement(rest), rest)):
+            touching = (now.gap <= TOUCHING * pair.size * pair.weight)[pair.normal] & ~bare(now.pair)
+            closed.append(np.ones(len(pair), bool) if pair.tied else pair.of_functions(touching))
+        return self._marked(rest.with_closed(np.concatenate([np.zeros(0, bool), *closed])))
+
+    def linearise(self, before: State, now: State) -> Linearised:
+        """As in ``Problem``."""
+        here = self.displacement(now)
+        return self._expanded(before, now, here, np.zeros_like(here))
+
+    def ahead(self, before: State, time: float) -> Linearised:
+        """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
+        there, now = self.displacement(before), replace(before, time=time)
+        return self._expanded(before, now, there, self.displacement(now) - there)
+
+    def accepted(self, before: State, now: State) -> State:
+        """As in ``Problem``."""
+        here = self.displacement(now)
+        history = before.history
+        slips = self._slips(before, now)
+        if slips:
+            history = history.with_term(CONTACTS, slips)
+        for term, share in zip(self.terms, self._forces(before, now.time, here)):
+            history = history.with_term(term.name, share.history)
+        return self._marked(replace(now, history=history))
+
+    def _marked(self, state: State) -> State:
+        """With the integration points from which the next step's slip counts."""
+        here = self.displacement(state)
+        points = {
+            kind.pair.contact.name: kind.points(here).array
+            for kind in self.moving
+            if kind is not None and kind.pair.frictional
+        }
+        return replace(state, history=state.history.with_term(POINTS, points))
+
+    def _expanded(self, before: State, now: State, here: Array, change: Array) -> Linearised:
+        """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
+        time."""
+        factors = weights(self.model.histories, now.time)
+        there = weights(self.model.histories, before.time) if change.any() else factors
+        held = self.held.near(now.unknowns, there)
+        shares, contacts = self._forces(before, now.time, here), self._contacts(before, now, here, now)
+        stiff = [share.tangent for share in shares if share.tangent is not None]
+        bending = sum((contact.bending for contact in contacts), sp.csr_matrix((len(here),) * 2))
+        whole = np.sum([share.force for share in shares], axis=0)
+        if change.any():
+            whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
+        stiffness = self.springs.added_to(sum(tangent.reduce(held) for tangent in stiff) - held.reduce(bending))
+        rows = [own.pair.rows for own in contacts]
+        if self.held.turns is not None:
+            pushed = sum(own.T @ p for own, p in zip(rows, self._split(now.multipliers)))
+            stiffness = stiffness + self.held.turns.bending(now.unknowns, there, whole - pushed)
+        force = held.free.T @ whole
+        about = self._expansion(shares, now.unknowns, force, stiffness)
+        assert about is not None
+        operators = [(own.by_position @ held.free).tocsr() for own in contacts]
+        pairs = [replace(own.pair, operator=by, gap=own.gap) for own, by in zip(contacts, operators)]
+        gap = np.concatenate([own.gap + own.by_position @ change for own in contacts])
+        load = -about.unbalanced
+        return Linearised(
+            now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
+            unit_of(stiffness), about=replace(about, symmetric=False),
+            pushing=sp.vstack([own @ held.free for own in rows]).tocsr(), forgotten=self._idle(contacts),
+        )  # fmt: skip
+
+    def _split(self, values: Array) -> list[Array]:
+        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
+
+    def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
+        """(n,) multipliers of friction whose slip does not count in this step."""
+        parts = [np.zeros(0, bool)]
+        for own in contacts:
+            mask = own.pair.of_functions(own.without_history) if own.pair.frictional else np.zeros(len(own.gap), bool)
+            if not own.pair.tied:
+                mask[own.pair.normal] = False
+            parts.append(mask)
+        return np.concatenate(parts)
+
+    def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
+        """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
+        factors, there = weights(self.model.histories, now.time), self.displacement(before)
+        marks, result = before.history.of(POINTS), []
+        for pair, kind, own in zip(self.pairs, self.moving, self._split(at.multipliers)):
+            if kind is None:
+                result.append(_tie(pair, here))
+                continue
+            constant, varying = offsets(self.model, pair.contact)
+            mark = marks.get(pair.contact.name)
+            points = None
+            if pair.frictional:
+                points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
+            result.append(kind.at(Place(here, there, points, constant + float(varying @ factors)), own))
+        return result
+
+    def _forces(self, before: State, time: float, here: Array) -> list[Share]:
+        """Of every term at displacements ``here``."""
+        there = self.displacement(before)
+        parts = [before.history.of(term.name) for term in self.terms]
+        return [
+            term.evaluate(Motion(before.time, there, own), Motion(time, here, own))
+            for term, own in zip(self.terms, parts)
+        ]
+
+
+def bare(pair: Pair) -> NDArray[np.bool_]:
+    """(n_functions,) with hardly any target opposite now: they carry no pressure."""
+    return np.asarray(pair.space.weight < BARELY * pair.weight[pair.normal])
+
+
+def _tie(pair: Pair, displacement: Array) -> ContactNow:
+    """A tie, which holds undeformed surfaces together."""
+    none = sp.csr_matrix((len(displacement),) * 2)
+    return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
+
+
+def finite_problem(problem: ContactProblem) -> FiniteProblem:
+    """A problem with pairs as from ``whole_pairs`` at large displacements."""
+    own = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
+    moving = [None if pair.tied else Current(pair) for pair in problem.pairs]
+    return FiniteProblem(**{**own, "stiffness": None}, moving=moving)

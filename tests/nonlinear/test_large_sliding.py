@@ -1,0 +1,297 @@
+"""Contact at current positions: what large displacements and sliding must keep."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import abut
+from abut.contact.coupling import CouplingOptions, couple
+from abut.errors import InputError
+from abut.linear.choice import Direct
+from abut.mesh import make
+from abut.nonlinear.iteration import advance
+from abut.nonlinear.large_steps import extrapolated
+from abut.nonlinear.semismooth import laws_of
+from abut.problem.current import Place
+from abut.problem.slip_points import SlipPoints, slip_now
+from abut.solution import Solution
+from abut.solution.state import CLOSED, OPEN, State
+from models.sliding import arched, finite, turned
+
+ANGLE = np.deg2rad(70.0)
+
+
+def last_state(model: abut.Model) -> tuple[State, State, Solution]:
+    """The last two converged states of a run, and the run."""
+    states: list[State] = []
+    solution = abut.solve(model, on_step=lambda _, saved: states.append(saved.state))
+    assert solution.converged
+    return states[-2], states[-1], solution
+
+
+@pytest.mark.parametrize("cell", ["quad4", "quad8"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_tangent_is_the_derivative(friction: float, cell: str) -> None:
+    """Balance and gaps (slips) against differences, in all displacements at once: geometry, normals, segments, tractions.
+    Central differences of quantities of order one leave 1e-9; a term left out shows at 1e-3."""
+    problem, rng = finite(arched(friction, cell)), np.random.default_rng(3)
+    before, n = problem.start(), problem.operator.shape[0]
+    at = replace(
+        before, time=0.7, unknowns=5e-3 * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
+    )
+    system, way = problem.linearise(before, at), rng.standard_normal(problem.n_free)
+
+    def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        state = replace(at, unknowns=at.unknowns + step * way)
+        near = problem.linearise(before, state)
+        return near.unbalanced(state), near.gap(state)
+
+    (force, gap), (force_back, gap_back) = there(1e-6), there(-1e-6)
+    forces, gaps = (force - force_back) / 2e-6, (gap - gap_back) / 2e-6
+    assert np.abs(forces - system.stiffness @ way).max() < 1e-8 * np.abs(forces).max()
+    assert np.abs(gaps - system.operator @ way).max() < 1e-8 * np.abs(gaps).max()
+
+
+def test_prescribed_displacements_ahead() -> None:
+    """What is prescribed until a later time, carried by the tangent: against differences in time at the same unknowns."""
+    problem = finite(patch(0.4))  # it prescribes the ends of the interface, too
+    pressed = np.random.default_rng(1).uniform(0.0, 50.0, problem.operator.shape[0])
+    before = replace(problem.start(), multipliers=pressed)
+
+    def error(step: float) -> float:
+        later = replace(before, time=step)
+        ahead, there = problem.ahead(before, later.time), problem.linearise(before, later)
+        force, gap = ahead.unbalanced(before) - there.unbalanced(later), ahead.gap(before) - there.gap(later)
+        return float(np.abs(force).max() + 100.0 * np.abs(gap).max())
+
+    assert error(5e-4) < 0.3 * error(1e-3)  # of second order
+
+
+def test_a_long_way_into_the_target_is_seen() -> None:
+    """A trial state that overlaps by more than two facets, as a first step may: what moved so far is looked for so far."""
+    problem = finite(arched(0.0))
+    model, before = problem.model, problem.start()
+    moved = np.zeros_like(model.mesh.points)
+    moved[model.mesh.nodes_of("upper.bottom"), 1] = -0.95
+    trial = replace(before, unknowns=problem.held.free.T @ moved.ravel(), time=0.1)
+    own = problem.moving[0].at(
+        Place(problem.displacement(trial), problem.displacement(before), None, 0.0), before.multipliers
+    )
+    middle = own.gap / problem.pairs[0].weight
+    assert middle.min() < -0.8
+
+
+def test_extrapolation() -> None:
+    """Twice as far as the last step went: displacements and tractions on a line, pressures no less than none, what is open
+    stays open."""
+    problem = finite(arched(0.3))
+    n = len(problem.pairs[0].space)
+    first = replace(problem.start(), time=0.1)
+    two = replace(first, time=0.2, unknowns=first.unknowns + 1.0)
+    one, p, t = np.zeros(2 * n), np.zeros(2 * n), slice(n, 2 * n)
+    one[:3], p[:3] = [3.0, 3.0, 1.0], [1.0, 4.0, 0.0]
+    p[t] = 0.5
+    status = np.where(np.arange(2 * n) % n < 2, CLOSED, OPEN).astype(np.int8)
+    guess = extrapolated(problem, replace(first, multipliers=one), replace(two, multipliers=p, status=status), 0.4)
+    assert guess.time == 0.4
+    assert np.allclose(guess.unknowns, 3.0)
+    assert np.allclose(guess.multipliers[:4], [0.0, 6.0, 0.0, 0.0])
+    assert np.allclose(guess.multipliers[n : n + 3], [1.5, 1.5, 0.5])
+
+
+def test_momentum() -> None:
+    """Forces on both sides add up to none at any state, to rounding; their couple vanishes once the law holds: the
+    tractions' is sum t_k G_k, the pressures' is zero at every point."""
+    problem = finite(arched(0.3))
+    _, state, _ = last_state(arched(0.3))
+    system = problem.linearise(state, state)
+    force = (system.pairs[0].rows.T @ state.multipliers).reshape(-1, 2)
+    x = system.pairs[0].contactor.points
+    size = np.abs(force).sum()
+    assert size > 0.1
+    assert state.slipping.any()
+    assert np.abs(force.sum(axis=0)).max() < 1e-13 * size
+    couple_ = float((x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0]).sum())
+    assert abs(couple_) < 1e-12 * size
+
+
+def test_slip_of_a_rigid_motion() -> None:
+    """Both bodies turned by 0.7 and moved together, with gaps between them: no slip."""
+    model = arched(0.3)
+    contactor, target = model.sides(model.contacts[0])
+    options = CouplingOptions(reach=1.0, keep_points=True)
+    points = SlipPoints.of(contactor, target, couple(contactor, target, 1, options))
+    assert np.abs(couple(contactor, target, 1, options).gap).max() > 1e-3
+    moved = contactor.points @ turned(0.7).T + [3.0, -2.0]
+    slip = slip_now(points, replace(contactor, points=moved), replace(target, points=moved))
+    assert np.abs(slip.value).max() < 1e-12
+    pushed = contactor.points.copy()
+    pushed[contactor.node_ids] += [0.01, 0.0]
+    slip = slip_now(points, replace(contactor, points=pushed), replace(target, points=pushed))
+    area = points.moments(len(contactor))
+    assert np.allclose(slip.value.sum(), -0.01 * area.sum(), rtol=0.02)  # tau is N turned: -x where N points up
+
+
+def patch(friction: float) -> abut.Model:
+    """Blocks of two meshes whose whole outside but the interface follows one affine motion: squeezed and turned."""
+    lower, upper = make.rectangle([0, 2], [0, 1], cells=[5, 3]), make.rectangle([0, 2], [1, 2], cells=[4, 2])
+    motion = turned(ANGLE) @ np.diag([1.0, 0.8])
+
+    def u(a: int) -> Any:
+        return lambda x: x @ motion[a] - x[:, a]
+
+    outside = ["lower.bottom", "lower.left", "lower.right", "upper.top", "upper.left", "upper.right"]
+    return abut.Model(
+        make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
+        solids=[abut.Solid("lower", abut.NeoHooke(100.0, 0.3)), abut.Solid("upper", abut.NeoHooke(100.0, 0.3))],
+        supports=[abut.Support(name, x=u(0), y=u(1)) for name in outside],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_patch_turned(friction: float) -> None:
+    """One affine motion, finite strain and a turn by 70 degrees: Cauchy's pressure everywhere on the interface."""
+    _, _, solution = last_state(patch(friction))
+    shear, lame = 100.0 / 2.6, 100.0 * 0.3 / (1.3 * 0.4)
+    expected = -(shear + 0.5 * lame) * (0.8**2 - 1.0) / 0.8  # mu (b - 1) / J + lambda (J^2 - 1) / 2 J along the normal
+    pressure = solution.contacts[0].pressure
+    assert np.nanmax(np.abs(pressure - expected)) < 1e-9 * expected
+    motion = turned(ANGLE) @ np.diag([1.0, 0.8])
+    x = solution.model.mesh.points
+    assert np.abs(solution.steps[-1].displacement - (x @ motion.T - x)).max() < 1e-9
+
+
+def test_turned_small_example() -> None:
+    """Tiny loads: the pressures of small displacements, whatever rigid motion comes on top."""
+
+    def model(kinematics: str, angle: float) -> abut.Model:
+        lower, upper = make.rectangle([0, 2], [0, 1], cells=[6, 3]), make.rectangle([0.5, 1.5], [1, 2], cells=[4, 3])
+        turn = turned(angle)
+
+        def u(a: int, push: float) -> Any:
+            return lambda x: x @ turn[a] - x[:, a] + push * turn[a, 1] + (1.0 if angle else 0.0)
+
+        return abut.Model(
+            make.join({"lower": lower, "upper": upper}), plane="strain", kinematics=kinematics,
+            solids=[abut.Solid("lower", abut.LinearElastic(100.0, 0.3)), abut.Solid("upper", abut.LinearElastic(50.0, 0.3))],
+            supports=[
+                abut.Support("lower.bottom", x=u(0, 0.0), y=u(1, 0.0)),
+                abut.Support("upper.top", x=u(0, -1e-7), y=u(1, -1e-7)),
+            ],
+            contacts=[abut.Contact("upper.bottom", "lower.top", pressure="P1")],
+        )  # fmt: skip
+
+    small = abut.solve(model("small", 0.0)).contacts[0].multiplier
+    for angle in (0.0, np.deg2rad(25.0)):
+        _, _, solution = last_state(model("finite", angle))
+        assert np.nanmax(np.abs(solution.contacts[0].multiplier - small)) < 1e-6 * np.nanmax(small)
+
+
+def test_quadratic_convergence() -> None:
+    """Whole steps from a fresh guess end quadratically: what is left falls from below 1e-3 to below 1e-8 at most two
+    iterations later."""
+    _, _, solution = last_state(arched(0.3))
+    for step in solution.steps:
+        left = [max(row.residual, row.contact_residual) for row in step.iterations]
+        first = next(i for i, value in enumerate(left) if value < 1e-3)
+        assert min(left[first : first + 3]) < 1e-8
+
+
+def test_sliding_with_friction() -> None:
+    """All slips: the traction is the coefficient times the pressure, node by node, against the motion, and every check of
+    the certificate but coarse meshes' own passes."""
+    _, state, solution = last_state(arched(0.3))
+    pair = finite(arched(0.3)).pairs[0]
+    pressure, traction = state.multipliers[pair.normal], state.multipliers[pair.tangential]
+    slips = state.slipping[pair.normal]
+    assert slips.sum() >= 3
+    assert np.allclose(np.abs(traction[slips]), 0.3 * pressure[slips], rtol=1e-8)
+    assert (traction[slips] > 0.0).all()  # tau points to -x under a normal that points up
+    assert solution.steps[-1].reactions["upper.top"][0] > 0.0
+    coarse = ("oscillation", "resolution", "faceting", "overlap", "strain")
+    assert [check for check in solution.certificate if not check.passed and check.name not in coarse] == []
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_contact_found_again(friction: float) -> None:
+    """A block that leaves the edge of the other one keeps its multipliers, open where nothing is opposite; back again,
+    without friction, it carries what it did."""
+    there = abut.Amplitude(((0.0, 0.0), (0.2, 0.0), (0.6, 1.0), (1.0, 0.0)))
+    lower, upper = make.rectangle([0, 2], [0, 1], cells=[5, 3]), make.rectangle([0.5, 1.5], [1, 2], cells=[4, 2])
+    model = abut.Model(
+        make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
+        solids=[abut.Solid("lower", abut.LinearElastic(100.0, 0.3)), abut.Solid("upper", abut.LinearElastic(100.0, 0.3))],
+        supports=[
+            abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=1.05, amplitude=there),
+            abut.Support("upper.top", y=-0.02, amplitude=abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0)))),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+    )  # fmt: skip
+    solution = abut.solve(model)
+    assert solution.converged
+    force = {round(step.factor, 9): step.contacts[0] for step in solution.steps}
+    assert force[0.6].multipliers < force[0.2].multipliers
+    assert force[0.6].force[1] < 0.8 * force[0.2].force[1]
+    if friction:
+        assert force[0.6].force[0] < 0.0 < force[1.0].force[0]
+    else:
+        assert np.allclose(force[1.0].force, force[0.2].force, rtol=1e-7, atol=1e-9)
+
+
+def test_no_past_no_traction() -> None:
+    """A multiplier that nothing was opposite to in the last step carries no friction in this one; its pressure stays."""
+    problem = finite(arched(0.3))
+    before = replace(problem.start(), time=0.2)
+    pair = problem.pairs[0]
+    state = before.with_status(np.full(len(pair), CLOSED))
+    state = replace(state, multipliers=np.where(np.arange(len(pair)) < len(pair.space), 2.0, 0.4))
+    system = problem.linearise(before, state)
+    assert system.forgotten is not None
+    assert not system.forgotten.any()
+    mask = np.arange(len(pair)) == pair.tangential.start + 2
+    system = replace(system, forgotten=mask)
+    after = advance(Direct().prepare(system, None), state, laws_of(system, state))
+    assert np.abs(after.multipliers[mask]).max() < 1e-14
+    assert (after.multipliers[~mask] != 0.0).all()
+
+
+def test_restart_goes_on_the_same_way() -> None:
+    saved: list[Any] = []
+    whole = abut.solve(arched(0.3), on_step=lambda _, own: saved.append(own))
+    again = abut.solve(arched(0.3), resume=saved[: len(saved) // 2])
+    assert [(step.number, step.factor) for step in again.steps] == [(step.number, step.factor) for step in whole.steps]
+    assert [len(step.iterations) for step in again.steps] == [len(step.iterations) for step in whole.steps]
+    assert (again.steps[-1].displacement == whole.steps[-1].displacement).all()
+
+
+def test_too_much_ends_with_words() -> None:
+    """Pressed through the other block: no step is short enough, the run keeps the last state that it found and says why."""
+    notes: list[str] = []
+    model = arched(0.3)
+    through = replace(model, supports=[model.supports[0], abut.Support("upper.top", y=-1.8, x=0)])
+    solution = abut.solve(through, observer=lambda item: notes.append(item) if isinstance(item, str) else None)
+    assert not solution.converged
+    assert solution.steps[-2].converged
+    assert any("inside out" in note or "iterations" in note for note in notes[-2:])
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ({"adjust": 0.1}, "adjust"),
+        ({"law": "constraint-function"}, "law"),
+        ({"pressure": "dual"}, "nowhere negative"),
+        ({"method": "node-to-segment"}, "method"),
+        ({"pressure": "P2"}, "quadratic"),
+    ],
+)
+def test_refused(what: dict[str, Any], words: str) -> None:
+    model = arched(0.0)
+    with pytest.raises(InputError, match=words):
+        abut.solve(replace(model, contacts=[replace(model.contacts[0], **what)]))
