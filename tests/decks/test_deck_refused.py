@@ -44,12 +44,18 @@ def test_other_procedures_are_refused_and_left_out_with_their_step(name, tmp_pat
     assert "--ignore" not in str(caught.value)  # nothing would be left
 
 
-def test_large_displacements_are_refused_or_left_out(tmp_path):
+def test_large_displacements_are_solved_or_left_out(tmp_path):
     text = DECK.replace("*STEP", "*STEP, INC=100, nl geom")
-    with pytest.raises(InputError, match=r"NLGEOM: large displacements are not supported.* --ignore NLGEOM"):
-        load(tmp_path, text)
-    assert "NLGEOM of *STEP" in load(tmp_path, text, "NLGEOM").ignored[0]
-    assert load(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM=NO")).ignored == ()
+    job = load(tmp_path, text)
+    assert job.model.kinematics == "finite"
+    assert job.ignored == ()
+    job = load(tmp_path, text, "NLGEOM")
+    assert job.model.kinematics == "small"
+    assert "NLGEOM of *STEP" in job.ignored[0]
+    for value in ("NLGEOM=NO", "nlgeom = no"):
+        job = load(tmp_path, DECK.replace("*STEP", f"*STEP, {value}"), "NLGEOM")
+        assert job.model.kinematics == "small"
+        assert job.ignored == ()
 
 
 def told(tmp_path, text):
@@ -65,12 +71,12 @@ def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
         DECK.replace("*ELASTIC", "*ELASTIC, TYPE=ORTHO")
         .replace("PRESSURE-OVERCLOSURE=HARD", "PRESSURE-OVERCLOSURE=SOFT")
         .replace("*BOUNDARY", "*PLASTIC\n1., 0.\n*BOUNDARY")
-        .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, NLGEOM")
+        .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, PERTURBATION")
         .replace("*STATIC", "*STATIC\n*CLOAD\n18, 4, 1.\n*BOUNDARY\n1, 9\n")
     )
     lines = text.splitlines()
     expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*PLASTIC: ", "*EQUATION: 2 terms",
-                "*STEP: NLGEOM", "*CLOAD: direction 4", "*BOUNDARY: directions 9"]  # fmt: skip
+                "*STEP: PERTURBATION", "*CLOAD: direction 4", "*BOUNDARY: directions 9"]  # fmt: skip
     starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*PLASTIC", "*EQUATION", "*STEP", "18, 4", "1, 9"]
     own = told(tmp_path, text)
     assert len(own) == len(expected)
@@ -116,10 +122,10 @@ def test_no_more_than_a_screen_of_reasons(tmp_path):
 
 
 def test_all_refusals_come_at_once(tmp_path):
-    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*PLASTIC\n1., 0.\n*STEP, NLGEOM")
+    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*PLASTIC\n1., 0.\n*STEP, PERTURBATION")
     with pytest.raises(InputError) as caught:
         load(tmp_path, text)
-    assert all(f"--ignore {name}" in str(caught.value) for name in ("CREEP", "PLASTIC", "NLGEOM"))
+    assert all(f"--ignore {name}" in str(caught.value) for name in ("CREEP", "PLASTIC", "PERTURBATION"))
 
 
 def test_friction_without_effect_needs_no_permission(tmp_path):
@@ -212,12 +218,12 @@ def test_supports_that_come_or_go_are_refused(tmp_path):
 
 
 def test_what_was_ignored_stands_in_the_summary(tmp_path, capsys):
-    deck = write(tmp_path, DECK.replace("*STEP", "*STEP, NLGEOM"))
+    deck = write(tmp_path, DECK.replace("*STEP", "*STEP, PERTURBATION"))
     assert main(["run", str(deck)]) == 2
     assert f"{deck}:" in capsys.readouterr().err
-    assert main(["run", str(deck), "--ignore", "NLGEOM", "--quiet"]) == 0
+    assert main(["run", str(deck), "--ignore", "PERTURBATION", "--quiet"]) == 0
     summary = json.loads((tmp_path / "deck-results" / "summary.json").read_text())
-    assert [own.split(" (")[0] for own in summary["ignored"]] == ["NLGEOM of *STEP"]
+    assert [own.split(" (")[0] for own in summary["ignored"]] == ["PERTURBATION of *STEP"]
     assert any("*NODE PRINT" in note for note in summary["notes"])
 
 
@@ -301,14 +307,15 @@ def test_a_file_may_be_named_on_the_second_line_of_a_card(tmp_path):
 
 def test_messages_name_the_file_once_and_each_word_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*STEP, NLGEOM") + step("*CLOAD", "18, 1, 0.", card="*STATIC, NLGEOM")
+    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*STEP, PERTURBATION")
+    text += step("*CLOAD", "18, 1, 0.", card="*STATIC, PERTURBATION")
     write(tmp_path, text)
     for name in ("deck.inp", "./deck.inp"):
         with pytest.raises(InputError) as caught:
             load_job(Path(name))
         text = str(caught.value)
         assert text.count("deck.inp") == 1
-        assert text.count("--ignore NLGEOM") == text.count("--ignore CREEP") == 1
+        assert text.count("--ignore PERTURBATION") == text.count("--ignore CREEP") == 1
         assert text.count("line ") == 2
     write(tmp_path, DECK.replace("1000., 0.", "1000., 0.7"))
     with pytest.raises(InputError) as caught:

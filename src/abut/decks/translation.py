@@ -20,10 +20,13 @@ from abut.decks.cards.reasons import DeckError, Reasons
 from abut.decks.cards.record import Deck, GeneralContact, Numbers, Pair
 from abut.decks.cards.time_histories import Course, combine, courses, scaled, times, zero
 from abut.decks.friction import friction_options, path_notes
+from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import NeoHooke
+from abut.materials.material import Material
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
@@ -79,9 +82,11 @@ def translate(deck: Deck) -> Translation:
     if not deck.blocks:
         raise InputError("the deck has no *ELEMENT cards")
     reasons = Reasons()
+    for error in unsupported(deck):
+        reasons.add(error)
     plane = _plane(deck)
     deck = cut(deck)
-    notes = list(deck.notes)
+    notes = [*deck.notes, *finite_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     groups = Groups(deck)
     every, stiff = join(deck, pieces(deck))
@@ -115,7 +120,8 @@ def translate(deck: Deck) -> Translation:
     if deck.general is not None:
         mesh, found = _general(deck, deck.general, mesh, solids, contacts, notes)
         contacts += found
-    notes += path_notes(contacts)
+    finite = is_finite(deck)
+    notes += [] if finite else path_notes(contacts)
     model = Model(
         mesh,
         solids=solids,
@@ -125,7 +131,8 @@ def translate(deck: Deck) -> Translation:
         equations=prescribed.equations,
         rigid=rigid,
         plane=plane,
-        solve=_options(deck),
+        kinematics="finite" if finite else "small",
+        solve=load_steps(deck) if finite else _options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored)
 
@@ -187,11 +194,16 @@ def _plane(deck: Deck) -> str | None:
 
 def _solid(name: str, piece: Piece) -> Solid:
     material = piece.section.material
+    (a, b), rest = material.constants, (material.density, material.expansion)
+    own: Material
     try:
-        elastic = LinearElastic(material.young, material.poisson, material.density, material.expansion)
+        if material.rubber:  # C10 and D1
+            own = NeoHooke(None, None, 2.0 * a, 2.0 / b, None, "isochoric", *rest)
+        else:
+            own = LinearElastic(a, b, *rest)
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
-    return Solid(name, elastic, integration=piece.integration)
+    return Solid(name, own, integration=piece.integration)
 
 
 def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:

@@ -41,18 +41,40 @@ def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
 def _material(card: Card, following: Sequence[Card]) -> Material:
     options = {
         option.key: option
-        for option in takewhile(lambda own: own.key in ("ELASTIC", "DENSITY", "EXPANSION"), following)
+        for option in takewhile(lambda own: own.key in ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"), following)
     }
     name = card.need("NAME")
-    if "ELASTIC" not in options:
+    if "ELASTIC" in options and "HYPERELASTIC" in options:
+        raise options["HYPERELASTIC"].error(f"material '{name}' has *ELASTIC as well; give one of them")
+    rubber = "HYPERELASTIC" in options
+    if rubber:
+        constants = _neo_hooke(options["HYPERELASTIC"])
+    elif "ELASTIC" in options:
+        elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
+        constants = elastic.number(0, "Young's modulus"), elastic.number(1, "Poisson's ratio", 0.0)
+    else:
         raise card.error(f"material '{name}' has no *ELASTIC; give Young's modulus and Poisson's ratio")
-    elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
-    poisson = elastic.number(1, "Poisson's ratio", 0.0)
     density = _row(options["DENSITY"], "density").number(0, "density") if "DENSITY" in options else 0.0
     expansion = 0.0
     if "EXPANSION" in options:
         expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
-    return Material(name, elastic.number(0, "Young's modulus"), poisson, density, expansion, card.place)
+    return Material(name, constants, density, expansion, card.place, rubber)
+
+
+def _neo_hooke(card: Card) -> tuple[float, float]:
+    """C10 and D1."""
+    if not card.has("NEO HOOKE"):
+        raise card.error("the kind is missing; abut reads *HYPERELASTIC, NEO HOOKE with C10 and D1")
+    line = _row(card, "C10 and D1")
+    shear, compressible = line.number(0, "C10"), line.number(1, "D1", 0.0)
+    if not shear > 0.0:
+        raise line.error(f"C10: expected a number > 0, got {shear:g}")
+    if not compressible > 0.0:
+        raise line.error(
+            f"D1: expected a number > 0, got {compressible:g}: abut has no incompressible material; D1 = 2 / K, and "
+            f"{0.1 / shear:.3g} gives a bulk modulus K of ten times the shear modulus"
+        )
+    return shear, compressible
 
 
 def _row(card: Card, what: str) -> Line:
@@ -94,7 +116,7 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) 
     if not thickness > 0.0:
         raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
     elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
-    own = known[material.upper()] if known is not None else Material(material, 1.0, 0.0, 0.0, 0.0, card.place)
+    own = known[material.upper()] if known is not None else Material(material, (1.0, 0.0), 0.0, 0.0, card.place)
     return Section(spelled, elements, own, thickness, card.place)
 
 

@@ -68,6 +68,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         steps=steps(groups, mesh, known, reasons),
         notes=tuple(notes),
         quiet=sifted.quiet,
+        small_sliding=any(card.key == "CONTACTPAIR" and card.has("SMALL SLIDING") for card in cards),
         ignored=sifted.ignored,
     )
     reasons.tell()

@@ -41,12 +41,14 @@ class Faces:
 
 @dataclass(frozen=True)
 class Material:
+    """constants: Young's modulus and Poisson's ratio, or C10 and D1 of a neo-Hookean material where ``rubber``."""
+
     name: str
-    young: float
-    poisson: float
+    constants: tuple[float, float]
     density: float
     expansion: float
     place: Place
+    rubber: bool = False
 
 
 @dataclass(frozen=True)
@@ -172,14 +174,25 @@ class Prescribed:
 
 
 @dataclass(frozen=True)
+class Increments:
+    """Of a *STATIC step, times: the first one, the longest one; fixed: all are as the first (DIRECT)."""
+
+    first: float
+    longest: float
+    fixed: bool
+
+
+@dataclass(frozen=True)
 class Step:
-    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW)."""
+    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM."""
 
     number: int
     period: float
     values: tuple[Prescribed, ...]
     new: frozenset[str]
     place: Place
+    increments: Increments
+    finite: bool = False
 
 
 @dataclass(frozen=True)
@@ -191,7 +204,7 @@ class Amplitude:
 @dataclass(frozen=True)
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
-    outside the steps; initial: node -> temperature; quiet, ignored: see ``known.Sifted``."""
+    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a contact pair asks for it."""
 
     path: str
     nodes: Numbers
@@ -215,3 +228,4 @@ class Deck:
     notes: tuple[str, ...]
     quiet: tuple[str, ...]
     ignored: tuple[str, ...]
+    small_sliding: bool = False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 
@@ -10,7 +11,7 @@ import numpy as np
 from abut.decks.cards.cards import Card, Line, key
 from abut.decks.cards.mesh_cards import MeshCards, face_number
 from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import Amplitude, Prescribed, Step
+from abut.decks.cards.record import Amplitude, Increments, Prescribed, Step
 from abut.decks.cards.supported import STEP_PROCEDURES
 from abut.errors import nearest
 
@@ -90,9 +91,9 @@ def steps(
     """The steps; ``reasons`` gets those without procedure."""
     result = []
     for number, group in enumerate(groups, start=1):
-        period = 1.0
+        period, increments = 1.0, Increments(1.0, math.inf, False)
         with reasons.gathered():
-            period = _period(group)
+            period, increments = _times(group)
         values: list[Prescribed] = []
         new = set()
         for card in group:
@@ -104,18 +105,28 @@ def steps(
                         raise card.error(f"OP={operation}: expected NEW or MOD")
                     if operation == "NEW":
                         new.add(KIND[card.key])
-        result.append(Step(number, period or 1.0, tuple(values), frozenset(new), group[0].place))
+        own = group[0]
+        finite = own.has("NLGEOM") and key(own.get("NLGEOM") or "") != "NO"
+        result.append(Step(number, period, tuple(values), frozenset(new), own.place, increments, finite))
     return tuple(result)
 
 
-def _period(group: Sequence[Card]) -> float:
+def _times(group: Sequence[Card]) -> tuple[float, Increments]:
+    """Period and increments of a step; 0 stands for what is left out."""
     procedure = next((card for card in group if card.key in STEP_PROCEDURES), None)
     if procedure is None:
         raise group[0].error("the step has no procedure; abut solves *STATIC steps")
-    period = procedure.lines[0].number(1, "period", 1.0) if procedure.lines else 1.0
-    if period < 0.0:
-        raise procedure.lines[0].error(f"period: expected a number > 0, got {period:g}")
-    return period
+    if not procedure.lines:
+        return 1.0, Increments(1.0, math.inf, procedure.has("DIRECT"))
+    line, values = procedure.lines[0], []
+    for i, what in enumerate(("first increment", "period", "smallest increment", "largest increment")):
+        value = line.number(i, what, 0.0)
+        if value < 0.0:
+            raise line.error(f"{what}: expected a number > 0, got {value:g}")
+        values.append(value)
+    first, period, _, longest = values
+    period = period or 1.0
+    return period, Increments(min(first or period, period), longest or math.inf, procedure.has("DIRECT"))
 
 
 def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> list[Prescribed]:

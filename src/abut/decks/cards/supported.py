@@ -10,7 +10,7 @@ from abut.decks.cards.elements import ELEMENTS, refusal
 from abut.decks.cards.reasons import DeckError, Reasons
 from abut.errors import InputError, nearest
 
-# Cards that are read, with the parameters that are read or change nothing in small-displacement statics.
+# Cards that are read, with the parameters that are read or change nothing in statics.
 READ: dict[str, tuple[str, ...]] = {
     "NODE": ("NSET", "INPUT"),
     "ELEMENT": ("TYPE", "ELSET", "INPUT"),
@@ -19,6 +19,7 @@ READ: dict[str, tuple[str, ...]] = {
     "SURFACE": ("NAME", "TYPE", "INTERNAL"),
     "MATERIAL": ("NAME",),
     "ELASTIC": ("TYPE",),
+    "HYPERELASTIC": ("NEO HOOKE",),
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS"),
@@ -45,7 +46,7 @@ READ: dict[str, tuple[str, ...]] = {
     "MPC": (),
     "RIGID BODY": ("NSET", "ELSET", "REF NODE", "ROT NODE"),
     "TRANSFORM": ("NSET", "TYPE"),
-    "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER"),
+    "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER", "NLGEOM"),
     "STATIC": ("SOLVER", "DIRECT", "TIME RESET", "TOTAL TIME AT START"),
     "END STEP": (),
 }
@@ -79,7 +80,8 @@ PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
     "VISCO": "creep and viscosity",
 }
 
-_MATERIAL = "; abut's solids are linear elastic"
+_MATERIAL = "; abut's solids are linear elastic or, with NLGEOM, neo-Hookean"
+_RUBBER = "of rubber elasticity only *HYPERELASTIC, NEO HOOKE is supported; fit its two constants"
 _FLAT = "; abut reads flat decks: have the preprocessor write one without parts and assemblies"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
@@ -106,7 +108,6 @@ REFUSED: dict[str, str] = {
     "ELCOPY": f"generated elements are not read{_WRITE}",
     "FILM": "heat films belong to heat transfer, which abut does not solve",
     "GAP": "gap elements are not supported; use *CONTACT PAIR",
-    "HYPERELASTIC": f"rubber elasticity is not supported{_MATERIAL}",
     "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
     "INSTANCE": f"assemblies are not read{_FLAT}",
     "KINEMATIC": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
@@ -134,7 +135,6 @@ REFUSED: dict[str, str] = {
 } | {name: f"abut solves *STATIC steps only, not {words}" for name, words in PROCEDURES.items()}
 
 _PARAMETERS = {  # reasons for parameters that are refused
-    ("STEP", "NLGEOM"): "large displacements are not supported; abut's displacements are small",
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
     ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
@@ -156,6 +156,7 @@ NEEDED = {  # leaving these out would leave no deck
     *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
 }
 
+MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
 LEFT_OUT = {"FRICTION", "CHANGEFRICTION"}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
@@ -212,7 +213,11 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
                 found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
                 continue
-            own = {name: value for name, value in card.parameters.items() if name in _READ[card.key]}
+            own = {
+                name: value
+                for name, value in card.parameters.items()
+                if name in _READ[card.key] and name not in asked & MAY_BE_OMITTED
+            }
             kept.append(Card(card.key, card.title, own, card.lines, card.place))
         elif card.key in asked:
             ignored.setdefault(card.title, []).append(str(card.place))
@@ -264,13 +269,15 @@ def _step(step: list[Card], asked: set[str]) -> list[Card | _Step]:
 def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], found: dict[str, DeckError]) -> None:
     """Sort out the parameters that are not read."""
     for name, value in card.parameters.items():
-        if name in _READ[card.key] or (name == "NLGEOM" and value is not None and key(value) == "NO"):
+        no = value is not None and key(value) == "NO"
+        if name in _READ[card.key] and (no or name not in asked & MAY_BE_OMITTED):
             continue
         if name in asked:
             ignored.setdefault(f"{name} of {card.title}", []).append(str(card.place))
         else:
-            reason = _PARAMETERS.get((_name(card), name), "abut does not know this parameter")
-            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", name))
+            rubber = card.key == "HYPERELASTIC"
+            reason = _PARAMETERS.get((_name(card), name), _RUBBER if rubber else "abut does not know this parameter")
+            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", "" if rubber else name))
 
 
 def _name(card: Card) -> str:
@@ -280,7 +287,7 @@ def _name(card: Card) -> str:
 def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> None:
     present = {card.key for card in cards if isinstance(card, Card)}
     parameters = {name for card in cards if isinstance(card, Card) for name in card.parameters}
-    parameters |= {parameter for _, parameter in _PARAMETERS}
+    parameters |= {parameter for _, parameter in _PARAMETERS} | MAY_BE_OMITTED
     for name in ignore:
         own = key(name.lstrip("*"))
         if own in _READ and own not in parameters | LEFT_OUT:

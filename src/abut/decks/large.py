@@ -1,0 +1,98 @@
+"""NLGEOM of a deck: kinematics, what does not go with it, load steps from increments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from abut.decks.cards.reasons import DeckError
+from abut.decks.cards.record import Deck, Step
+from abut.decks.cards.time_histories import courses, ends, times
+from abut.model import SolveOptions
+
+SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
+SAME = 1e-9  # times that differ by less are the same
+KINDS = ("boundary", "force", "pressure", "gravity")
+
+
+def is_finite(deck: Deck) -> bool:
+    """Whether any step has NLGEOM."""
+    return any(step.finite for step in deck.steps)
+
+
+def finite_notes(deck: Deck) -> list[str]:
+    """What is solved otherwise than the deck says where displacements are large."""
+    if not is_finite(deck):
+        return []
+    notes = []
+    small = [step for step in deck.steps if not step.finite]
+    if small:
+        numbers = ", ".join(str(step.number) for step in small)
+        notes.append(f"NLGEOM holds for the whole deck, though *STEP {numbers} is without it ({small[0].place})")
+    if deck.small_sliding:
+        notes.append("NLGEOM: SMALL SLIDING is solved as large sliding")
+    if any(step.increments.fixed for step in deck.steps):
+        notes.append("*STATIC, DIRECT: an increment that does not converge is halved all the same")
+    if not all(step.increments.fixed for step in deck.steps):
+        notes.append(
+            "NLGEOM: of automatic increments the longest is taken from *STATIC; first and smallest ones, INC and *CONTROLS "
+            "are abut's own"
+        )
+    return notes
+
+
+def unsupported(deck: Deck) -> Iterator[DeckError]:
+    """What a deck asks for that does not go with its kinematics."""
+    finite = is_finite(deck)
+    for material in {section.material.name: section.material for section in deck.sections}.values():
+        if material.rubber and not finite:
+            yield DeckError(
+                material.place, f"*MATERIAL '{material.name}': *HYPERELASTIC needs large strains; write *STEP, NLGEOM"
+            )
+    for pair in deck.pairs:
+        what = "*CLEARANCE" if pair.clearance is not None else "ADJUST"
+        moved = not isinstance(pair.adjust, float) or pair.adjust != 0.0 or pair.clearance is not None
+        if finite and moved and not pair.tied:
+            yield DeckError(
+                pair.place,
+                f"*CONTACT PAIR: {what} is not supported with NLGEOM: close the gap in the mesh, or, if displacements are "
+                "small, leave NLGEOM out",
+                "NLGEOM",
+            )
+
+
+def load_steps(deck: Deck) -> SolveOptions:
+    """Load steps with NLGEOM: as long as they can be up to the longest increment, or at the times of fixed increments. Where
+    nothing turns at the end of a step, which then would be passed over, times are given for automatic steps as well."""
+    total = sum(step.period for step in deck.steps)
+    turns = {time for kind in KINDS for course in courses(deck, kind).values() for time, _ in course} | {1.0}
+    met = all(any(abs(end - time) < SAME for time in turns) for end in ends(deck))
+    if met and all(_automatic(step) for step in deck.steps):
+        longest = min(step.increments.longest for step in deck.steps)
+        if longest >= max(step.period for step in deck.steps):
+            return SolveOptions()
+        return SolveOptions(steps=math.ceil(total / longest * (1.0 - SAME)))
+    result, start = list(times(deck)), 0.0
+    for step in deck.steps:
+        result += [(start + time) / total for time in _increments(step)]
+        start += step.period
+    kept: list[float] = []
+    for time in sorted(result):
+        if not kept or time > kept[-1] + SAME:
+            kept.append(time)
+    return SolveOptions(times=(*kept[:-1], 1.0))
+
+
+def _automatic(step: Step) -> bool:
+    """Whether increments are chosen on the way: not where the first is the whole step."""
+    return not step.increments.fixed and step.increments.first < step.period
+
+
+def _increments(step: Step) -> list[float]:
+    """Their ends within a step, from its beginning."""
+    own = step.increments
+    length = own.first if not _automatic(step) else max(own.first, SHARE * step.period)
+    count = math.ceil(step.period / min(length, own.longest) * (1.0 - SAME))
+    if own.fixed:
+        return [*(i * own.first for i in range(1, count)), step.period]
+    return [i / count * step.period for i in range(1, count + 1)]
