@@ -43,5 +43,5 @@ def _energy(parts: Sequence[Energy | None]) -> Energy | None:
     own = [part for part in parts if part is not None]
     if not own:
         return None
-    total = {field.name: sum(getattr(part, field.name) for part in own) for field in fields(Energy)}
-    return Energy(**{**total, "size": max(part.size for part in own)})
+    total = {f.name: sum(getattr(part, f.name) for part in own) for f in fields(Energy) if f.name != "elastic"}
+    return Energy(**{**total, "size": max(part.size for part in own), "elastic": own[-1].elastic})

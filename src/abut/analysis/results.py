@@ -13,14 +13,17 @@ from abut.analysis.contact_results import PairState, contact_result
 from abut.analysis.covered import covered
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
+from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
 from abut.problem.finite import FiniteProblem
+from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
@@ -29,6 +32,7 @@ from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 
+Acted = Acting | FiniteActing | None  # what acts at the end of a step
 NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
@@ -36,7 +40,7 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    pressures: (n,) of each pair."""
+    pressures: (n,) of each pair; stored: strain energy, with finite kinematics only."""
 
     problem: ContactProblem
     system: Linearised
@@ -48,6 +52,7 @@ class _End:
     loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
+    stored: float = 0.0
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -55,10 +60,11 @@ class _End:
 
 
 def step_result(
-    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acting | None = None
-) -> tuple[Step, Acting | None]:
+    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acted = None
+) -> tuple[Step, Acted]:
     """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others,
-    and with friction what acts there, for the energy of the next step; acted: the same of the step before.
+    and with friction or finite kinematics what acts there, for the energy of the next step; acted: the same of the step
+    before.
 
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
@@ -67,7 +73,8 @@ def step_result(
     carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
-    acting, balance = _energy(end, attempt, acted, contacts, before)
+    told = _finite_energy if model.finite else _energy
+    acting, balance = told(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
     step = Step(
@@ -123,16 +130,16 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
             following -= term.evaluate(motion, motion).force
     loads = assembled.loaded.forces @ system.factors + following
     reaction = internal - loads - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following)
+    stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else 0.0
+    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, stored)
 
 
 def _energy(
-    end: _End, attempt: Attempt, acted: Acting | None, contacts: Sequence[ContactResult], steps: Sequence[Step]
-) -> tuple[Acting | None, Energy | None]:
-    """What acts at the end of a step, and the energy over it; None without friction, where it did not converge, and where
-    the operator changes with the displacements."""
+    end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
+) -> tuple[Acted, Energy | None]:
+    """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
     system, held = end.system, end.problem.held
-    if not attempt.converged or end.problem.model.finite or not any(pair.frictional for pair in system.pairs):
+    if not attempt.converged or not any(pair.frictional for pair in system.pairs):
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
@@ -140,12 +147,35 @@ def _energy(
         pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
         largest * max(attempt.iterations[-1].residual, TOLERANCE),
     )  # fmt: skip
-    if acted is None:
+    if not isinstance(acted, Acting):
         acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
     slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
-    earlier = max((step.energy.size for step in steps if step.energy is not None), default=0.0)
-    return now, energy(system, acted, now, slips, contacts, earlier)
+    return now, energy(system, acted, now, slips, contacts, _largest_size(steps))
+
+
+def _finite_energy(
+    end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
+) -> tuple[Acted, Energy | None]:
+    """The same with finite kinematics, friction or not; None where it did not converge."""
+    if not attempt.converged:
+        return None, None
+    problem, system, state = end.problem, end.system, end.state
+    histories = problem.model.histories
+    pressed = pressing(system, end.pressures) if system.pairs else np.zeros_like(end.internal)
+    left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
+    now = FiniteActing(
+        end.displacement, end.internal, end.loads, end.reaction, pressed,
+        end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
+        problem.held.near(state.unknowns, weights(histories, state.time)).free, left,
+    )  # fmt: skip
+    if not isinstance(acted, FiniteActing):
+        acted = FiniteActing.none(problem.held.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
+    return now, finite_energy(acted, now, system.stiffness.diagonal(), contacts, _largest_size(steps))
+
+
+def _largest_size(steps: Sequence[Step]) -> float:
+    return max((step.energy.size for step in steps if step.energy is not None), default=0.0)
 
 
 def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:

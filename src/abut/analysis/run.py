@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.energy import Acting
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.parts import whole
-from abut.analysis.results import step_result
+from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
 from abut.errors import SingularModelError
 from abut.linear.solver import LinearSolver, NotConverged
@@ -62,7 +61,7 @@ class Run:
     kind: str
     solver: LinearSolver
     steps: list[Step] = field(default_factory=list)
-    acted: Acting | None = None  # what acted at the end of the last step, with friction
+    acted: Acted = None  # what acted at the end of the last step, with friction or finite kinematics
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Energy over a load step of a model with friction."""
+"""Energy over a load step of a model with friction or finite kinematics."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy of one load step comes from and where it goes, theory (R7): loads + supports + contact = stored +
-    friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
+    """Where the energy of one load step comes from and where it goes, theory (R7), (G11): loads + supports + contact = stored
+    + friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
     the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;
     stored: change of the strain energy;
     friction: that friction takes with the traction at the end of the step, as ``FrictionResult.work``; stepping: what the
-    work of a traction that grows in proportion over the step differs from that, of second order in the step.
+    work of a traction that grows in proportion over the step differs from that, of second order in the step; with finite
+    kinematics also what the mean stresses of the step do beyond what is stored.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
-    displacements in double precision and the tolerance of equilibrium may leave open.
+    displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
+    with finite kinematics only.
     """
 
     loads: float
@@ -30,6 +32,7 @@ class Energy:
     stepping: float
     size: float
     left: float
+    elastic: float | None = None
 
     @property
     def error(self) -> float:

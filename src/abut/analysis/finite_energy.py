@@ -1,0 +1,69 @@
+"""Energy over a load step with finite kinematics, theory (G11): what forces do on the way between two converged states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.analysis.energy import NOTHING
+from abut.solution import ContactResult
+from abut.solution.energy import Energy
+from abut.types import Sparse
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FiniteActing:
+    """A converged state with the forces in it, each (dim n_points,). displacement; internal: of stresses; loads; reaction:
+    of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy;
+    free: (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest
+    force left on these."""
+
+    displacement: Vector
+    internal: Vector
+    loads: Vector
+    reaction: Vector
+    pressing: Vector
+    rubbing: Vector
+    stored: float
+    free: Vector
+    follows: Sparse
+    residual: float = 0.0
+
+    @classmethod
+    def none(cls, follows: Sparse) -> FiniteActing:
+        """Before the first step: nothing has moved, and nothing acts."""
+        nothing, free = np.zeros(follows.shape[0]), np.zeros(follows.shape[1])
+        return cls(nothing, nothing, nothing, nothing, nothing, nothing, 0.0, free, follows)
+
+
+def finite_energy(
+    before: FiniteActing, now: FiniteActing, stiffness: Vector, contacts: Sequence[ContactResult], earlier: float = 0.0
+) -> Energy:
+    """Of the step between two states. stiffness: (n_free,) diagonal of the tangent; contacts: their results; earlier: the
+    largest size of the steps before, beside which what is left after unloading is rounding."""
+    moved, step = now.displacement - before.displacement, now.free - before.free
+
+    def work(name: str) -> float:
+        return float(0.5 * (getattr(before, name) + getattr(now, name)) @ moved)
+
+    supports = sum(0.5 * float(own.reaction @ (moved - own.follows @ step)) for own in (before, now))
+    stored, friction = now.stored - before.stored, sum(c.friction.work for c in contacts if c.friction is not None)
+    internal, way = work("internal"), np.abs(step)
+    rounding = np.finfo(float).eps * (np.abs(stiffness) * np.abs(now.free)) @ way
+    size = 0.5 * float(np.abs(before.internal + now.internal) @ np.abs(moved))
+    return Energy(
+        loads=work("loads"),
+        supports=supports,
+        contact=work("pressing"),
+        stored=stored,
+        friction=friction,
+        stepping=(internal - stored) - (work("rubbing") + friction),
+        size=max(size, NOTHING * earlier, 1e-300),
+        left=float(rounding + max(before.residual, now.residual) * way.sum()),
+        elastic=now.stored,
+    )
