@@ -23,12 +23,12 @@ def covered(problem: FiniteProblem, system: Linearised, state: State, here: Arra
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
     nothing is opposite to; weights are those of the part that is covered."""
     pairs, keeps, slips = [], [], state.history.of(CONTACTS)
-    for pair, kind in zip(system.pairs, problem.moving):
+    for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
         keep = np.ones(len(pair), dtype=bool)
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            pair = _of_covered(pair, kind, keep, here) if under.any() else pair
+            pair = _of_covered(pair, kind, keep, here, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
     keep = np.concatenate([np.zeros(0, bool), *keeps])
@@ -42,8 +42,9 @@ def covered(problem: FiniteProblem, system: Linearised, state: State, here: Arra
     return smaller, replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
 
 
-def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array) -> Pair:
-    """A pair without some multipliers, keep (n,), with the weights of what is covered now."""
+def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array, undeformed: Array) -> Pair:
+    """A pair without some multipliers, keep (n,), with the weights of what is covered now. undeformed: (n_functions,) those
+    of the laws, theory (G3)."""
     coupling = kind.shown(here)
     ends = np.cumsum([len(part) for part in pair.components])[:-1]
     components = [_weighed(only(part, own), coupling) for part, own in zip(pair.components, np.split(keep, ends))]
@@ -62,6 +63,7 @@ def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array)
             tangents=pair.slip.tangents[functions],
             points=pair.slip.points[functions],
             normals=pair.slip.normals[functions],
+            area=undeformed[functions],
         ),
         values=None
         if pair.values is None

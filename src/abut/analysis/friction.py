@@ -42,12 +42,13 @@ def friction_result(
     if limit is None:
         return None
     weight, own = pair.space.weight, status[pair.normal]
+    area = weight if pair.slip is None or pair.slip.area is None else pair.slip.area
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     values = traction_values(pair, multipliers)
     shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
     size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], own)
     taken = np.where(own != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
-    work, each = float(weight @ taken), _at_nodes(pair, taken[:, None])[..., 0]
+    work, each = float(area @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
         coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
         traction=np.stack(shown, axis=-1),

@@ -11,6 +11,7 @@ from abut.solution import ContactResult, FrictionResult, Step
 from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
+ENERGIES = ("loads", "supports", "contact", "stored", "friction", "stepping")
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
 
 
@@ -58,12 +59,26 @@ def _friction(friction: FrictionResult) -> Json:
 
 
 def energy_summary(step: Step) -> Json:
-    """Where the energy of a step with friction comes from and goes to."""
+    """Where the energy of a step with friction or finite kinematics comes from and goes to."""
     own = step.energy
     if own is None:
         return {}
-    names = ("loads", "supports", "contact", "stored", "friction", "stepping", "error")
-    return {"energy": {name: number(getattr(own, name)) for name in names}}
+    elastic = {} if own.elastic is None else {"elastic": number(own.elastic)}
+    return {"energy": {name: number(getattr(own, name)) for name in (*ENERGIES, "error")} | elastic}
+
+
+def energy_columns(finite: bool) -> list[str]:
+    """Their names in history.csv."""
+    return [f"energy_{name}" for name in (*ENERGIES, *(["elastic"] if finite else []))]
+
+
+def energy_row(step: Step) -> dict[str, float]:
+    """A step's energies by these names, empty where there are none."""
+    own = step.energy
+    if own is None:
+        return {}
+    names = energy_columns(own.elastic is not None)
+    return {name: float(getattr(own, name.removeprefix("energy_"))) for name in names}
 
 
 def number(value: float) -> float | None:

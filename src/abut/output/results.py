@@ -7,8 +7,10 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
@@ -20,6 +22,8 @@ from abut.output import probes
 from abut.output.contact_rows import (
     OF_CONTACT,
     contact_summary,
+    energy_columns,
+    energy_row,
     energy_summary,
     friction_columns,
     more_columns,
@@ -177,29 +181,42 @@ def _step_summary(step: Step) -> Json:
 def _history(solution: Solution) -> str:
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
-    force, moved = [f"force_{a}" for a in axes], [f"displacement_{a}" for a in axes]
-    rotation, moment = [f"rotation_{a}" for a in turns], [f"moment_{a}" for a in turns]
-    head = ["step", "factor", "converged", "contact", *force, *OF_CONTACT]
+    head = ["step", "factor", "converged", "contact", *(f"force_{a}" for a in axes), *OF_CONTACT]
     if solution.model.rigid:
-        head += ["rigid", *moved, *rotation, *moment]
+        head += ["rigid", *(f"displacement_{a}" for a in axes)]
+        head += [f"{name}_{a}" for name in ("rotation", "moment") for a in turns]
     head += [name for name in probes.history_columns(solution.steps) if name not in head]
     head += more_columns(dim)
     if any(c.friction is not None for step in solution.steps for c in step.contacts):
         head += friction_columns(dim)
+    if any(step.energy is not None for step in solution.steps):
+        head += energy_columns(solution.model.finite)
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()
     for step in solution.steps:
-        first = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
-        for c in step.contacts:
-            values = {name: getattr(c, name) for name in OF_CONTACT} | more_values(c)
-            table.writerow({**first, "contact": c.name, **dict(zip(force, c.force.tolist())), **values})
-        for name, body in step.rigid.items():
-            row = dict(zip([*force, *moved], [*body.force.tolist(), *body.displacement.tolist()]))
-            row |= dict(zip([*rotation, *moment], [*body.rotation.tolist(), *body.moment.tolist()]))
-            table.writerow({**first, "rigid": name, **row})
-        table.writerows({**first, **row} for row in probes.history_rows(step))
+        common = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
+        own, energy = _step_rows(step, dim), energy_row(step)
+        for i, row in enumerate(own or ([{}] if energy else [])):
+            table.writerow({**common, **row, **(energy if i == 0 else {})})
     return text.getvalue()
+
+
+def _step_rows(step: Step, dim: int) -> list[dict[str, Any]]:
+    """Rows of history.csv of one step: contacts, rigid bodies, probes."""
+    axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
+
+    def named(name: str, values: NDArray[np.float64]) -> dict[str, float]:
+        own = turns if name in ("rotation", "moment") else axes
+        return {f"{name}_{axis}": value for axis, value in zip(own, values.tolist())}
+
+    rows: list[dict[str, Any]] = []
+    for c in step.contacts:
+        values = {name: getattr(c, name) for name in OF_CONTACT} | more_values(c)
+        rows.append({"contact": c.name, **named("force", c.force), **values})
+    for name, body in step.rigid.items():
+        rows.append({"rigid": name, **{k: v for key, own in vars(body).items() for k, v in named(key, own).items()}})
+    return [*rows, *probes.history_rows(step)]
 
 
 def _log(solution: Solution) -> str:
