@@ -1,11 +1,16 @@
-"""A report.html, read back."""
+"""A report.html, read back, and shown by a browser."""
 
 from __future__ import annotations
 
 import json
+import re
+import shutil
+import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
 class Page(HTMLParser):
@@ -35,3 +40,22 @@ class Page(HTMLParser):
     @property
     def scene(self) -> dict[str, Any]:
         return json.loads(self.data)["scene"]
+
+
+def in_browser(path: Path) -> dict[str, str]:
+    """The data-* attributes of the root element after headless Chromium has shown a page."""
+    assert BROWSER is not None
+    flags = [
+        "--headless=new",
+        "--no-sandbox",
+        "--enable-unsafe-swiftshader",
+        "--use-gl=angle",
+        "--use-angle=swiftshader",
+    ]
+    flags += ["--virtual-time-budget=8000", "--window-size=1000,700", f"--user-data-dir={path.parent / 'profile'}"]
+    done = subprocess.run(
+        [BROWSER, *flags, "--dump-dom", path.as_uri()], capture_output=True, text=True, timeout=120, check=False
+    )
+    head = re.search(r"<html[^>]*>", done.stdout)
+    assert head, done.stderr[-2000:]
+    return dict(re.findall(r'data-(\w+)="([^"]*)"', head.group(0)))

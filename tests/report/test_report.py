@@ -5,8 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -22,10 +20,9 @@ from abut.report.origin import comparison
 from abut.report.scene import scene, thin
 from abut.report.surface_triangles import patch, skin
 from models.friction import FRICTION, pushed
-from models.page import Page
+from models.page import BROWSER, Page, in_browser
 from models.twisted import twisted
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 STEEL = abut.LinearElastic(1000.0, 0.3)
 HOSTILE = '</script><b onclick="x">&amp;'
 
@@ -440,22 +437,3 @@ def test_a_browser_would_notice(tmp_path: Path) -> None:
     path.write_text(text.replace('"triangles":{"type":"u4"', '"triangle":{"type":"u4"'), encoding="utf-8")
     root = in_browser(path)
     assert root["errors"] != "0" or root.get("ready") != "true"
-
-
-def in_browser(path: Path) -> dict[str, str]:
-    """The data-* attributes of the root element after headless Chromium has shown a page."""
-    assert BROWSER is not None
-    flags = [
-        "--headless=new",
-        "--no-sandbox",
-        "--enable-unsafe-swiftshader",
-        "--use-gl=angle",
-        "--use-angle=swiftshader",
-    ]
-    flags += ["--virtual-time-budget=8000", "--window-size=1000,700", f"--user-data-dir={path.parent / 'profile'}"]
-    done = subprocess.run(
-        [BROWSER, *flags, "--dump-dom", path.as_uri()], capture_output=True, text=True, timeout=120, check=False
-    )
-    head = re.search(r"<html[^>]*>", done.stdout)
-    assert head, done.stderr[-2000:]
-    return dict(re.findall(r'data-(\w+)="([^"]*)"', head.group(0)))

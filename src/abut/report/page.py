@@ -21,6 +21,7 @@ from abut.report.contact_words import centre, force, moment, number, on_bodies, 
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import Line, pressure_lines
+from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.scene import scene
@@ -40,6 +41,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "history": _history(solution),
         "lines": _lines(solution, origin),
         "probes": _charts(solution),
+        "paths": _paths(solution),
     }
     parts = {
         "title": escape(origin.title),
@@ -300,6 +302,18 @@ def _charts(solution: Solution) -> list[Json]:
             "series": [{"label": name, "values": _plain(values)} for name, values in chart.series.items()],
         }
         for chart in charts(solution)
+    ]
+
+
+def _paths(solution: Solution) -> list[Json]:
+    return [
+        {
+            "title": path.title,
+            "label": path.label,
+            "x": _plain(path.x),
+            "series": [{"label": name, "values": _plain(values)} for name, values in path.ways.items()],
+        }
+        for path in paths(solution)
     ]
 
 

@@ -65,6 +65,7 @@ def scene(solution: Solution, budget: int = BUDGET) -> Scene:
         reduced.append(f"the picture shows {len(steps)} of {len(solution.steps)} steps")
     data = {
         "dim": mesh.dim,
+        "finite": solution.model.finite,
         "axisymmetric": mesh.axisymmetric,
         "bodies": [_body(mesh, name, s) for name, s in skins.items()],
         "contacts": [_side(mesh, contacts[c], role, p) for (c, role), p in zip(sides, patches)],

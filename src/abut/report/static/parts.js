@@ -102,8 +102,9 @@ function creasedNormals(points, triangles) {
 
 // One body or one side of a contact. Vertices of the drawing take their place and values from points of the data (map).
 class Part {
-  constructor(item, kind, flat) {
+  constructor(item, kind, flat, turns) {
     this.item = item;
+    this.turns = turns; // far: normals go with the deformation
     this.kind = kind; // "body", "side" (surface of a contact) or "fence" (values drawn across a line in 2D)
     this.flat = flat;
     this.base = unpack(item.points);
@@ -116,7 +117,8 @@ class Part {
         this.map.set([cells[2 * i], cells[2 * i + 1], cells[2 * i + 1], cells[2 * i]], 4 * i);
         index.push(4 * i, 4 * i + 1, 4 * i + 2, 4 * i, 4 * i + 2, 4 * i + 3);
       }
-      this.out = unpack(item.normals);
+      this.out = this.normals = unpack(item.normals);
+      this.lines = cells;
       this.geometry.setIndex(index);
     } else if (kind === "side") {
       this.map = Uint32Array.from({ length: this.base.length / 3 }, (_, i) => i);
@@ -171,12 +173,39 @@ class Part {
     return (own.array ||= unpack(own));
   }
 
+  // Normals of a surface at its points as they are now.
+  turn(moved) {
+    if (this.kind === "side") return this.geometry.computeVertexNormals();
+    this.geometry.attributes.normal.array.set(creasedNormals(moved, this.map));
+    this.geometry.attributes.normal.needsUpdate = true;
+  }
+
+  // Normals of a line, turned as much as its pieces.
+  turned(moved) {
+    const turn = new Float32Array(2 * this.base.length / 3), result = new Float32Array(this.normals.length);
+    for (let i = 0; i < this.lines.length; i += 2) {
+      const [a, b] = [3 * this.lines[i], 3 * this.lines[i + 1]];
+      const [x, y, p, q] = [this.base[b] - this.base[a], this.base[b + 1] - this.base[a + 1], moved[b] - moved[a], moved[b + 1] - moved[a + 1]];
+      for (const k of [this.lines[i], this.lines[i + 1]]) {
+        turn[2 * k] += p * x + q * y;
+        turn[2 * k + 1] += q * x - p * y;
+      }
+    }
+    for (let k = 0; 2 * k < turn.length; k++) {
+      const size = Math.hypot(turn[2 * k], turn[2 * k + 1]) || 1, [c, s] = [turn[2 * k] / size, turn[2 * k + 1] / size];
+      const [x, y] = [this.normals[3 * k], this.normals[3 * k + 1]];
+      result.set([c * x - s * y, s * x + c * y, 0], 3 * k);
+    }
+    return result;
+  }
+
   // Put the part where it is at a step, deformed ``scale`` times; a fence as high as ``height`` times the field ``tall``.
   update(step, scale, name, tall, height) {
     const u = this.displacement(step), values = this.field(step, name), high = this.kind === "fence" ? this.field(step, tall) : null;
     const position = this.geometry.attributes.position, value = this.geometry.attributes.value.array;
     const moved = this.kind === "fence" ? new Float32Array(this.base.length) : this.place.array;
     for (let i = 0; i < moved.length; i++) moved[i] = this.base[i] + scale * u[i];
+    if (this.turns && this.kind === "fence") this.out = this.turned(moved);
     for (let i = 0; i < this.map.length; i++) {
       const k = this.map[i], known = values !== null && !Number.isNaN(values[k]);
       value[2 * i] = known ? values[k] : 0;
@@ -185,6 +214,7 @@ class Part {
       for (let c = 0; c < 3; c++) position.array[3 * i + c] = moved[3 * k + c] + (up ? up * this.out[3 * k + c] : 0);
     }
     position.needsUpdate = this.place.needsUpdate = this.geometry.attributes.value.needsUpdate = true;
+    if (this.turns && !this.flat) this.turn(moved);
     this.geometry.boundingSphere = this.geometry.boundingBox = null;
   }
 }

@@ -47,7 +47,7 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
     series: [
       { label: xLabel, value: (u, v) => short(v) },
       ...series.map((s) => ({
-        label: s.label, scale: s.right ? "right" : "y", stroke: colour(s.colour), width: s.width || 2, dash: s.dash, spanGaps: false,
+        label: s.label, scale: s.right ? "right" : "y", stroke: colour(s.colour), width: s.width || 2, dash: s.dash, spanGaps: Boolean(s.spans),
         points: { show: s.points !== false && xs.length < 60, size: 6, fill: colour("paper"), stroke: colour(s.colour) },
         value: (u, v) => v == null ? "–" : v.toPrecision(5),
       })),
@@ -93,6 +93,11 @@ function drawPlots(data) {
       right: s.label === "gap" && chart.series.length > 1, points: chart.x.length < 30,
     }));
     plot(document.getElementById("probes"), chart.title, chart.label, chart.x, series);
+  }
+  const paths = at("paths");
+  paths.closest("section").hidden = !data.paths.length;
+  for (const path of data.paths) {
+    plot(paths, path.title, path.label, path.x, path.series.map((s, i) => ({ ...s, colour: colours[i % colours.length], spans: true })));
   }
   const run = data.convergence;
   const count = run.step.map((_, i) => i + 1);

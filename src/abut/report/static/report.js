@@ -25,6 +25,24 @@
     return input;
   };
 
+  // A button that runs through the steps, from the first again after the last, until it is pressed again.
+  function playing(count, now, go) {
+    let timer = null;
+    const button = element("button", { id: "play" });
+    const show = () => {
+      button.textContent = timer === null ? "▶" : "⏸";
+      button.title = timer === null ? "play the steps" : "pause";
+    };
+    const pause = () => { clearInterval(timer); timer = null; show(); };
+    button.onclick = () => {
+      if (timer !== null) return pause();
+      timer = setInterval(() => go((now() + 1) % count), Math.min(600, Math.max(60, 6000 / count)));
+      show();
+    };
+    show();
+    return { button, pause };
+  }
+
   function colourBar(view) {
     const canvas = element("canvas", { width: 1, height: 256 });
     const input = (index) => {
@@ -74,7 +92,10 @@
     if (scene.steps.length > 1) {
       const title = heading("");
       const name = () => { title.textContent = `Step ${view.step.number}: ${short(view.step.factor)} of the load`; };
-      at.append(title, slider(scene.steps.length, s.step, (i) => { s.step = i; name(); view.apply(); }));
+      const go = (i) => { s.step = i; name(); view.apply(); };
+      const input = slider(scene.steps.length, s.step, (i) => { player.pause(); go(i); });
+      const player = playing(scene.steps.length, () => s.step, (i) => { input.value = i; go(i); });
+      at.append(title, element("div", { className: "steps" }, player.button, input));
       name();
     }
     const title = heading("");

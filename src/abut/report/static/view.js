@@ -15,8 +15,8 @@ class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     holder.prepend(this.renderer.domElement);
     this.world = new THREE.Scene();
-    this.bodies = scene.bodies.map((b) => new Part(b, "body", this.flat));
-    this.sides = scene.contacts.map((c) => (this.flat ? new Part(c, "fence", true) : new Part(c, "side", false)));
+    this.bodies = scene.bodies.map((b) => new Part(b, "body", this.flat, scene.finite));
+    this.sides = scene.contacts.map((c) => new Part(c, this.flat ? "fence" : "side", this.flat, scene.finite));
     if (this.flat) this.sides.forEach((s) => { if (s.item.role !== "contactor") s.mesh.visible = s.grid.visible = false; });
     for (const part of [...this.bodies, ...this.sides]) this.world.add(part.mesh, part.features, part.grid);
     this.arrows = scene.contacts.filter((c) => c.arrows).map((c) => new Arrows(c, this.flat));
@@ -56,11 +56,16 @@ class View {
   // Size and middle of everything, and of the pressed parts; the direction from which these are seen.
   measure() {
     const low = [Infinity, Infinity, Infinity], high = low.map((v) => -v);
-    for (const part of [...this.bodies, ...this.sides]) {
-      for (let i = 0; i < part.base.length; i++) {
-        low[i % 3] = Math.min(low[i % 3], part.base[i]);
-        high[i % 3] = Math.max(high[i % 3], part.base[i]);
+    const reach = (x) => {
+      for (let i = 0; i < x.length; i++) {
+        low[i % 3] = Math.min(low[i % 3], x[i]);
+        high[i % 3] = Math.max(high[i % 3], x[i]);
       }
+    };
+    const place = (part, step) => this.data.finite ? part.base.map((v, i) => v + part.displacement(step)[i]) : part.base;
+    for (const part of [...this.bodies, ...this.sides]) {
+      reach(part.base);
+      if (this.data.finite) for (const step of this.data.steps) reach(place(part, step));
     }
     this.box = [low, high];
     this.centre = new THREE.Vector3(...low.map((v, c) => 0.5 * (v + high[c])));
@@ -70,11 +75,11 @@ class View {
     const zone = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     let weight = 0;
     for (const part of this.sides.filter((s) => s.item.role === "contactor")) {
-      const p = part.field(last, "pressure"), normals = unpack(part.item.normals);
+      const base = place(part, last), p = part.field(last, "pressure"), normals = unpack(part.item.normals);
       const top = Math.min(p.reduce((a, b) => Math.max(a, b || 0), 0), this.data.largest.pressure);
       for (let i = 0; i < p.length; i++) {
         if (!(p[i] > 0.01 * top)) continue;
-        const x = Array.from(part.base.subarray(3 * i, 3 * i + 3));
+        const x = Array.from(base.subarray(3 * i, 3 * i + 3));
         x.forEach((v, c) => { zone[0][c] = Math.min(zone[0][c], v); zone[1][c] = Math.max(zone[1][c], v); });
         sum.add(new THREE.Vector3(...normals.subarray(3 * i, 3 * i + 3)).multiplyScalar(p[i]));
         middle.add(new THREE.Vector3(...x).multiplyScalar(p[i]));
