@@ -53,7 +53,10 @@ def rubbing(steps: int = 8) -> abut.Model:
 
 def turned(steps: int = 4) -> abut.Model:
     """A heated strip whose end a rigid body turns by one radian, free to move: its points go round on arcs."""
-    parts = {"strip": make.rectangle([0, 4], [0, 1], cells=[4, 1]), "grip": make.rectangle([4, 5], [0, 1], cells=[1, 1])}
+    parts = {
+        "strip": make.rectangle([0, 4], [0, 1], cells=[4, 1]),
+        "grip": make.rectangle([4, 5], [0, 1], cells=[1, 1]),
+    }
     return abut.Model(
         make.join(parts),
         plane="strain",

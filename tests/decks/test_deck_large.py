@@ -62,7 +62,9 @@ def by_calculix(folder: Path) -> np.ndarray:
 def test_displacements_are_those_of_calculix(material: str, load: str, tmp_path: Path) -> None:
     text = beam(material, "", load)
     if "TIP" in load:
-        tip = [line.split(",")[0] for line in text.splitlines() if line.count(",") == 3 and f", {float(BRICKS)}," in line]
+        tip = [
+            line.split(",")[0] for line in text.splitlines() if line.count(",") == 3 and f", {float(BRICKS)}," in line
+        ]
         text = text.replace("*MATERIAL", "*NSET, NSET=TIP\n" + "\n".join(f"{n}," for n in tip) + "\n*MATERIAL", 1)
     (tmp_path / "deck.inp").write_text(text)
     solution = abut.solve(load_job(tmp_path / "deck.inp").model)

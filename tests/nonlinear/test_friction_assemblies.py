@@ -16,7 +16,15 @@ from models.oracle import assembled, at_the_end, programme
 from models.parts_rubbing import PARTS, press_fit
 from models.units import MILLIMETRES_TO, in_units
 
-LAWS = ("force balance", "penetration", "complementarity", "friction cone", "slip direction", "sticking", "friction work")
+LAWS = (
+    "force balance",
+    "penetration",
+    "complementarity",
+    "friction cone",
+    "slip direction",
+    "sticking",
+    "friction work",
+)
 EDGES = 64  # of the pyramid round a cone in space: 0.12 per cent more friction than there is
 SLACK = 1e-7  # share of the loads by which balance may be missed, as far as linprog solves
 DRAWS, SOLID_DRAWS = 14, 4

@@ -66,7 +66,9 @@ class Programme:
                 along.append(own)
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
-        own = cls(solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver))
+        own = cls(
+            solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver)
+        )
         holds = own.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
         idle = tangents[~holds]
