@@ -92,12 +92,15 @@ public:
     }
   }
 
+  // Whether the stiffness is; then only nodes i <= k are added up.
+  bool symmetric() const { return !cells.mean_dilatation; }
+
   // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8).
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, double *block) {
     respond(q, tangent, stress);
     const double w = volume[q] * power(q);
     double sigma[3][3], b[STRAINS][dim];
-    symmetric(stress, sigma);
+    tensor(stress, sigma);
     for (std::size_t k = 0; k < n; ++k)
       for (int a = 0; a < dim; ++a) {
         double sum = 0;
@@ -108,7 +111,7 @@ public:
     for (std::size_t i = 0; i < n; ++i) {
       derivative(q, i, b);
       const double *g = &gradient[(q * n + i) * dim];
-      for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t k = symmetric() ? i : 0; k < n; ++k) {
         double *out = &block[(i * n + k) * dim * dim], scalar = 0;
         const double *r = &response[k * STRAINS * dim];
         for (int a = 0; a < dim; ++a)
@@ -129,7 +132,7 @@ public:
   void to_cauchy(std::size_t q, double *stress) const {
     const Deformed &at = points[q];
     double sigma[3][3], result[3][3] = {{0}};
-    symmetric(stress, sigma);
+    tensor(stress, sigma);
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         for (int c = 0; c < 3; ++c)
@@ -176,7 +179,7 @@ private:
     }
   };
 
-  static void symmetric(const double *stress, double (&sigma)[3][3]) {
+  static void tensor(const double *stress, double (&sigma)[3][3]) {
     for (int a = 0; a < 3; ++a) {
       sigma[a][a] = stress[a];
       sigma[a][(a + 1) % 3] = sigma[(a + 1) % 3][a] = stress[3 + a];

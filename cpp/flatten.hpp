@@ -55,7 +55,7 @@ inline Curve make_curve(Point2 a, Point2 b, const Point2 *middle) {
     return curve;
   const Point2 chord = b - a;
   curve.bulge = 4.0 * (*middle - 0.5 * (a + b));
-  curve.straight = std::abs(cross2(chord, curve.bulge)) < 4e-13 * dot2(chord, chord);
+  curve.straight = std::abs(cross2(chord, curve.bulge)) <= 4e-13 * dot2(chord, chord); // also without length
   if (curve.straight)
     curve.bulge = {0, 0};
   return curve;
@@ -77,6 +77,7 @@ inline void halve(const Piece &piece, std::vector<Piece> &out) {
     for (int i = 0; i < 3; ++i) {
       part.curve[i] = i == cut ? make_curve(part.p[i], part.p[(i + 1) % 3], nullptr) : piece.curve[from[i]];
       part.middle[i] = piece.middle[from[i]], part.bend[i] = i != cut && piece.bend[from[i]];
+      part.bulge[i] = piece.bulge[from[i]];
     }
     if (signed_area(part.p, 3) > 0)
       out.push_back(part);
@@ -117,8 +118,11 @@ struct Division {
     }
     if (signed_area(piece.p, size) <= 0)
       return;
-    for (int i = 0; i < size; ++i)
-      piece.curve[i] = make_curve(piece.p[i], piece.p[(i + 1) % size], curved ? &middle[i] : nullptr);
+    for (int i = 0; i < size; ++i) {
+      const Point2 a = piece.p[i], b = piece.p[(i + 1) % size];
+      piece.curve[i] = make_curve(a, b, curved ? &middle[i] : nullptr);
+      piece.bulge[i] = curved ? 4.0 * (middle[i] - 0.5 * (a + b)) : Point2{0, 0};
+    }
     if (size == 3 || convex(piece.p, 4))
       out.push_back(piece);
     else

@@ -208,6 +208,14 @@ private:
         scatter(i);
   }
 
+  // Whether the block is symmetric.
+  bool half() const {
+    if constexpr (Kinematics::finite)
+      return kinematics.symmetric();
+    else
+      return Tangent::symmetric;
+  }
+
   // The rows of node i. A symmetric block holds nodes i <= k only.
   void scatter(std::size_t i) {
     const std::int64_t row = results.indptr[own[i]], length = results.indptr[own[i] + 1] - row;
@@ -215,7 +223,7 @@ private:
     double *out = results.stiffness + row * dim * dim;
     for (std::size_t k = 0; k < n; ++k) {
       const std::int64_t position = std::lower_bound(begin, end, own[k]) - begin;
-      const bool stored = !Tangent::symmetric || i <= k;
+      const bool stored = !half() || i <= k;
       const double *in = &block[(stored ? i * n + k : k * n + i) * dim * dim];
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)

@@ -3,6 +3,7 @@
 #include "arena.hpp"
 #include "cutting.hpp"
 #include "moving_plane.hpp"
+#include <deque>
 #include <unordered_map>
 
 namespace abut {
@@ -13,6 +14,11 @@ struct MovingEdge {
   Curve curve{};
   Rows2 a, b, bulge;
 
+  // Parameter of the curve's point nearest to p; any on an edge without length.
+  double parameter(Point2 p) const {
+    const Point2 way = curve.b - curve.a;
+    return dot2(way, way) > 0 ? curve.parameter(p) : 0;
+  }
   // Adds `factor` times the change of the point at t.
   void add(std::size_t n, double t, double factor, const Rows2 &row) const {
     if (!a)
@@ -71,7 +77,19 @@ public:
     return side < 0 ? edges_.back().chord() : edges_.back();
   }
 
+  // The curve of a polygon's edge, none for straight cuts; it stays where it is until the next target facet.
+  const Curve *curve(const Vertex &v) {
+    if (v.side < 0)
+      return nullptr;
+    edge(v.side, v.edge);
+    for (const MovingEdge &known : edges_)
+      if (known.side == v.side && known.edge == v.edge)
+        return &known.curve;
+    return nullptr;
+  }
+
 private:
+  static constexpr double UNEVEN = 1e-9; // of the chord
   struct Corner {
     int side, number;
     bool middle;
@@ -81,6 +99,8 @@ private:
   MovingEdge make(int side, int k) {
     const Piece &piece = over_->piece(side);
     MovingEdge out{side, k, piece.curve[k], corner(side, k), corner(side, (k + 1) % piece.size), {}};
+    if (piece.bend[k] && uneven(piece, k)) // as soon as it bends, it is this curve
+      out.curve.bulge = piece.bulge[k], out.curve.straight = false;
     if (piece.bend[k]) { // four times the middle's distance from the chord's: theory (S6)
       const Rows2 middle = place(side, k, piece.middle[k], true);
       out.bulge = take();
@@ -90,6 +110,13 @@ private:
         add_row(size(), factor[i], from[i], out.bulge.x), add_row(size(), factor[i], up[i], out.bulge.y);
     }
     return out;
+  }
+
+  // Straight, with its middle not half-way.
+  static bool uneven(const Piece &piece, int k) {
+    const Curve &curve = piece.curve[k];
+    const Point2 chord = curve.b - curve.a, bulge = piece.bulge[k];
+    return curve.straight && dot2(bulge, bulge) > UNEVEN * UNEVEN * dot2(chord, chord) && dot2(chord, chord) > 0;
   }
 
   Rows2 place(int side, int number, const Piece::Place &at, bool middle) {
@@ -152,7 +179,7 @@ private:
   const Columns *columns_ = nullptr;
   std::unordered_map<int, Rows2> carried_, images_; // by point; by piece and place
   std::vector<Corner> corners_;
-  std::vector<MovingEdge> edges_;
+  std::deque<MovingEdge> edges_; // they stay where they are
   Arena arena_, rows_;
 };
 

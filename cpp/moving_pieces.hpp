@@ -21,9 +21,9 @@ public:
   void integrate(const Over &over, const MovingPlane &plane, const Facet &t, const Segment &own, const Polygon &polygon,
                  const Rule &rule) {
     Sight3 at(over.c, own.xi, own.eta);
-    const Outline outline(polygon, [&](const Vertex &v) { return over.curve(v); });
+    const Outline outline(polygon, [&](const Vertex &v) { return edges_->curve(v); });
     const MovingOutline moving(*edges_, polygon, own.mine, over.piece(own.mine));
-    const bool around = over.c.flat && !outline.straight; // as in `integrate_polygon`
+    const bool around = over.c.flat && curved(over, polygon); // as in `integrate_polygon`
     Fan fan{polygon.v[0].p, moving.corner(0)};
     if (around)
       fan = middle(polygon, moving);
@@ -48,6 +48,13 @@ private:
     Point2 first{}, last{};
     Rows2 first_rows{}, last_rows{};
   };
+
+  static bool curved(const Over &over, const Polygon &polygon) {
+    for (int i = 0; i < polygon.size; ++i)
+      if (const Curve *curve = over.curve(polygon.v[i]); curve && !curve->straight)
+        return true;
+    return false;
+  }
 
   Fan middle(const Polygon &polygon, const MovingOutline &moving) {
     Fan fan{polygon.middle(), edges_->take()};

@@ -66,7 +66,7 @@ private:
       in = in.chord();
     if (!on(out.curve, p))
       out = out.chord();
-    const double s = in.a ? in.curve.parameter(p) : 0, t = out.a ? out.curve.parameter(p) : 0;
+    const double s = in.a ? in.parameter(p) : 0, t = out.a ? out.parameter(p) : 0;
     const Point2 along = in.a ? in.curve.slope(s) : p - at(i + polygon_.size - 1);
     const Point2 away = out.a ? out.curve.slope(t) : at(i + 1) - p;
     const double det = cross2(along, away);
@@ -94,8 +94,9 @@ private:
       side[size++] = {p, q, {}};
       return;
     }
-    const Curve &curve = v.side < 0 || drawn.curve.straight ? edge.curve : drawn.curve;
-    const double t0 = curve.parameter(at(i)), t1 = curve.parameter(at(i + 1)), span = t1 - t0;
+    const MovingEdge &taken = v.side < 0 || drawn.curve.straight ? edge : drawn;
+    const Curve &curve = taken.curve;
+    const double t0 = taken.parameter(at(i)), t1 = taken.parameter(at(i + 1)), span = t1 - t0;
     double *first = parameter_rate(edge, curve, t0, at(i), p), *last = parameter_rate(edge, curve, t1, at(i + 1), q);
     const Rows2 bulge = edges_.take();
     const std::size_t n = edges_.size();
@@ -125,6 +126,8 @@ private:
     const std::size_t n = edges_.size();
     const Point2 slope = curve.slope(t), off = curve.at(t) - p;
     const double by_t = dot2(slope, slope) - 2 * dot2(off, curve.bulge);
+    if (by_t == 0) // an edge without length
+      return row;
     add_row(n, slope.x / by_t, moving.x, row), add_row(n, slope.y / by_t, moving.y, row);
     edge.add_along(n, t, slope, -1 / by_t, row);
     if (!edge.a)

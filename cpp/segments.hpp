@@ -44,6 +44,7 @@ struct Piece {
   Point2 p[4];
   std::array<Curve, 4> curve;
   Place corner[4], middle[4]; // middles of edges where they `bend`: on facets of second order, along their own lines
+  Point2 bulge[4];            // of edges that bend, also along straight ones whose middle is not half-way
   bool bend[4];
 };
 

@@ -128,7 +128,7 @@ def edit(cards: Sequence[Card], stiffness: float, ignore: Collection[str] = (), 
                 )
             elif card.name == "FRICTION" and tied:  # a tied interaction takes its tangential stiffness from here
                 card = replace(card, data=(f"1.e30, {stiffness:.6e}",))
-            elif card.name == "FRICTION":
+            elif card.name == "FRICTION" and "FRICTION" not in ignore:
                 card = replace(card, data=(f"{card.data[0].split(',')[0]}, {stiffness:.6e}",))
             elif card.name in (*OUTPUT, "CONTROLS", *ignore):
                 continue

@@ -168,7 +168,10 @@ def test_friction_of_every_code() -> None:
     assert own["Parameters"]["friction_coefficients"] == {"0": 0.3}
     assert kratos.parameters(rough)["solver_settings"]["contact_settings"]["mortar_type"] == "ALMContactFrictional"
     (other,) = kratos.parameters(smooth)["processes"]["contact_process_list"]
-    assert (other["Parameters"]["contact_type"], "friction_coefficients" in other["Parameters"]) == ("Frictionless", False)
+    assert (other["Parameters"]["contact_type"], "friction_coefficients" in other["Parameters"]) == (
+        "Frictionless",
+        False,
+    )
     assert cases.with_options(rough, linear="auto", tied=True).contacts[0].kind == "tied"
     assert cases.with_options(rough, linear="auto", tied=False).contacts[0].friction == 0.3
 

@@ -82,6 +82,8 @@ def test_an_edited_deck_has_stiff_contact_and_nothing_that_abut_ignores(deck: li
     friction = [card for card in edited if card.name == "FRICTION"]  # that of the tied interaction: its stick stiffness
     assert len(friction) == 1
     assert float(friction[0].data[0].split(",")[1]) == 5e6
+    kept = [card for card in reference.edit(deck, 5e6, ["NLGEOM", "FREQUENCY"]) if card.name == "FRICTION"]
+    assert [[float(x) for x in card.data[0].split(",")] for card in kept] == [[0.2, 5e6], [1e30, 5e6]]
     static = next(card for card in edited if card.name == "STATIC")
     assert [float(x) for x in static.data[0].split(",")[:2]] == [2.0, 2.0]
     assert [card.name for card in edited][-2:] == ["NODE FILE", "END STEP"]

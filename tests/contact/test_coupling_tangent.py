@@ -158,6 +158,29 @@ def test_hidden_faces(contactor: str, target: str) -> None:
     assert error(pair, options=replace(FIXED, reach=1.0)) < TOLERANCE
 
 
+def test_straight_edges_with_their_middle_off_the_middle() -> None:
+    """On a ball edges in planes of symmetry are straight in the mean plane, until they move."""
+
+    def ball(s: Array, t: Array) -> list[Array]:
+        a, b = 1.4 * (s - 0.5), 1.4 * (t - 0.5)
+        return [np.sin(a), np.sin(b), 1 - np.cos(a) * np.cos(b)]
+
+    plane = sheet("quad4", 5, lambda s, t: [2 * s - 1.03, 2 * t - 1.02, 0 * s - 0.02], 0.1, 3)
+    assert error((turn(sheet("quad8", 3, ball)), plane)) < TOLERANCE
+
+
+@pytest.mark.parametrize("kinds", [("quad4", "quad4"), ("tri6", "quad8")])
+def test_newton_cotes(kinds: tuple[str, str]) -> None:
+    assert error(faces(kinds), options=CouplingOptions(rule="newton-cotes", points=5)) < TOLERANCE
+
+
+def test_a_collapsed_target_facet() -> None:
+    contactor, target = faces(("quad4", "quad4"))
+    nodes = target.nodes.copy()
+    nodes[0, 3] = nodes[0, 2]
+    assert error((contactor, replace(target, nodes=nodes))) < TOLERANCE
+
+
 @pytest.mark.parametrize("curve", [0.0, 0.3])
 @pytest.mark.parametrize("kind", LINES + FACES)
 def test_matching_meshes(kind: str, curve: float) -> None:

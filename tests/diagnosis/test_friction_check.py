@@ -62,6 +62,17 @@ def test_the_step_that_takes_most() -> None:
     assert needed(text) == pytest.approx(np.tan(0.1), rel=5e-3)
 
 
+@pytest.mark.parametrize("last", [0.05, 0.0])
+def test_friction_that_fades(last: float) -> None:
+    """Below the tangent in the last step, or none there at all: it slides then, and both check and run say when."""
+    model = with_friction(on_a_slope(0.1), FRICTION, friction_amplitude=abut.Amplitude([(0.5, 1), (1, last)]))
+    model = replace(model, solve=abut.SolveOptions(steps=2))
+    words = "body 'upper' is free to translate along x: the loads pull it off its contact in step 2"
+    assert any(finding.severity == "error" and words in finding.line for finding in check(model).findings)
+    with pytest.raises(abut.SingularModelError, match=words):
+        abut.solve(model)
+
+
 def test_in_3d() -> None:
     """A shear of 0.2 of the pressure; the pyramid of sixteen edges lies round the cone: 2 % less at the most."""
     ((_, text),) = findings(sheared(two_blocks("hex8", "tet4", ((2, 3, 2), (3, 2, 2))), 0.2))

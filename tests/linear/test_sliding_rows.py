@@ -55,7 +55,7 @@ def at_random(system: Linearised) -> Rows:
 
 
 @pytest.mark.parametrize("model", [pushed, rubbed])
-def test_the_same_newton_step_without_the_slip(model) -> None:  # noqa: ANN001
+def test_the_same_newton_step_without_the_slip(model) -> None:
     """The elimination is exact: a step from the rows that are left is that of all rows, to rounding."""
     system = linearised(model())
     rows = at_random(system)
@@ -84,7 +84,7 @@ def test_what_sticks_stays_symmetric() -> None:
 
 
 @pytest.mark.parametrize("model", [pushed, rubbed])
-def test_multigrid_finds_what_the_direct_solver_finds(model) -> None:  # noqa: ANN001
+def test_multigrid_finds_what_the_direct_solver_finds(model) -> None:
     """In every step of a path with reversal: status, tractions and slip."""
     own = model()
     found = [abut.solve(replace(own, solve=replace(own.solve, linear=kind))) for kind in ("amg", "direct")]
@@ -108,7 +108,7 @@ def krylov(system: Linearised, rows: Rows, monkeypatch: pytest.MonkeyPatch) -> i
     counts: list[int] = []
     true = iterative.fgmres
 
-    def counted(*arguments):  # noqa: ANN002, ANN202
+    def counted(*arguments):
         result = true(*arguments)
         counts.append(result[1])
         return result
@@ -124,8 +124,8 @@ def krylov(system: Linearised, rows: Rows, monkeypatch: pytest.MonkeyPatch) -> i
 
 
 def test_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All slipping costs what no friction costs; all sticking has three times the multipliers, and no more than 1.8 times the
-    iterations (with the blocks of the Schur complement exact it would be 1.3 times)."""
+    """All slipping costs what no friction costs; all sticking has three times the multipliers, and no more than 1.8 times
+    the iterations (with the blocks of the Schur complement exact it would be 1.3 times)."""
     model = rubbed(8)
     free = linearised(replace(model, contacts=[replace(model.contacts[0], friction=0.0, pressure="dual")]))
     system = linearised(model)

@@ -12,10 +12,11 @@ from abut.analysis.run import Run
 from abut.benchmarks.finite_rubber import cook
 from abut.bodies.finite import Inverted, cauchy_stress, respond_finite
 from abut.bodies.solids import Solids
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.linear.direct import Repeated, solve
 from abut.materials.material import OwnMaterial
-from abut.mesh.make import join, rectangle
+from abut.mesh.make import box, join, rectangle
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.terms import Motion
 
@@ -211,3 +212,18 @@ def test_stresses_of_a_cell_that_is_sound_at_its_integration_points_only(kind: s
         found += 1
         assert np.isfinite(cauchy_stress(solids, u)).all()
     assert found > 5
+
+
+@pytest.mark.parametrize("cell", ["quad4", "tri6", "hex8", "tet10", "wedge15"])
+def test_pressure_all_round_needs_no_support(cell: str) -> None:
+    """A free block under a pressure that follows all its sides shrinks alike everywhere, and stays where it is."""
+    dim = CELLS[cell].dim
+    mesh = join({"body": rectangle((0, 1), (0, 2), (2, 3), cell) if dim == 2 else box(cells=(2, 1, 1), cell=cell)})
+    loads = [abut.Pressure(side, 0.5) for side in mesh.surfaces]
+    plane = "strain" if dim == 2 else None
+    solution = abut.solve(abut.Model(mesh, [abut.Solid("body", RUBBER)], [], loads, plane=plane, kinematics="finite"))
+    assert solution.converged
+    stress = solution.steps[-1].stress
+    assert np.abs(stress[:, :dim] + 0.5).max() < 1e-9
+    assert np.abs(stress[:, 3:]).max() < 1e-9
+    assert all(check.passed for check in solution.certificate)

@@ -136,6 +136,29 @@ def test_every_form_in_one_model() -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+@pytest.mark.parametrize("law", ["complementarity", "constraint-function"])
+def test_axisymmetric(law: str) -> None:
+    """A rod pressed on a softer disc, which would widen under it: friction over radius and over pressure, in the section."""
+    parts = {"disc": make.rectangle([0, 3], [0, 1], [18, 6]), "rod": make.rectangle([0, 1], [1, 3], [7, 10])}
+    model = abut.Model(
+        make.join(parts),
+        [abut.Solid("disc", abut.LinearElastic(1e3, 0.4)), abut.Solid("rod", abut.LinearElastic(1e5, 0.3))],
+        [abut.Support("disc.bottom", y=0)],
+        [abut.Pressure("rod.top", 10.0)],
+        [abut.Contact("disc.top", "rod.bottom", law=law)],
+        plane="axisymmetric",
+    )
+    smooth = abut.solve(model)
+    for friction in (lambda x: 0.1 + 0.1 * x[:, 0], ((0.0, 0.2), (20.0, 0.1)), "rough"):
+        solution = abut.solve(replace(model, contacts=[replace(model.contacts[0], friction=friction)]))
+        assert solution.converged
+        assert all(check.passed for check in solution.certificate)
+        contact = solution.contacts[0]
+        assert contact.force[1] == pytest.approx(smooth.contacts[0].force[1], rel=1e-9)
+        # The disc would widen under the rod: friction holds it back.
+        assert contact.force[0] * smooth.displacement[model.mesh.nodes_of("disc.top")][:, 0].max() < 0.0
+
+
 @pytest.mark.parametrize("components", [2, 3])
 def test_law_of_a_table_against_differences(components: int) -> None:
     """Slipping points, away from the points of the table; central differences are good to 1e-9 of the largest entry."""

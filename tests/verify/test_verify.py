@@ -202,7 +202,7 @@ def test_records_are_complete(name: str) -> None:
 
 
 ELSEWHERE = ("smooth-", "signorini-")  # run by tests of their own, with rates
-LONG = ("hertz-sphere",)
+LONG = ("hertz-sphere", "mindlin-ball", "mindlin-cycle")
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ class Acting:
 
 
 def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
-    """Nodal forces of all pressures and ties, without friction, (dim n_points,)."""
+    """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R8)."""
     force = np.zeros(system.pairs[0].rows.shape[1])
     for pair, own in zip(system.pairs, multipliers):
         part = pair.normal if pair.frictional else slice(None)
@@ -63,25 +63,28 @@ def energy(
     contacts: Sequence[ContactResult],
     earlier: float = 0.0,
 ) -> Energy:
-    """Of the step between two states. slips: (n,) of each pair's multipliers in the step, None without friction; contacts:
-    their results; earlier: the largest size of the steps before, beside which what is left after unloading is rounding."""
+    """Of the step between two states. slips: (n, 3) of each pair's multipliers, in the step, in all, and what came closer
+    without slip, None without friction; contacts: their results; earlier: the largest size of the steps before, beside
+    which what is left after unloading is rounding."""
     moved = now.displacement - before.displacement
     given = now.prescribed - before.prescribed
 
     def mean(name: str) -> Vector:
         return np.asarray(0.5 * (getattr(before, name) + getattr(now, name)))
 
-    stepping = 0.0
+    stepping = closing = 0.0
     for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
         if pair.frictional and slip is not None:
-            stepping += 0.5 * float((pair.weight * slip)[pair.tangential] @ (late - early))
+            step, _, came = (pair.weight[:, None] * slip)[pair.tangential].T
+            stepping += 0.5 * float(step @ (late - early))
+            closing += 0.5 * float(came @ (late + early))
     internal, step = mean("internal"), np.abs(now.free - before.free)
     rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
     unbalanced = max(before.residual, now.residual) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
-        contact=float(mean("pressing") @ moved),
+        contact=float(mean("pressing") @ moved) + closing,
         stored=float(internal @ moved),
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,

@@ -110,8 +110,9 @@ class Run:
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
             if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
                 return
-            loads = problem.held.free.T @ (self.assembled.loaded.forces @ weights(self.model.histories, time))
-            require_balance(problem.restraint, loads, f" in step {number}" if count > 1 else "")
+            factors = weights(self.model.histories, time)
+            loads = problem.held.free.T @ (self.assembled.loaded.forces @ factors)
+            require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
 
         def prepares(what: LinearSolver) -> None:
             observe(Phase(*setting_up(what, problem)))

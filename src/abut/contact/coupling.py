@@ -129,6 +129,7 @@ class CouplingOptions:
     hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
             only, theory (S12).
     componentwise: without the normal, for one displacement component (ties).
+    normals: (n_facets, 9, dim) unit normals at the contactor's facets' nodes; ``nodal_normals`` where left out.
     keep_points: keep the integration points; keep_sights: keep corners and middles of the segments, which takes a tenth of
             the time.
     """
@@ -141,6 +142,7 @@ class CouplingOptions:
     componentwise: bool = False
     keep_points: bool = False
     keep_sights: bool = False
+    normals: NDArray[np.float64] | None = None
 
 
 def couple(
@@ -211,7 +213,7 @@ def cutting_arguments(
     across: Smoothing | None,
 ) -> Json:
     """What the compiled core is told about the cutting and the rules for some facets of the contactor."""
-    normals = nodal_normals(contactor, across)
+    normals = nodal_normals(contactor, across) if options.normals is None else options.normals
     part = contactor if len(facets) == len(contactor) else contactor.part(facets)
     plan = _plan_part(part, target, options, normals[facets])
     if isinstance(options.points, Plan):

@@ -13,14 +13,17 @@ from abut.mesh.surface import Surface
 Array = NDArray[np.float64]
 
 
-def places(contactor: Surface, space: PressureSpace) -> tuple[Array, Array]:
+def places(contactor: Surface, space: PressureSpace, normals: Array | None = None) -> tuple[Array, Array]:
     """Points and outward unit normals of the contactor, (n, dim) each: at the node of each function; of one that belongs to
-    a facet alone, the means over its nodes."""
+    a facet alone, the means over its nodes. normals: (n_facets, 9, dim) at the facets' nodes, ``nodal_normals`` where left
+    out."""
     split, at = side_normals(contactor)
-    points, normals = split.points[space.side], at[space.side]
+    if normals is not None:
+        at[split.nodes[split.nodes >= 0]] = normals[split.nodes >= 0]
+    points, outward = split.points[space.side], at[space.side]
     own = np.flatnonzero(space.node < 0)
     if not len(own):
-        return points, normals
+        return points, outward
     nodes = split.nodes.ravel()
     gather = sp.csr_matrix(
         (np.ones(int((nodes >= 0).sum())), (np.flatnonzero(nodes >= 0), nodes[nodes >= 0])),
@@ -30,5 +33,5 @@ def places(contactor: Surface, space: PressureSpace) -> tuple[Array, Array]:
     total = np.asarray(share.sum(axis=1))
     mean = share @ at
     points[own] = (share @ split.points) / total
-    normals[own] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
-    return points, normals
+    outward[own] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+    return points, outward

@@ -52,8 +52,8 @@ def _alone(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]
     for number, (load, time) in enumerate(zip(ends, model.solve.ends), start=1):
         at, force = weights(model.histories, time), held.free.T @ load
         motion = restraint(model.mesh, held, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
-        needed = _needed(restraint(model.mesh, held, pairs), at, force) if motion else None
         given = _given(pairs, at)
+        needed = _needed(restraint(model.mesh, held, pairs), at, force) if motion and given > 0.0 else None
         if needed is not None and (worst is None or needed / given > worst[0]):
             when = f" in step {number}" if len(ends) > 1 else ""
             least = f"it takes a coefficient of {needed:.3g} at least, {_words(pairs, at)}"
@@ -106,9 +106,7 @@ def _with(pair: Pair, at: np.ndarray, factor: float) -> Pair:
 
 def _now(pair: Pair, at: np.ndarray) -> np.ndarray:
     """The largest coefficient at any pressure, with the histories at ``at``, (n_functions,)."""
-    bound = pair.friction(at)
-    over = 1.0 if bound.curve is None else float(bound.curve.coefficients.max())
-    return np.broadcast_to(bound.coefficient * over, len(pair.space))
+    return pair.at(at).steepest
 
 
 def _given(pairs: Sequence[Pair], at: np.ndarray) -> float:

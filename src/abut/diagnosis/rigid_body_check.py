@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
 from abut.model import Model
+from abut.model.conditions import weights
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair
 from abut.problem.free_modes import regularise
@@ -56,7 +57,8 @@ def _unheld(model: Model, held_by: Restraint) -> list[Finding]:
     try:
         unit = sp.identity(held.free.shape[1], format="csr")
         loose = regularise(held_by.rigid, held_by.everything, held, unit, ends)
-        require_held(held_by.helped_by(loose.gram), ends)
+        factors = [weights(model.histories, time) for time in model.solve.ends]
+        require_held(held_by.helped_by(loose.gram), ends, factors)
     except SingularModelError as error:
         return [from_error(error, "bodies")]
     return [

@@ -68,26 +68,27 @@ def _selection(own: NDArray[np.bool_]) -> Sparse:
 
 def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Conditions:
     """Rows with slip eliminated."""
-    diagonal, soft = few.pull.power(2) @ pressures.diagonal, np.abs(few.corner.diagonal())
+    diagonal, soft = few.pull.multiply(few.pull) @ pressures.diagonal, np.abs(few.corner.diagonal())
     sizes = np.where(soft > 0.0, np.sqrt(pressures.unit / (diagonal + soft)), pressures.scale)
     return Conditions(
         -(few.pull @ operator).tocsr(), (few.push @ operator).tocsr(), few.corner, few.residual, sizes, sizes,
-        _parted_inverse(few, diagonal + soft, pressures), few.push, few.fixed, few.symmetric,
+        _parted_inverse(few, diagonal, pressures), few.push, few.fixed, few.symmetric,
     )  # fmt: skip
 
 
 def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
-    """That of pull S push^T - corner: what is closed or sticks component by component, springs across the slip by themselves,
-    theory (V25); where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of it."""
+    """That of pull S push^T - corner, theory (V25): what is closed or sticks component by component, springs across the slip
+    by themselves; where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of pull S push^T."""
     m = int(few.single.sum())
-    if few.corner[:m].count_nonzero():
+    if few.corner[:m].data.any():
 
         def multiply(q: NDArray[np.float64]) -> NDArray[np.float64]:
             return np.asarray(few.pull @ pressures.forward(few.push.T @ q) - few.corner @ q)
 
-        return _roughly(multiply, lambda r: r / diagonal, len(diagonal))
+        return _roughly(multiply, spla.splu((sp.diags(diagonal) - few.corner).tocsc()).solve, len(diagonal))
     by_gap = schur_inverse(pressures.parts, few.single)
-    return lambda r: np.concatenate([by_gap(r[:m]), r[m:] / diagonal[m:]])
+    springs = diagonal[m:] - few.corner.diagonal()[m:]
+    return lambda r: np.concatenate([by_gap(r[:m]), r[m:] / springs])
 
 
 def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:

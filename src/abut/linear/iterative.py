@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.errors import SingularModelError
 from abut.linear.interface_conditions import Conditions, conditions
 from abut.linear.krylov import fgmres
 from abut.linear.multigrid import Hierarchy, hierarchy
 from abut.linear.schur_preconditioner import Apply, Predict, PressureBlock, foresight, pressure_block
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
+from abut.linear.static_condensation import UNBALANCED, UNBALANCED_LOADS
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import Problem
 from abut.types import Sparse
@@ -39,7 +41,7 @@ class Iterative:
         """As in ``Prepared``, preconditioned by theory (V11)."""
         own = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
         operator, n = own.forces, len(residual)
-        coarse = self._rigid(own)
+        coarse = self._rigid(own, residual - self.system.operator.T @ own.fixed)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
             u, p = x[:n], own.columns * x[n:]
@@ -80,13 +82,24 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _rigid(self, own: Conditions) -> Apply:
-        """What multigrid misses: rigid motions of bodies that only contact holds."""
+    def _rigid(self, own: Conditions, force: Vector) -> Apply:
+        """What multigrid misses: rigid motions of bodies that only contact holds. Raises SingularModelError where nothing
+        does, and ``force`` (n_free,) moves them."""
         motions = self.system.motions
         if not motions.shape[1]:
             return lambda r: np.zeros_like(r)
         small = compliance(own.forces @ motions, own.inverse, -np.asarray(own.lower @ motions))
+        require_held(motions, small, force, float(np.abs(self.system.forces).sum()))
         return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
+
+
+def require_held(motions: NDArray[np.float64], small: NDArray[np.float64], force: Vector, loads: float) -> None:
+    """Raises SingularModelError where a force (n,) does work on motions (n, m) that nothing resists, whose compliance
+    ``small`` (m, m) is zero, as ``compliance`` leaves it. loads: sum of all, beside which what is left is rounding."""
+    basis, sizes, _ = np.linalg.svd(small)
+    loose = basis[:, sizes <= LOOSE * sizes.max(initial=0.0)]
+    if np.abs(loose.T @ (motions.T @ force)).max(initial=0.0) > UNBALANCED * (np.abs(force).sum() + loads):
+        raise SingularModelError(UNBALANCED_LOADS)
 
 
 def compliance(

@@ -6,8 +6,9 @@ holds multipliers alone, and across it a spring. Pressures, tractions of what st
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -38,18 +39,19 @@ class Reduced:
 
 def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
     """Rows at the multipliers, of complementarity, ties and Coulomb's law; None of any other."""
-    if rows.by_gap is None or rows.by_multiplier is None:
+    by_gap, by_multiplier = rows.by_gap, rows.by_multiplier
+    if by_gap is None or by_multiplier is None:
         return None
     found, first = [], 0
     for pair in pairs:
         if pair.frictional:
-            found.append(_slips(rows, np.where(pair.index >= 0, pair.index + first, -1)))
+            found.append(_slips(rows, by_gap, by_multiplier, np.where(pair.index >= 0, pair.index + first, -1)))
         first += len(pair)
     slips = _joined(found)
     n, own = len(rows.residual), ~rows.decoupled
     own[slips.number[slips.number >= 0]] = False
-    plain, corner = np.flatnonzero(own), rows.by_multiplier[own][:, own]
-    if (rows.by_gap.diagonal()[own] != -1.0).any():
+    plain, corner = np.flatnonzero(own), by_multiplier[own][:, own]
+    if (by_gap.diagonal()[own] != -1.0).any():
         return None
     m, across = len(plain), slips.across
     place = np.cumsum(own) - 1
@@ -96,9 +98,9 @@ class _Slips:
         return self.number >= 0
 
 
-def _slips(rows: Rows, index: NDArray[np.int64]) -> _Slips:
+def _slips(rows: Rows, by_gap: Sparse, by_multiplier: Sparse, index: NDArray[np.int64]) -> _Slips:
     """index: (n_functions, c) numbers of a pair's multipliers."""
-    gaps, own = _blocks(rows.by_gap, index), _blocks(rows.by_multiplier, index)
+    gaps, own = _blocks(by_gap, index), _blocks(by_multiplier, index)
     tangents = np.eye(index.shape[1])[1:]
     sticks = (gaps[:, 1:] == -tangents).all(axis=2) | (gaps[:, 1:] == 0.0).all(axis=2)
     slips = ~(sticks | (index[:, 1:] < 0)).all(axis=1)
@@ -133,7 +135,7 @@ def _blocks(matrix: Sparse, index: NDArray[np.int64]) -> Vector:
 
 def _negative_diagonal(matrix: Sparse) -> bool:
     diagonal = matrix.diagonal()
-    return matrix.count_nonzero() == np.count_nonzero(diagonal) and bool((diagonal <= 0.0).all())
+    return np.count_nonzero(matrix.data) == np.count_nonzero(diagonal) and bool((diagonal <= 0.0).all())
 
 
 def _entries(
@@ -147,12 +149,21 @@ def _entries(
 
 def _joined(parts: Sequence[_Slips]) -> _Slips:
     """Of all pairs, which have as many components each."""
+
+    def stack(values: Iterable[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(list(values))
+
     starts = np.cumsum([0, *(len(part.normal) for part in parts)])[:-1]
     across = [part.across for part in parts]
     return _Slips(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("normal", "number", "drag", "known")),
-        _Across(
-            np.concatenate([own.row + start for own, start in zip(across, starts)]),
-            *(np.concatenate([getattr(own, name) for own in across]) for name in ("direction", "residual", "soft")),
+        normal=stack(part.normal for part in parts),
+        number=stack(part.number for part in parts),
+        drag=stack(part.drag for part in parts),
+        known=stack(part.known for part in parts),
+        across=_Across(
+            row=stack(own.row + start for own, start in zip(across, starts)),
+            direction=stack(own.direction for own in across),
+            residual=stack(own.residual for own in across),
+            soft=stack(own.soft for own in across),
         ),
     )

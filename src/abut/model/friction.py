@@ -73,10 +73,17 @@ class FrictionValues:
     history: int | None = None
     largest: float = 1.0
 
+    def at(self, factors: Array) -> FrictionValues:
+        """The values of a moment, where the model's histories are at ``factors``, (n_histories,)."""
+        return (
+            self
+            if self.history is None
+            else FrictionValues(self.coefficient * float(factors[self.history]), self.curve)
+        )
+
     def bound(self, factors: Array) -> FrictionBound:
-        """Where the model's histories are at ``factors``, (n_histories,)."""
-        factor = 1.0 if self.history is None else float(factors[self.history])
-        return FrictionBound(self.coefficient * factor, self.curve)
+        """The same as what tractions are bounded by."""
+        return FrictionBound(self.at(factors).coefficient, self.curve)
 
     @property
     def steepest(self) -> Array:

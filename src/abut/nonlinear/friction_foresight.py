@@ -15,12 +15,13 @@ from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.solution.state import CLOSED, OPEN, State
 
+ENOUGH = 0.1  # reduction of the residual that a solution at least aims at
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
 
 def advanced(solver: Prepared, state: State, laws: Laws, increment: Increment, accuracy: float) -> State:
-    """The state after a Newton step. An iterative solver, asked for ``accuracy`` of the residual, goes on where forces are so
-    far from balance that the state says nothing."""
+    """The state after a Newton step. An iterative solver, asked for ``accuracy`` of the residual, goes on where forces are
+    so far from balance that the state says nothing."""
     system = solver.system
     for _ in range(1 if solver.exact else MOST):
         state = advance(solver, state, laws(system, state), accuracy)
@@ -28,7 +29,7 @@ def advanced(solver: Prepared, state: State, laws: Laws, increment: Increment, a
         left /= largest_force(system, state, system.internal(state), increment)
         if left <= TOLD:
             break
-        accuracy = max(TOLD / left, STRIDE)
+        accuracy = float(np.clip(TOLD / left, STRIDE, ENOUGH))
     return state
 
 

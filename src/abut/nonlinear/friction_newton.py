@@ -128,9 +128,7 @@ def friction_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(
-            pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None
-        )
+        at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None)
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 

@@ -13,7 +13,7 @@ from abut.linear.choice import chosen
 from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
-from abut.linear.iterative import RESPONSE, compliance
+from abut.linear.iterative import RESPONSE, compliance, require_held
 from abut.linear.saddle_point import saddle
 from abut.linear.schur_preconditioner import (
     Predict,
@@ -82,6 +82,8 @@ class Iterative:
         small = np.zeros((0, 0))
         if motions.shape[1]:
             small = compliance(own.forces @ motions, inverse, -np.asarray(own.lower @ motions))
+            left = residual - self.system.operator.T @ own.fixed
+            require_held(motions, small, left, float(np.abs(self.system.forces).sum()))
         by_column, by_row = sp.diags(own.columns), sp.diags(own.rows)
         beside = Conditions(
             spread(by_column @ own.forces, layout), spread(by_row @ own.lower, layout),
@@ -210,8 +212,8 @@ class PetscIterations:
         rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
         if rubs and krylov_method() in SYMMETRIC:
             raise InputError(
-                f"-ksp_type {krylov_method()} is for symmetric matrices, which friction does not leave (contact '{rubs[0]}'): "
-                "leave the option out"
+                f"-ksp_type {krylov_method()} is for symmetric matrices, which friction does not leave (contact "
+                f"'{rubs[0]}'): leave the option out"
             )
         if previous is None or previous.system.stiffness is not matrix:
             matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.model import Model
+from abut.model.conditions import weights
 from abut.problem.backend import Backend
 from abut.problem.clock import Clock
 from abut.problem.constraints import Supports, supports
@@ -64,7 +65,8 @@ def assemble(
         note(text)
     held_by, reduced = held_by.helped_by(springs.gram), springs.added_to(reduced)
     forces = [held.free.T @ force for force in loaded.at_ends(model)]
-    require_balance(held_by, forces[0], " in step 1" if len(forces) > 1 else "")
+    first = held_by.at(weights(model.histories, model.solve.ends[0]))
+    require_balance(first, forces[0], " in step 1" if len(forces) > 1 else "")
     require_unmoved(held_by, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]

@@ -31,14 +31,16 @@ from abut.contact.sides import Sides, words
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
 from abut.errors import InputError
-from abut.materials.softest import contact_modulus, softest
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
 from abut.problem.constraints import Supports
+from abut.problem.contact_normals import contact_normals
+from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
+from abut.problem.scales import scales
 from abut.problem.tied_rows import tied_rows
 from abut.types import Array, Sparse
 
@@ -142,6 +144,10 @@ class Pair:
         assert self.values is not None
         return self.values.bound(factors)
 
+    def at(self, factors: NDArray[np.float64]) -> Pair:
+        """The pair with the friction of a moment, where the model's histories are at ``factors``."""
+        return self if self.values is None else replace(self, values=self.values.at(factors))
+
     @property
     def steepest(self) -> NDArray[np.float64]:
         """The largest coefficient of friction that each function ever has, (n_functions,)."""
@@ -227,9 +233,10 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
     reach = reach_of(held, contactor, target)
-    contactor, coupling, space = _couple(contact, contactor, target, reach, couple)
-    sizes = facet_sizes(contactor)
     both = scales(model, contactor, target)
+    normals = contact_normals(contactor, target, both.share, reach, couple, held) if contact.frictional else None
+    contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
+    sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
         own = tied_rows(contactor, coupling, space, held)
@@ -262,13 +269,17 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     if not contact.frictional:
         return own_pair
     assert coupling.points is not None
+    assert normals is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), held)
+    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, held)
 
 
-def _with_friction(model: Model, own: Pair, operators: SlipOperators, held: Supports) -> Pair:
+def _with_friction(
+    model: Model, own: Pair, operators: SlipOperators, normals: NDArray[np.float64], held: Supports
+) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    made = friction_rows(own.contactor, own.space, own.rows, operators, held)
+    sides = FrictionSides(own.contactor, own.target, normals, reach_of(held, own.contactor, own.target))
+    made = friction_rows(sides, own.space, own.rows, operators, held)
     more = made.rows.shape[0] - len(own.space)
     prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
@@ -326,12 +337,16 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    return changed if own.slip is None else _with_friction(model, changed, own.slip.operators, held)
+    if own.slip is None:
+        return changed
+    assert own.slip.at_facets is not None
+    return _with_friction(model, changed, own.slip.operators, own.slip.at_facets, held)
 
 
 def _couple(
-    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple
-) -> tuple[Surface, Coupling, PressureSpace]:
+    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple,
+    normals: NDArray[np.float64] | None,
+) -> tuple[Surface, Coupling, PressureSpace]:  # fmt: skip
     """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
@@ -350,6 +365,7 @@ def _couple(
         options = CouplingOptions(
             rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
             keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_sights=not tied,
+            normals=normals,
         )  # fmt: skip
         closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
         without = partial(couple, contactor, target, degree, options)
@@ -385,18 +401,3 @@ def _points(
 def reach_of(held: Supports, contactor: Surface, target: Surface) -> float:
     """How far apart the surfaces may lie at the outset and still be paired, a length."""
     return default_reach(contactor, target) + 2.0 * held.largest
-
-
-@dataclass(frozen=True)
-class Scales:
-    """young: the smaller Young's modulus of the two sides, the scale of the law; compliance: of both sides together.
-    A rigid side has none."""
-
-    young: float
-    compliance: float
-
-
-def scales(model: Model, contactor: Surface, target: Surface) -> Scales:
-    both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
-    young = min(material.modulus for material in both if material is not None)  # the model has refused two rigid sides
-    return Scales(young, sum(2.0 / contact_modulus(material) for material in both))

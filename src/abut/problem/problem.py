@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.problem.approach import approach_slip
 from abut.problem.constraints import Supports
 from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import Regularisation
@@ -224,28 +225,43 @@ class ContactProblem:
         return self.springs.added_to(sum(tangents[1:], tangents[0]))
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
-        """Weighted tangential jumps of each pair in a converged state, from which the next step's slip counts, theory (R2);
-        empty without friction."""
+        """Weighted tangential jumps of each pair from which the next step's slip counts, theory (R2): those in a converged
+        state, and what is open moved on until it closes; empty without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []
-        factors = weights(self.model.histories, before.time)
         return [
-            (pair.operator @ before.unknowns + pair.prescribed @ factors)[pair.tangential]
-            if pair.frictional
-            else np.zeros(0)
-            for pair in self.pairs
+            gap[pair.tangential] + came if pair.frictional else came
+            for pair, gap, came in zip(self.pairs, self._gaps(before), self._approached(before))
         ]
 
+    def _approached(self, before: State) -> list[NDArray[np.float64]]:
+        """Of them, what is open moves on until it closes; empty of a pair without friction."""
+        ends = np.cumsum([len(pair) for pair in self.pairs])[:-1]
+        states = self._gaps(before), np.split(before.multipliers, ends), np.split(before.closed, ends)
+        return [
+            approach_slip(pair, gap, multipliers, closed) if pair.frictional else np.zeros(0)
+            for pair, gap, multipliers, closed in zip(self.pairs, *states)
+        ]
+
+    def _gaps(self, before: State) -> list[NDArray[np.float64]]:
+        """Weighted gaps and tangential jumps of each pair in a converged state."""
+        factors = weights(self.model.histories, before.time)
+        return [pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors for pair in self.pairs]
+
     def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
-        """Slip of each pair with friction by name, (n, 2): in the step that ends ``now``, and in all steps in contact."""
+        """Slip of each pair with friction by name, (n, 3): in the step that ends ``now``, in all steps in contact, and what
+        did not count in the step because it only came closer."""
         system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
         result = {}
-        for pair, gap, closed in zip(self.pairs, system.split(system.gap(now)), system.split(now.closed)):
+        states = system.split(system.gap(now)), system.split(now.closed), self._approached(before)
+        for pair, gap, closed, approached in zip(self.pairs, *states):
             if pair.frictional:
                 step = gap / pair.weight
                 step[pair.normal] = 0.0
-                total = earlier.get(pair.contact.name, np.zeros((len(pair), 2)))[:, 1]
-                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0)])
+                total = earlier.get(pair.contact.name, np.zeros((len(pair), 3)))[:, 1]
+                came = np.zeros(len(pair))
+                came[pair.tangential] = approached / pair.weight[pair.tangential]
+                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0), came])
         return result
 
     def _shares(self, before: State, now: State, prescribed: NDArray[np.float64] | None = None) -> list[Share]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,12 @@ class Restraint:
     def helped_by(self, gram: NDArray[np.float64]) -> Restraint:
         """The same with something else that resists."""
         return _restraint(self.rigid, self.held, self.supports + gram, self.pairs, self.bare) if gram.any() else self
+
+    def at(self, factors: NDArray[np.float64]) -> Restraint:
+        """With the friction of a moment, where the model's histories are at ``factors``, (n_histories,)."""
+        if all(pair.values is None or pair.values.history is None for pair in self.pairs):
+            return self
+        return replace(self, pairs=[pair.at(factors) for pair in self.pairs])
 
     def complete(
         self, force: NDArray[np.float64], active: NDArray[np.bool_], gap: NDArray[np.float64]
@@ -209,12 +215,15 @@ def _pushes_and_drags(pair: Pair, moves: NDArray[np.float64], active: NDArray[np
     return np.asarray(rows[keep] / length[keep, None])
 
 
-def require_held(restraint: Restraint, loads: Sequence[NDArray[np.float64]]) -> None:
+def require_held(
+    restraint: Restraint, loads: Sequence[NDArray[np.float64]], factors: Sequence[NDArray[np.float64]]
+) -> None:
     """Raises SingularModelError where the loads of a step pull a body off its contact, and where one can leave its contact
-    without any load that turns it back, at no step. loads: (dim n_points,) nodal forces of each load step."""
+    without any load that turns it back, at no step. loads: (dim n_points,) nodal forces at the end of each load step;
+    factors: (n_histories,) of the histories there."""
     forces = [restraint.held.free.T @ load for load in loads]
-    for number, force in enumerate(forces, start=1):
-        require_balance(restraint, force, f" in step {number}" if len(forces) > 1 else "")
+    for number, (force, at) in enumerate(zip(forces, factors), start=1):
+        require_balance(restraint.at(at), force, f" in step {number}" if len(forces) > 1 else "")
     require_unmoved(restraint, forces)
 
 

@@ -16,10 +16,10 @@ from abut.errors import InputError
 from abut.model import Contact, Model
 from abut.model.friction import friction_values
 from abut.problem.constraints import Supports
-from abut.problem.contact_pairs import Pair, pair, reach_of, scales
+from abut.problem.contact_pairs import Pair, pair, reach_of
 from abut.problem.friction_rows import Slip
 from abut.problem.held_multipliers import without_held
-
+from abut.problem.scales import scales
 
 def whole_pairs(model: Model, held: Supports) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
@@ -78,7 +78,7 @@ def _with_tangents(model: Model, own: Pair, held: Supports) -> Pair:
     return replace(
         own, gap=np.concatenate([own.gap, np.zeros(first - n)]), scale=weight / own.stiffness, index=index, rows=every,
         operator=(every @ held.free).tocsr(), prescribed=every @ held.prescribed, components=tuple(components),
-        coupling=replace(own.coupling, points=None), slip=Slip(operators, tangents, points),
+        coupling=replace(own.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
         values=friction_values(model, own.contact, points),
     )  # fmt: skip
 

@@ -7,7 +7,6 @@ from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved
 from abut.solution.state import History, Largest, State
 
 __all__ = [
-    "Check", "ContactResult", "Energy", "Flips", "FrictionResult", "History", "Iteration", "Largest", "Observer", "OnStep", "Phase",
-    "PressureStatistics", "ProbeResult", "Resultant",
-    "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
+    "Check", "ContactResult", "Energy", "Flips", "FrictionResult", "History", "Iteration", "Largest", "Observer", "OnStep",
+    "Phase", "PressureStatistics", "ProbeResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip

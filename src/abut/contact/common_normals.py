@@ -1,0 +1,74 @@
+"""Normals for contact with friction: between those of contactor and target, theory (R16)."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.cells import CELLS, MAX_FACET_NODES
+from abut.contact.coupling import Couple, CouplingOptions, IntegrationPoints
+from abut.contact.geometry import CREASE, by_kind, corner_functions, split_at_creases
+from abut.mesh.surface import Surface
+
+NO_TILT = 1e-9  # between the normals of the two sides: rounding
+Array = NDArray[np.float64]
+
+
+def common_normals(
+    contactor: Surface, target: Surface, own: Array, other: Array, share: float, reach: float, couple: Couple
+) -> Array:
+    """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``own`` turned by
+    ``share`` of the way to the target opposite, theory (R16); as they are where there is none, or it leans by more than at
+    a crease. own, other: of contactor and target, as from ``nodal_normals``; reach: length, as for ``couple``."""
+    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=own)).points
+    if share == 0.0 or at is None or not len(at.weight):
+        return own
+    tilt = _opposite(target, other, at) - at.normal
+    tilt[np.einsum("na,na->n", at.normal, at.normal + tilt) < CREASE] = 0.0
+    if np.abs(tilt).max(initial=0.0) <= NO_TILT:
+        return own
+    return _turned(contactor, own, share * _at_nodes(contactor, at, tilt))
+
+
+def _opposite(target: Surface, normals: Array, at: IntegrationPoints) -> Array:
+    """The target's unit normal at each integration point, (n, dim), which points to the contactor."""
+    n, dim = at.normal.shape
+    entries = at.gap_operator.tocoo()
+    along = -entries.data * at.normal[entries.row, entries.col % dim]
+    shapes = sp.csr_matrix((along, (entries.row, entries.col // dim)), shape=(n, at.gap_operator.shape[1] // dim))
+    nodes = target.nodes[at.target_facet]
+    point, local = np.nonzero(nodes >= 0)
+    first = shapes.shape[1] - len(target.points)  # surfaces of one mesh share their points, else the target's come last
+    values = np.asarray(shapes[point, first + nodes[point, local]]).ravel()
+    result = np.zeros((n, dim))
+    np.add.at(result, point, values[:, None] * normals[at.target_facet[point], local])
+    return result / np.maximum(np.linalg.norm(result, axis=1, keepdims=True), 1e-300)
+
+
+def _at_nodes(contactor: Surface, at: IntegrationPoints, values: Array) -> Array:
+    """Means (n_facets, 9, dim) of values (n, dim) under the corners' functions, and between corners linear."""
+    split, _ = split_at_creases(contactor)
+    corner = np.zeros((len(contactor), MAX_FACET_NODES), dtype=bool)
+    for kind, facets in by_kind(contactor):
+        corner[facets, : CELLS[kind].corners] = True
+    row = np.flatnonzero(corner.ravel())
+    side = split.nodes[corner]
+    gather = sp.csr_matrix((np.ones(len(row)), (row, side)), shape=(corner.size, len(split.points)))
+    functions = (at.pressure @ gather).tocsr()
+    weight = functions.T @ at.weight
+    mean = (functions.T @ (at.weight[:, None] * values)) / np.maximum(weight, 1e-300)[:, None]
+    mean[weight <= 0.0] = 0.0
+    result = np.zeros((len(contactor), MAX_FACET_NODES, contactor.dim))
+    for kind, facets in by_kind(contactor):
+        between = corner_functions(kind, CELLS[kind].degree)
+        n, corners = between.shape
+        result[facets, :n] = np.einsum("kc,fcd->fkd", between, mean[split.nodes[facets, :corners]])
+    return result
+
+
+def _turned(contactor: Surface, normals: Array, tilt: Array) -> Array:
+    """Unit normals less a tilt of their opposites."""
+    result = normals - tilt
+    length = np.linalg.norm(result, axis=2, keepdims=True)
+    return np.where((contactor.nodes >= 0)[..., None], result / np.maximum(length, 1e-300), 0.0)

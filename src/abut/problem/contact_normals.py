@@ -1,0 +1,48 @@
+"""The normals of a contact with friction, where supports have a say."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.contact.common_normals import common_normals
+from abut.contact.coupling import Couple
+from abut.contact.geometry import nodal_normals, turning_within
+from abut.errors import InputError
+from abut.mesh.surface import Surface
+from abut.problem.constraints import Supports
+
+Array = NDArray[np.float64]
+LEAN = 3.0  # of a normal out of a plane of symmetry, over the angle by which its facet turns: no more on round surfaces
+
+
+def contact_normals(
+    contactor: Surface, target: Surface, share: float, reach: float, couple: Couple, held: Supports
+) -> Array:
+    """As ``common_normals``; at nodes that supports hold beside them, as at a plane of symmetry, they lie in the directions
+    that are left."""
+    own = _upright(contactor, nodal_normals(contactor), held)
+    try:
+        other = _upright(target, nodal_normals(target), held)
+    except InputError:  # a facet without a normal at a node: the contactor may still see the others
+        return own
+    if share == 0.0:
+        return own
+    return _upright(contactor, common_normals(contactor, target, own, other, share, reach, couple), held)
+
+
+def _upright(surface: Surface, normals: Array, held: Supports) -> Array:
+    """Normals (n_facets, 9, dim) of facets that lie on one side of a plane of symmetry alone lean out of it: by as much as
+    a round surface turns, and no more."""
+    used = surface.nodes >= 0
+    node, own = surface.nodes[used].astype(np.int64), normals[used]
+    moves = held.can_move(node, own)
+    length = np.linalg.norm(moves, axis=1)
+    lean = np.linalg.norm(own - moves, axis=1)
+    turn = np.zeros(len(surface.points))
+    np.maximum.at(turn, node, turning_within(surface, normals)[np.nonzero(used)[0]])
+    leans = (lean > 0.0) & (lean <= LEAN * turn[node]) & (length > 0.5)
+    own[leans] = moves[leans] / length[leans, None]
+    result = normals.copy()
+    result[used] = own
+    return result
