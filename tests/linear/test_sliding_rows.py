@@ -13,6 +13,7 @@ import abut
 from abut.contact.laws import Complementarity, Coulomb
 from abut.errors import SingularModelError
 from abut.linear import iterative
+from abut.linear.choice import chosen
 from abut.linear.iterative import Iterative
 from abut.linear.saddle_point import newton_step
 from abut.linear.sliding_rows import reduced
@@ -155,3 +156,11 @@ def test_a_motion_that_nothing_holds() -> None:
         iterative.require_held(motions, held, np.array([1.0, 0.1, 1.0, 1.0]), 1.0)
     with pytest.raises(SingularModelError):
         iterative.require_held(motions, np.zeros((2, 2)), np.array([1.0, 0.0, 1.0, 1.0]), 1.0)
+
+
+def test_auto_takes_multigrid_for_large_models_with_friction() -> None:
+    problem = assembled(rubbed())
+    large = {1: problem.n_free, 2: problem.n_free}
+    for size, expected in ((0, "amg"), (1, "direct")):
+        sizes = {degree: own + size for degree, own in large.items()}
+        assert chosen("auto", problem.n_free, problem.pairs, problem.model.mesh, False, sizes) == expected
