@@ -14,9 +14,11 @@ import pytest
 import abut
 from abut import write
 from abut.cli.progress import Progress
+from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.examine import check
 from abut.errors import InputError
 from abut.job import load_job
+from abut.output.restart import description, load_steps, save_step
 from abut.solution.grids import contact_grid
 from models.decks import BRICKS, PAIR, load
 from models.friction import FRICTION, Hooke, on_a_slope, pushed
@@ -212,3 +214,44 @@ def test_a_step_that_does_not_converge_is_halved(monkeypatch: pytest.MonkeyPatch
         assert np.nanmax(np.abs(slips[0] - slips[1])) < 0.02 * 0.05  # paths differ where stick turns into slip
         assert one.energy.error <= one.energy.limit
     assert all(check.passed for check in few.certificate)
+
+
+def test_restart_after_a_step_in_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """All of the results, those of the steps done before among them."""
+    monkeypatch.setattr("abut.nonlinear.friction.search", lambda *_: None)
+    model = pushed(far=0.05)
+    model = replace(model, solve=abut.SolveOptions(times=model.solve.times, max_iterations=2))
+    named = description(model)
+    whole = abut.solve(model, on_step=lambda _, saved: save_step(tmp_path, named, saved))
+    for late in sorted((tmp_path / "restart").glob("*.npz"))[3:]:
+        late.unlink()
+    done = load_steps(tmp_path, named)
+    assert any(saved.parts for saved in done)
+    again = abut.solve(model, resume=done)
+    assert len(again.steps) == 5
+    assert np.array_equal(whole.displacement, again.displacement)
+    for one, other in zip(whole.steps, again.steps):
+        assert one.iterations == other.iterations or one.number > 3  # of the others the seconds differ
+        mine, its = one.contacts[0].friction, other.contacts[0].friction
+        assert np.array_equal(mine.slip, its.slip, equal_nan=True)
+        assert np.array_equal(mine.total_slip, its.total_slip, equal_nan=True)
+        assert mine.work == its.work
+        assert one.energy == other.energy
+
+
+def test_giving_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One iteration is never enough: what has converged is kept, the best state of the last attempt follows it, and nodes
+    are named that have not settled."""
+    model = pushed(far=0.05)
+    asked = replace(model, solve=abut.SolveOptions(times=model.solve.times, max_iterations=1))
+    solution = abut.solve(asked)
+    assert not solution.converged
+    *before, last = solution.steps
+    assert all(step.converged for step in before)
+    assert np.abs(last.displacement).max() < 0.2  # four times the push
+    (place,) = unsettled(last)
+    assert re.match(r"contact 'upper.bottom-lower.top': node \d+ at \(.*\) is (open|sticking) and", str(place))
+    assert set(place.nodes) <= set(last.contacts[0].contactor.node_ids)
+    (remedy,) = remedies(solution)
+    assert remedy.action == "solve.max_iterations = 50"
+    assert abut.solve(replace(asked, solve=replace(asked.solve, max_iterations=50))).converged

@@ -20,6 +20,8 @@ CLOSE = 1.0  # difference between gaps and what they are to be, over the largest
 LESS = 0.3  # of the dilatancy that is left by an iteration that close
 NONE = 1e-3  # dilatancy that is none
 STUCK, SHORT = 4, 0.05  # iterations in a row whose steps are shorter than that
+GONE = 1e-12  # of the largest pressure over that of the start, from which down nothing is pressed
+ROUNDING = 1e-9  # of forces over those that would hold a node where it was
 FLOOR = 1e-14  # of the mean product over the largest pressure squared
 
 
@@ -43,7 +45,7 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
     here = begin(programme, state, manner)
     before = np.where(programme.solver.system.tied, CLOSED, OPEN)
     few = max(int(FEW * len(programme.normal)), 2)
-    short = 0
+    short, first = 0, np.abs(here.state.multipliers).max()
     for _ in range(limit):
         clock = time.perf_counter()
         here = iterate(near(programme, here), manner)
@@ -58,6 +60,8 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
         close = at.missed <= CLOSE * largest
         if close:
             here = replace(here, dilatancy=LESS * here.dilatancy if here.dilatancy > NONE else 0.0)
+        if np.abs(here.state.multipliers).max() < GONE * first:
+            return _apart(course, programme, now)
         if close and changed <= few and not here.dilatancy:
             try:
                 found = newton(course, now, NEWTON, patience=1)
@@ -69,3 +73,16 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
         if short >= STUCK or at.mean < FLOOR * largest**2:
             return None
     return None
+
+
+def _apart(course: Course, programme: Programme, state: State) -> Found | None:
+    """A state in which nothing touches, if it is one: where bodies are then makes no difference."""
+    clock, system = time.perf_counter(), programme.solver.system
+    state = replace(state, multipliers=np.zeros_like(state.multipliers), status=np.zeros_like(state.status))
+    size = system.unit * float(np.abs(state.unknowns).max(initial=0.0))
+    if system.tied.any() or system.gap(state)[programme.normal].min() < 0.0:
+        return None
+    if np.abs(system.unbalanced(state)).max(initial=0.0) > ROUNDING * size:
+        return None
+    course.add(state, 0, clock)
+    return course.found(state)

@@ -45,7 +45,8 @@ class SlipPoints:
         width = MAX_FACET_NODES
         column = width * at.facet[:, None] + np.arange(width)
         row = np.broadcast_to(np.arange(n)[:, None], column.shape)
-        pressure = np.asarray(at.pressure[row.ravel(), column.ravel()]).reshape(column.shape)
+        values = at.pressure[row.ravel(), column.ravel()] if column.size else 0.0  # SciPy takes no empty index
+        pressure = np.broadcast_to(np.asarray(values).ravel(), column.size).reshape(column.shape)
         return cls(
             at.facet, at.target_facet, at.weight, pressure,
             _picked(shapes, contactor.nodes[at.facet]), -_picked(shapes, target.nodes[at.target_facet]),
