@@ -9,8 +9,8 @@ from abut.solution import Check, ContactResult, Energy, Step
 
 
 def whole(parts: Sequence[Step]) -> Step:
-    """The step at the end of the last of its parts: what happened within it is added up, and every check is that of the worst
-    part."""
+    """The step at the end of the last of its parts: what happened within it is added up, and every check is that of the
+    worst part."""
     last = parts[-1]
     if len(parts) == 1:
         return last

@@ -41,8 +41,8 @@ class Manner:
 
 @dataclass(frozen=True)
 class Programme:
-    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap per
-    pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none; idle:
+    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
+    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none; idle:
     numbers of tractions without friction."""
 
     solver: Prepared
@@ -59,11 +59,11 @@ class Programme:
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
             if not pair.tied:
-                own = np.full((len(pair.space), width), -1)
+                beside = np.full((len(pair.space), width), -1)
                 if pair.frictional:
-                    own = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
+                    beside = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
                 normal.append(first + np.arange(len(pair.space)))
-                along.append(own)
+                along.append(beside)
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
         own = cls(solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver))

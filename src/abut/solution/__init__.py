@@ -8,5 +8,6 @@ from abut.solution.state import History, Largest, State
 
 __all__ = [
     "Check", "ContactResult", "Energy", "Flips", "FrictionResult", "History", "Iteration", "Largest", "Observer", "OnStep",
-    "Phase", "PressureStatistics", "ProbeResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
+    "Phase", "PressureStatistics", "ProbeResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State",
+    "Step",
 ]  # fmt: skip
