@@ -77,22 +77,26 @@ struct Hyperelastic {
   }
 
 private:
-  // Newton's method on the logarithm of the stretch out of the plane, whose strain is written.
+  // The strain out of the plane that leaves no stress there, by Newton's method on the logarithm of the stretch; that
+  // of Saint Venant and Kirchhoff is linear. False where there is none.
   bool find_thickness(double first, double mu, double *strain, double *stress, Dense &result) const {
     constexpr int Z = 2;
-    double &c = result.c[Z * STRAINS + Z];
-    double log = -first / (first + 2 * mu) * (strain[0] + strain[1]);
-    log = std::max(std::min(log, 0.5), -0.5);
+    if (law == Law::SAINT_VENANT_KIRCHHOFF) {
+      strain[Z] = -first / (first + 2 * mu) * (strain[0] + strain[1]);
+      respond(first, mu, strain, stress, result);
+      return strain[Z] > -0.5 && condense(stress, result);
+    }
+    const double area = 2 * (strain[0] + strain[1]) + 4 * strain[0] * strain[1] - strain[3] * strain[3];
+    double log = -first / (first + 2 * mu) * std::log1p(area) / 2;
     for (int i = 0; i < LIMIT; ++i) {
       strain[Z] = std::expm1(2 * log) / 2;
       respond(first, mu, strain, stress, result);
-      const double square = 1 + 2 * strain[Z]; // change of the strain by that of the logarithm
-      if (std::abs(stress[Z]) <= ROUNDING * (std::abs(first) + mu) || (i > 8 && flat(stress[Z], first, mu)))
+      // The Kirchhoff stress, which grows with the stretch where the second of Piola and Kirchhoff may not.
+      const double square = 1 + 2 * strain[Z], left = square * stress[Z];
+      if (std::abs(left) <= ROUNDING * (std::abs(first) + mu) || (i > 8 && flat(left, first, mu)))
         return condense(stress, result);
-      const double slope = c * square;
-      if (!(slope > 0))
-        return false;
-      log -= std::max(std::min(stress[Z] / slope, 0.5), -0.5);
+      const double slope = square * (square * result.c[Z * STRAINS + Z] + 2 * stress[Z]);
+      log -= slope > 0 ? std::max(std::min(left / slope, 0.5), -0.5) : std::copysign(0.5, left);
     }
     return false;
   }

@@ -3,9 +3,9 @@
 As a script, python bench/contact/calculix.py CASE DOFS KIND FOLDER writes FOLDER/deck.inp; KIND is mortar or penalty.
 
 Contact is hard, which CalculiX takes, in both kinds, for a linear pressure over penetration with a stiffness of 50 times
-Young's modulus (per mm here; it says so in its output): its own default, not ours. With friction it asks for the stiffness of
-what sticks: a tenth of that, as its manual advises. Slave is abut's contactor. One increment, which CalculiX may cut; all
-else is left at its default.
+Young's modulus (per mm here; it says so in its output): its own default, not ours. With friction it asks for a stiffness of
+what sticks: a tenth of that, as its manual advises. Slave is abut's contactor. One increment, which CalculiX may cut;
+the rest is left at its default.
 """
 
 from __future__ import annotations

@@ -12,7 +12,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 import abut
 from models.parts_rubbing import PARTS
 from models.search import ball, beam, layer, line, pin, solid_beam
-
 from page import DOCS, write_table
 
 PAGE = DOCS / "verification" / "search.md"

@@ -184,3 +184,22 @@ def test_inside_out(kind: str, plane: str | None, rule: str) -> None:
     assert found.value.cell == 0
     with pytest.raises(Inverted):
         respond_finite(solids, np.full(u.shape, np.nan))
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49999])
+@pytest.mark.parametrize("name", VOLUMETRIC)
+def test_thickness_is_found_at_any_stretch(name: str, poisson: float) -> None:
+    """Neo-Hookean materials have exactly one stretch without stress out of the plane."""
+    solids = body("quad4", "stress", "full", NeoHooke(1.0, poisson, volumetric=name))
+    rng = np.random.default_rng(9)
+    for _ in range(200):
+        f = np.diag(np.exp(rng.uniform(-1.5, 1.5, 2))) @ (np.eye(2) + 0.5 * rng.standard_normal((2, 2)))
+        f[:, 0] *= np.sign(np.linalg.det(f))
+        assert not cauchy_stress(solids, solids.points @ (f - np.eye(2)).T)[:, 2].any()
+
+
+def test_no_thickness() -> None:
+    """Saint Venant and Kirchhoff's material would have to become thinner than nothing."""
+    solids = body("quad4", "stress", "full", LinearElastic(1.0, 0.3))
+    with pytest.raises(Inverted, match="has no stretch out of the plane without stress there \\(det F = 4\\)"):
+        respond_finite(solids, solids.points)

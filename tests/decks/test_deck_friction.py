@@ -49,6 +49,11 @@ def test_forms(tmp_path: Path, card: str, expected: object) -> None:
     soft = any(word in card for word in ("1.E4", "1.E7", "SLIP"))
     assert sum("stick slope is left out" in note for note in job.notes) == soft
     assert sum("taken as rough" in note for note in job.notes) == ("1.E20" in card)
+    assert sum("each step of the deck is one load step" in note for note in job.notes) == 1
+
+
+def test_no_word_of_increments_without_friction(tmp_path: Path) -> None:
+    assert not [note for note in load(tmp_path, deck("*FRICTION\n0.\n")).notes if "friction" in note]
 
 
 def test_interactions_as_abaqus_cae_writes_them(tmp_path: Path) -> None:

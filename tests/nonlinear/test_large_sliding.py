@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.contact.coupling import CouplingOptions, couple
-from abut.errors import InputError
+from abut.errors import InputError, SingularModelError
 from abut.linear.choice import Direct
 from abut.mesh import make
 from abut.nonlinear.iteration import advance
@@ -295,3 +295,31 @@ def test_refused(what: dict[str, Any], words: str) -> None:
     model = arched(0.0)
     with pytest.raises(InputError, match=words):
         abut.solve(replace(model, contacts=[replace(model.contacts[0], **what)]))
+
+
+def test_held_by_friction_alone() -> None:
+    """A block that rests on another one by a pressure, and is dragged by less than friction bears: it sticks, and
+    the traction is the drag's; by more, and the run says what it is that moves."""
+    first, then = (
+        abut.Amplitude(((0.0, 0.0), (0.3, 1.0), (1.0, 1.0))),
+        abut.Amplitude(((0.0, 0.0), (0.3, 0.0), (1.0, 1.0))),
+    )
+
+    def model(drag: float) -> abut.Model:
+        lower, upper = make.rectangle([0, 3], [0, 1], cells=[7, 2]), make.rectangle([0.5, 1.5], [1, 2], cells=[4, 3])
+        return abut.Model(
+            make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
+            solids=[abut.Solid(name, abut.LinearElastic(100.0, 0.3)) for name in ("lower", "upper")],
+            supports=[abut.Support("lower.bottom", x=0, y=0)],
+            loads=[
+                abut.Pressure("upper.top", 3.0, amplitude=first, follows=False),
+                abut.Traction("upper.top", [drag, 0.0], amplitude=then),
+            ],
+            contacts=[abut.Contact("upper.bottom", "lower.top", friction=0.3)],
+        )  # fmt: skip
+
+    solution = abut.solve(model(0.3))
+    assert solution.converged
+    assert solution.contacts[0].force[0] == pytest.approx(-0.3, rel=1e-8)
+    with pytest.raises(SingularModelError, match="body 'upper'"):
+        abut.solve(model(1.2))

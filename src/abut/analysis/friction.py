@@ -178,7 +178,7 @@ def friction_checks(
     faint = FAINT * largest * float(way[own != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
     most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
     work = -(power * pair.space.weight)[own != OPEN]
-    unit = max(float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
+    unit = max(1e-300, float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
     values = (
         ("friction cone", max(float((size - bound).max(initial=0.0)), 0.0) / largest, CONE,
          "tangential traction beyond the coefficient times the pressure, over the largest pressure"),

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from abut.decks.cards.record import Deck, Friction
 from abut.decks.cards.time_histories import RAMP, ends
-from abut.model import Amplitude
+from abut.model import Amplitude, Contact
 from abut.types import Json
+
+
+def path_notes(contacts: Sequence[Contact]) -> list[str]:
+    """A note where the result depends on increments, which are not read."""
+    if not any(contact.frictional for contact in contacts):
+        return []
+    return [
+        "friction: each step of the deck is one load step, whatever its increments; where the way of the loads matters "
+        "within a step, convert the deck and give solve.times"
+    ]
 
 
 def friction_options(deck: Deck, friction: Friction) -> Json:

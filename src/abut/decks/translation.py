@@ -19,7 +19,7 @@ from abut.decks.cards.pretension import cut
 from abut.decks.cards.reasons import DeckError, Reasons
 from abut.decks.cards.record import Deck, GeneralContact, Numbers, Pair
 from abut.decks.cards.time_histories import Course, combine, courses, scaled, times, zero
-from abut.decks.friction import friction_options
+from abut.decks.friction import friction_options, path_notes
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
@@ -115,6 +115,7 @@ def translate(deck: Deck) -> Translation:
     if deck.general is not None:
         mesh, found = _general(deck, deck.general, mesh, solids, contacts, notes)
         contacts += found
+    notes += path_notes(contacts)
     model = Model(
         mesh,
         solids=solids,

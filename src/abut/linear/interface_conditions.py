@@ -77,7 +77,7 @@ def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Condit
 
 
 def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
-    """That of pull S push^T - corner, theory (V25): what is closed or sticks component by component, springs across the slip
+    """That of pull S push^T - corner, theory (V24): what is closed or sticks component by component, springs across the slip
     by themselves; where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of pull S push^T."""
     m = int(few.single.sum())
     if few.corner[:m].data.any():

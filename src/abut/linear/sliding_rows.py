@@ -1,6 +1,6 @@
 """Rows of Coulomb's law with slip eliminated: what slips knows its traction from the pressure, and its row from the gap's.
 
-In the row of a function that slips, theory (R5), the gap is that of its normal row: subtracted, what is left along the slip
+In the row of a function that slips, theory (V23), the gap is that of its normal row: subtracted, what is left along the slip
 holds multipliers alone, and across it a spring. Pressures, tractions of what sticks and those across the slip remain.
 """
 

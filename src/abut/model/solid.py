@@ -15,8 +15,9 @@ class Solid:
     """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
 
     ``integration`` of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
-    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5).
-    ``material``: ``LinearElastic``, or one of your own (``abut.materials.material.OwnMaterial``)."""
+    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under
+    finite deformation, theory (D7)).
+    ``material``: ``LinearElastic``, ``NeoHooke``, or one of your own (``abut.materials.material.OwnMaterial``)."""
 
     body: str
     material: Material

@@ -42,8 +42,8 @@ class Manner:
 @dataclass(frozen=True)
 class Programme:
     """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
-    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none; idle:
-    numbers of tractions without friction."""
+    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none;
+    idle: numbers of tractions without friction."""
 
     solver: Prepared
     normal: Numbers

@@ -45,7 +45,8 @@ class SlipPoints:
         width = MAX_FACET_NODES
         column = width * at.facet[:, None] + np.arange(width)
         row = np.broadcast_to(np.arange(n)[:, None], column.shape)
-        pressure = np.asarray(at.pressure[row.ravel(), column.ravel()]).reshape(column.shape)
+        values = at.pressure[row.ravel(), column.ravel()] if column.size else 0.0  # SciPy takes no empty index
+        pressure = np.broadcast_to(np.asarray(values).ravel(), column.size).reshape(column.shape)
         return cls(
             at.facet, at.target_facet, at.weight, pressure,
             _picked(shapes, contactor.nodes[at.facet]), -_picked(shapes, target.nodes[at.target_facet]),
@@ -80,8 +81,8 @@ class SlipNow:
 
 
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Smoothing | None = None) -> SlipNow:
-    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
-    tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
+    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1),
+    with tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
     x, dim = contactor.points, contactor.dim
     mine, its = contactor.nodes[points.facet], target.nodes[points.target_facet]
     difference = _shapes(points.own, mine, len(x)) - _shapes(points.other, its, len(x))

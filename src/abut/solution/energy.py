@@ -14,7 +14,8 @@ class Energy:
     friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
-    the bodies, where interference grows or gaps close or open within the step; stored: change of the strain energy;
+    the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;
+    stored: change of the strain energy;
     friction: that friction takes with the traction at the end of the step, as ``FrictionResult.work``; stepping: what the
     work of a traction that grows in proportion over the step differs from that, of second order in the step.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
