@@ -2,7 +2,7 @@
 
 Each function of a contact has a pressure and a gap with a product, as in ``interior_point``, and with friction two vectors
 in second-order cones: the bound and the traction (mu p, t), and beside it (|v|, v), both of which the solution puts on the
-boundary where it slips, and the second to zero where it sticks. Theory: docs/theory/friction.md, "Search"."""
+boundary where it slips, and the second to zero where it sticks: theory (R18)."""
 
 from __future__ import annotations
 
@@ -66,7 +66,9 @@ class Programme:
                 along.append(beside)
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
-        own = cls(solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver))
+        own = cls(
+            solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver)
+        )
         holds = own.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
         idle = tangents[~holds]
