@@ -53,7 +53,7 @@ class Course:
         seconds, missed = time.perf_counter() - clock, self._missed(state)
         largest = largest_pressure(state, self.increment)
         row = report(self.solver.system, state, self.increment, len(self.done) + 1, changed, np.zeros(1), seconds)
-        row = replace(row, contact_residual=missed / largest)
+        row = replace(row, contact_residual=float(missed / largest))
         self.done.append(row)
         self.observe(row)
         self.recent = [*self.recent[1 - RECENT :], state.status]
