@@ -274,9 +274,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, held)
 
 
-def _with_friction(
-    model: Model, own: Pair, operators: SlipOperators, normals: NDArray[np.float64], held: Supports
-) -> Pair:
+def _with_friction(model: Model, own: Pair, operators: SlipOperators, normals: Array, held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
     sides = FrictionSides(own.contactor, own.target, normals, reach_of(held, own.contactor, own.target))
     made = friction_rows(sides, own.space, own.rows, operators, held)
@@ -337,15 +335,14 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    if own.slip is None:
+    if own.slip is None or own.slip.at_facets is None:
         return changed
-    assert own.slip.at_facets is not None
     return _with_friction(model, changed, own.slip.operators, own.slip.at_facets, held)
 
 
 def _couple(
     contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple,
-    normals: NDArray[np.float64] | None,
+    normals: Array | None,
 ) -> tuple[Surface, Coupling, PressureSpace]:  # fmt: skip
     """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None
