@@ -2,7 +2,7 @@
 
 Each function of a contact has a pressure and a gap with a product, as in ``interior_point``, and with friction two vectors
 in second-order cones: the bound and the traction (mu p, t), and beside it (|v|, v), both of which the solution puts on the
-boundary where it slips, and the second to zero where it sticks: theory (R18)."""
+boundary where it slips, and the second to zero where it sticks: theory (R8)."""
 
 from __future__ import annotations
 

@@ -147,7 +147,7 @@ def coulomb(pair: Pair, system: Linearised) -> Coulomb:
 
 
 def next_status(system: Linearised, state: State, increment: Increment) -> Status:
-    """The status that the laws ask for, theory (R3), (R4), of each multiplier. What differs by rounding alone stays."""
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
