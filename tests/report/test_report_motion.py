@@ -1,4 +1,4 @@
-"""What the report shows of motions: force over displacement, the steps played, bodies where large displacements take them."""
+"""What the report shows of motions: force over displacement, the steps played, large displacements."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ def stretched(far: float = 1.0, kinematics: str = "finite", steps: int = 4) -> a
 def swung(cell: str) -> abut.Model:
     """A lever turned by a right angle about its end, with a block that a pressure holds on it."""
     flat = cell.startswith("quad")
+    sides = ("block.bottom", "lever.top") if flat else ("block.front", "lever.back")
     box = make.rectangle if flat else make.box
     lever = box([0, 4], [0, 1], *([] if flat else [[0, 1]]), cells=[4, 1] if flat else [4, 1, 1], cell=cell)
     block = box([2, 3], [1, 2], *([] if flat else [[0, 1]]), cells=[1, 1] if flat else [1, 1, 1], cell=cell)
@@ -44,7 +45,7 @@ def swung(cell: str) -> abut.Model:
         solids=[abut.Solid("block", abut.LinearElastic(YOUNG, 0.3))],
         rigid=[abut.Rigid("lever", reference=(0.0,) * (2 if flat else 3), x=0, y=0, rz=np.pi / 2)
                if flat else abut.Rigid("lever", reference=(0.0,) * 3, x=0, y=0, z=0, rx=0, ry=0, rz=np.pi / 2)],
-        contacts=[abut.Contact("block." + ("bottom" if flat else "front"), "lever." + ("top" if flat else "back"), kind="tied")],
+        contacts=[abut.Contact(*sides, kind="tied")],
         kinematics="finite",
         solve=abut.SolveOptions(steps=4),
     )  # fmt: skip
@@ -100,7 +101,10 @@ PLAY = """<script>(() => {
     let worst = 0;
     for (let t = 0; t < part.map.length; t += 3) {
       const x = [0, 1, 2].map((k) => [0, 1, 2].map((c) => place[3 * (t + k) + c]));
-      for (const k of [1, 2]) worst = Math.max(worst, Math.abs([0, 1, 2].reduce((sum, c) => sum + (x[k][c] - x[0][c]) * normal[3 * t + c], 0)));
+      for (const k of [1, 2]) {
+        const along = [0, 1, 2].reduce((sum, c) => sum + (x[k][c] - x[0][c]) * normal[3 * t + c], 0);
+        worst = Math.max(worst, Math.abs(along));
+      }
     }
     data.skew = worst;
   }

@@ -81,14 +81,10 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
     """At most three pieces of advice, the most likely first, for a run that did not converge, or whose certificate finds
     surfaces that overlap; else none. Only such as have been seen to help: the search for the contact status converges
     independently of the mesh, the load steps and the choice of the contactor."""
-    found = (
-        _by_overlap(solution)
-        if solution.converged
-        else (
-            *_by_deformation(solution),
-            *_by_law(solution),
-            *_by_limit(solution),
-        )
+    found = _by_overlap(solution) if solution.converged else (
+        *_by_deformation(solution),
+        *_by_law(solution),
+        *_by_limit(solution),
     )
     return tuple(found)[:COUNT]
 

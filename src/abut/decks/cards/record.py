@@ -204,7 +204,8 @@ class Amplitude:
 @dataclass(frozen=True)
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
-    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a contact pair asks for it."""
+    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
+    contact pair asks for it."""
 
     path: str
     nodes: Numbers
