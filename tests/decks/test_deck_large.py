@@ -38,8 +38,9 @@ def beam(material: str, load: str) -> str:
     foot = "\n".join(f"{n}," for (x, _, _), n in number.items() if x == 0)
     return "\n".join(
         ["*NODE, NSET=ALL", nodes, "*ELEMENT, TYPE=C3D20, ELSET=E", *elements, "*NSET, NSET=FOOT", foot,
-         "*MATERIAL, NAME=M",
-         material, "*SOLID SECTION, ELSET=E, MATERIAL=M", "*BOUNDARY", "FOOT, 1, 3", "*STEP, NLGEOM, INC=200", "*STATIC", "0.25, 1.", "*CONTROLS, PARAMETERS=FIELD", "1.E-8, 1.E-7", load, "*NODE PRINT, NSET=ALL", "U", "*END STEP"]
+         "*MATERIAL, NAME=M", material, "*SOLID SECTION, ELSET=E, MATERIAL=M", "*BOUNDARY", "FOOT, 1, 3",
+         "*STEP, NLGEOM, INC=200", "*STATIC", "0.25, 1.", "*CONTROLS, PARAMETERS=FIELD", "1.E-8, 1.E-7", load,
+         "*NODE PRINT, NSET=ALL", "U", "*END STEP"]
     )  # fmt: skip
 
 
