@@ -149,3 +149,15 @@ def test_a_converted_deck_keeps_what_nlgeom_means(tmp_path: Path) -> None:
     again, first = load_job(tmp_path / "job.toml").model, load_job(deck).model
     assert (again.kinematics, again.solve) == (first.kinematics, first.solve)
     assert again.solids[0].material == first.solids[0].material
+
+
+def test_a_step_that_cannot_begin_says_why(tmp_path: Path) -> None:
+    """Equations hold all nodes of both surfaces level: of their four multipliers only the sum is known."""
+    level = "".join(
+        f"*EQUATION\n2\n{n}, 3, 1., {first}, 3, -1.\n" for first in (5, 11) for n in range(first + 1, first + 4)
+    )
+    model = load(tmp_path, LARGE.replace("*STEP", level + "*STEP")).model
+    with pytest.raises(
+        abut.errors.ConvergenceError, match="step 1 cannot be begun, however short: the direct solver failed"
+    ):
+        abut.solve(model)

@@ -13,7 +13,7 @@ from abut.analysis.linear_solvers import assembled_bodies, linear_solver, settin
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
-from abut.errors import SingularModelError
+from abut.errors import ConvergenceError, SingularModelError
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
@@ -165,6 +165,8 @@ class Run:
         if self.parts:
             attempt = replace(attempt, number=attempt.number + 1)
             self._keep()
+        if not attempt.iterations:  # there is no state to show
+            raise ConvergenceError(f"step {attempt.number} cannot be begun, however short: {attempt.reason}")
         self.steps.append(self._result(attempt))
         self.clock.mark("results")
         count = len(attempt.iterations)
