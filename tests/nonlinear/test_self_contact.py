@@ -58,6 +58,21 @@ def test_either_fold_may_be_the_contactor(pressed: Solution) -> None:
     assert np.abs(apart).max() < 0.25 * np.median(facet_sizes(pressed.contacts[0].contactor))
 
 
+def test_friction_between_folds() -> None:
+    """What slips carries the coefficient times the pressure; forces of both sides are told apart at common nodes."""
+    solution = abut.solve(accordion(PUSHED, sides=SIDES, friction=0.3))
+    assert solution.converged
+    pair = solution.contacts[0]
+    assert pair.friction is not None
+    checks = {check.name: check.value for check in solution.certificate}
+    assert checks["friction cone"] < 1e-6
+    assert checks["force balance"] < 1e-12
+    assert pair.friction.slipping_area > 0.0
+    assert np.allclose(pair.contactor_forces.sum(axis=0), -pair.target_forces.sum(axis=0), atol=1e-9)
+    assert np.allclose(pair.force, pair.contactor_forces.sum(axis=0), atol=1e-9)
+    assert -pair.force[0] > 30.0  # it is the normal force of two valleys nearly upright: 52 without friction
+
+
 def test_tangent_is_the_derivative(pressed: Solution) -> None:
     """Of balance and gaps in the folded state, as between two bodies."""
     problem, rng = finite(pressed.model), np.random.default_rng(5)
