@@ -12,7 +12,13 @@ from abut.benchmarks import BENCHMARKS, run
 from abut.benchmarks.finite_contact import _ironing
 
 
-@pytest.mark.parametrize("name", ["shallow-ironing", "crushed-ring"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "shallow-ironing", "crushed-ring", "gears", "die-drawn-hex8",
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-tet10", "die-drawn-hex20")),
+    ],
+)  # fmt: skip
 def test_known_answer(name: str) -> None:
     missed = [outcome for outcome in run(BENCHMARKS[name]) if not outcome.passed]
     assert missed == []

@@ -17,7 +17,7 @@ from abut.report.origin import quantities as known_quantities
 
 FOLDER = Path(__file__).parents[2] / "examples"
 JOBS = [path for path in sorted(FOLDER.rglob("*.toml")) if path.parent.name != "faulty"]  # those: test_check.py
-LONG = {"pin-lug", "hertz-sphere"}
+LONG = {"pin-lug", "hertz-sphere", "snap-joint"}
 
 
 @pytest.mark.parametrize(
@@ -34,13 +34,14 @@ def test_example_runs_and_balances(path: Path) -> None:
     step = solution.steps[-1]
     tied = [contact.name for contact in model.contacts if contact.kind == "tied"]
     check_expected(path, step)
-    size = max([np.abs(step.load).max(), *(np.abs(c.force).max() for c in step.contacts)])
+    sizes = ([np.abs(own.load).max(), *(np.abs(c.force).max() for c in own.contacts)] for own in solution.steps)
+    size = max(max(own) for own in sizes)  # of all steps: in the end nothing may be loaded any more
     if path.parent.name == "twisted-hub":
         size = max(np.abs(c.contactor_forces).sum() for c in step.contacts)
     balance = (step.load + step.reaction)[1 if step.axisymmetric else 0 :]  # round an axis, radial forces cancel
     assert np.abs(balance).max() < 1e-9 * size
     for contact in (own for own in step.contacts if own.name not in tied):
-        assert contact.pressure[np.isfinite(contact.pressure)].min() > -0.1 * contact.max_pressure
+        assert contact.pressure[np.isfinite(contact.pressure)].min() >= -0.1 * contact.max_pressure
     assert all(c.max_penetration < 1e-6 * np.ptp(c.contactor.points) for c in step.contacts)
 
 
@@ -58,6 +59,22 @@ def test_twisted_hub() -> None:
     assert slips == sorted(slips)
     assert slips[0] < 0.5 * contact.area
     assert all(check.passed for check in solution.certificate)
+
+
+@pytest.mark.long
+def test_snap_joint() -> None:
+    """At the largest force the hook slides up the straight side of its catch: forces are as on a wedge with Coulomb's friction,
+    tan(slope + angle of friction), but for what bends (2 %). Behind the peak the catch draws it in, and then lets go."""
+    solution = abut.solve(load_job(FOLDER / "snap-joint" / "job.toml").model)
+    along, up = np.array([step.contacts[0].force for step in solution.steps]).T
+    peak = int(np.argmin(along))
+    slope, friction = 1.1 / 1.8, 0.2
+    assert -along[peak] / up[peak] == pytest.approx((slope + friction) / (1.0 - friction * slope), rel=0.02)
+    assert along.max() > 0.2 * -along.min()
+    assert peak < int(np.argmax(along)) < len(along) - 1
+    for step in solution.steps:
+        friction_ = step.contacts[0].friction
+        assert friction_.force_by_area <= friction_.force_limit * (1.0 + 1e-9)
 
 
 def check_expected(path: Path, step: abut.solution.Step) -> None:

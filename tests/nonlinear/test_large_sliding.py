@@ -300,13 +300,16 @@ def test_refused(what: dict[str, Any], words: str) -> None:
 def test_held_by_friction_alone() -> None:
     """A block that rests on another one by a pressure, and is dragged by less than friction bears: it sticks, and
     the traction is the drag's; by more, and the run says what it is that moves."""
-    first, then = abut.Amplitude(((0.0, 0.0), (0.3, 1.0), (1.0, 1.0))), abut.Amplitude(((0.0, 0.0), (0.3, 0.0), (1.0, 1.0)))
+    first, then = (
+        abut.Amplitude(((0.0, 0.0), (0.3, 1.0), (1.0, 1.0))),
+        abut.Amplitude(((0.0, 0.0), (0.3, 0.0), (1.0, 1.0))),
+    )
 
     def model(drag: float) -> abut.Model:
         lower, upper = make.rectangle([0, 3], [0, 1], cells=[7, 2]), make.rectangle([0.5, 1.5], [1, 2], cells=[4, 3])
         return abut.Model(
             make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
-            solids=[abut.Solid("lower", abut.LinearElastic(100.0, 0.3)), abut.Solid("upper", abut.LinearElastic(100.0, 0.3))],
+            solids=[abut.Solid(name, abut.LinearElastic(100.0, 0.3)) for name in ("lower", "upper")],
             supports=[abut.Support("lower.bottom", x=0, y=0)],
             loads=[
                 abut.Pressure("upper.top", 3.0, amplitude=first, follows=False),

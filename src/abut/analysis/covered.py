@@ -19,9 +19,11 @@ from abut.solution.state import State
 Array = NDArray[np.float64]
 
 
-def covered(problem: FiniteProblem, system: Linearised, state: State, here: Array) -> tuple[Linearised, State]:
+def covered(
+    problem: FiniteProblem, system: Linearised, state: State, here: Array
+) -> tuple[Linearised, State, NDArray[np.bool_]]:
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
-    nothing is opposite to; weights are those of the part that is covered."""
+    nothing is opposite to, and which are left, (n,); weights are those of the part that is covered."""
     pairs, keeps, slips = [], [], state.history.of(CONTACTS)
     for pair, kind in zip(system.pairs, problem.moving):
         keep = np.ones(len(pair), dtype=bool)
@@ -39,7 +41,8 @@ def covered(problem: FiniteProblem, system: Linearised, state: State, here: Arra
         forgotten=None if system.forgotten is None else system.forgotten[keep],
     )  # fmt: skip
     history = state.history.with_term(CONTACTS, slips)
-    return smaller, replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
+    kept = replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
+    return smaller, kept, keep
 
 
 def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array) -> Pair:

@@ -36,7 +36,7 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    pressures: (n,) of each pair."""
+    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing."""
 
     problem: ContactProblem
     system: Linearised
@@ -48,6 +48,7 @@ class _End:
     loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
+    cycling: NDArray[np.bool_]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -86,7 +87,7 @@ def step_result(
         load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
-        cycling=_cycling(system, attempt),
+        cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
         rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
@@ -103,14 +104,15 @@ def step_result(
 
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
     """Forces and pressures of the state that a load step ended with."""
-    bodies, state = assembled.bodies, attempt.state
+    bodies, state, cycling = assembled.bodies, attempt.state, attempt.cycling
     problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
     displacement = problem.displacement(state)
     if not problem.model.finite:  # small turns would strain it
         displacement = problem.springs.without_motions(displacement)
     system = problem.linearise(state, state)
     if isinstance(problem, FiniteProblem):
-        system, state = covered(problem, system, state, displacement)
+        system, state, kept = covered(problem, system, state, displacement)
+        cycling = cycling[kept]
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -123,7 +125,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
             following -= term.evaluate(motion, motion).force
     loads = assembled.loaded.forces @ system.factors + following
     reaction = internal - loads - contact_force
-    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following)
+    return _End(problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling)
 
 
 def _energy(
@@ -180,10 +182,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     )
 
 
-def _cycling(system: Linearised, attempt: Attempt) -> dict[str, NDArray[np.int64]]:
+def _cycling(system: Linearised, changing: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
     """The facets of each contact whose multipliers keep changing."""
     cycling = {}
-    for pair, own in zip(system.pairs, system.split(attempt.cycling)):
+    for pair, own in zip(system.pairs, system.split(changing)):
         if own.any():
             rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)

@@ -8,6 +8,8 @@ from abut.benchmarks import (
     convergence,
     finite_beams,
     finite_contact,
+    finite_contact_3d,
+    finite_gears,
     finite_rubber,
     finite_uniform,
     fits,
@@ -41,5 +43,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_beams.BENCHMARKS,
         *finite_rubber.BENCHMARKS,
         *finite_contact.BENCHMARKS,
+        *finite_contact_3d.BENCHMARKS,
+        *finite_gears.BENCHMARKS,
     )
 }

@@ -74,4 +74,6 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
     if found.converged:
         system = step.problem.linearise(step.before, state)
         state = step.problem.accepted(step.before, replace(state, largest=largest_of(system, state, step.increment)))
-    return Attempt(step.increment.number, state, found.converged, found.iterations, none, none, time, step.failed)
+    return Attempt(
+        step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed
+    )

@@ -66,21 +66,24 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     prescribed further."""
     none = np.zeros(len(step.before.status), dtype=bool)
     try:
-        state = _newton(step, guess, time)
+        here = _newton(step, guess, time)
     except (SingularModelError, Unsound) as reason:
         step.failed = str(reason)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
-    return Found(state, tuple(step.done), not step.failed, none, friction_laws)
+    return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
 
 
-def _newton(step: Step, guess: State | None, time: float) -> State:
+def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
     here = _balance(step, _carried(step, time) if guess is None else guess)
     if guess is None:
         begun = _report(step, here, begun)
     while guess is not None or not _balanced(here, before):
         if len(step.done) >= step.limit:
-            step.failed = f"{step.limit} iterations"
+            step.failed = (
+                f"{step.limit} iterations were not enough: {here.force:.1e} of the forces, {here.law:.1e} of the laws, and "
+                f"{int(here.changed.sum())} multipliers that change"
+            )
             break
         there = _balance(step, advance(step.solver.prepare(here.system, None), here.state, here.laws))
         if step.careful:
@@ -90,7 +93,7 @@ def _newton(step: Step, guess: State | None, time: float) -> State:
             break
         before, here, guess = here.error, there, None
         begun = _report(step, here, begun)
-    return here.state
+    return here
 
 
 def _balanced(here: Balance, before: float) -> bool:

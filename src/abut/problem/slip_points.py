@@ -81,8 +81,8 @@ class SlipNow:
 
 
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, across: Smoothing | None = None) -> SlipNow:
-    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1), with
-    tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
+    """Of theory (G6), at the positions of two surfaces over one array of points: sum w H (x_C - x_T) . tau in 2D (c = 1),
+    with tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square to the normal."""
     x, dim = contactor.points, contactor.dim
     mine, its = contactor.nodes[points.facet], target.nodes[points.target_facet]
     difference = _shapes(points.own, mine, len(x)) - _shapes(points.other, its, len(x))

@@ -21,6 +21,7 @@ from abut.problem.friction_rows import Slip
 from abut.problem.held_multipliers import without_held
 from abut.problem.scales import scales
 
+
 def whole_pairs(model: Model, held: Supports) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
 

@@ -1,0 +1,47 @@
+"""Runs what sliding.py wrote, under a Python that has Kratos; knows nothing of abut. Prints one line of JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import KratosMultiphysics
+import KratosMultiphysics.ConstitutiveLawsApplication
+import KratosMultiphysics.ContactStructuralMechanicsApplication
+from KratosMultiphysics.StructuralMechanicsApplication import structural_mechanics_analysis
+
+
+def run(folder: Path) -> dict[str, Any]:
+    """Processor time, iterations and the force on the slab of the run described in a folder."""
+    KratosMultiphysics.Logger.GetDefaultOutput().SetSeverity(KratosMultiphysics.Logger.Severity.WARNING)
+    model_ = KratosMultiphysics.Model()
+    os.chdir(folder)
+    text = KratosMultiphysics.Parameters(Path("parameters.json").read_text(encoding="ascii"))
+    analysis = structural_mechanics_analysis.StructuralMechanicsAnalysis(model_, text)
+    start = time.process_time()
+    analysis.Initialize()
+    solver, rows, force = analysis._GetSolver(), [], []
+    while analysis.KeepAdvancingSolutionLoop():
+        analysis.time = analysis._AdvanceTime()
+        analysis.InitializeSolutionStep()
+        solver.Predict()
+        good = bool(solver.SolveSolutionStep())
+        analysis.FinalizeSolutionStep()
+        rows.append((model_["Structure"].ProcessInfo[KratosMultiphysics.NL_ITERATION_NUMBER], good))
+        nodes = model_["Structure.support_0"].Nodes
+        force = [
+            sum(node.GetSolutionStepValue(one) for node in nodes)
+            for one in (KratosMultiphysics.REACTION_X, KratosMultiphysics.REACTION_Z)
+        ]
+    return {
+        "cpu": time.process_time() - start, "iterations": sum(row[0] for row in rows), "steps": len(rows),
+        "unconverged": sum(not row[1] for row in rows), "force": force,
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    print(json.dumps(run(Path(sys.argv[1]))))
