@@ -119,7 +119,7 @@ def test_a_body_is_not_in_contact_with_its_far_side() -> None:
 
 
 def test_small_displacements_do_not_fold() -> None:
-    with pytest.raises(abut.InputError, match='the same surface .* kinematics = "finite"'):
+    with pytest.raises(abut.InputError, match=r'the same surface .* kinematics = "finite"'):
         replace(accordion(), kinematics="small", solids=[abut.Solid("strip", abut.LinearElastic(1.0, 0.3))])
 
 
