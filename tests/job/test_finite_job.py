@@ -133,5 +133,5 @@ def test_every_two_bodies_may_meet(tmp_path: Path) -> None:
     job.write_text(JOB + own + "[[contacts]]\nauto = true\n")
     assert [c.name for c in load_job(job).model.contacts[1:]] == ["strip-strip", "tool-tool"]
     job.write_text(JOB + "[[contacts]]\nauto = true\nreach = 1.0\n")
-    with pytest.raises(InputError, match="contacts\\[0\\].reach: with kinematics"):
+    with pytest.raises(InputError, match=r"contacts\[0\]\.reach: with kinematics"):
         load_job(job)

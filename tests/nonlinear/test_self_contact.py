@@ -12,6 +12,7 @@ import abut
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.geometry import facet_sizes
 from abut.mesh import make
+from abut.mesh.make.block import grid
 from abut.mesh.mesh import Mesh
 from abut.model import Model
 from abut.problem.current import Current
@@ -116,6 +117,23 @@ def test_a_body_is_not_in_contact_with_its_far_side() -> None:
     assert pairs
     assert not any((other, own) in pairs for own, other in pairs)
     assert (at.gap > 0.0).all()
+
+
+def test_folds_in_space() -> None:
+    """A folded plate, 3D: of every two facets in a valley one sees the other, along the whole valley, and no gap is
+    through the plate."""
+    lines = [np.linspace(0.0, 1.0, 31), np.linspace(-0.5, 0.5, 2) * THICKNESS, np.linspace(0.0, 1.0, 3)]
+    mesh = grid(lines, "hex8", lambda x: np.column_stack([folded(x[:, :2]), x[:, 2]]))
+    model = Model(
+        mesh, [abut.Solid("body", abut.NeoHooke(young=1.0, poisson=0.3))], [abut.Support("left", x=0, y=0, z=0)],
+        contacts=[abut.Contact("body", "body", name="self")], kinematics="finite",
+    )  # fmt: skip
+    at = couple(*model.sides(model.contacts[0]), 1, CouplingOptions(reach=0.7, keep_points=True)).points
+    assert at is not None
+    pairs = set(zip(at.facet.tolist(), at.target_facet.tolist()))
+    assert not any((other, own) in pairs for own, other in pairs)
+    assert (at.gap > 0.0).all()
+    assert at.weight.sum() > 2.0 * 2.0  # two valleys, legs 2 long, 1 deep
 
 
 def test_small_displacements_do_not_fold() -> None:
