@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 
 
 def folded(points: Array) -> Array:
-    """A strip (share of the length, distance from its middle) laid in legs up and down with half circles between them, the outer legs
-    longer."""
+    """A strip (share of the length, distance from its middle) laid in legs up and down with half circles between
+    them, the outer legs longer."""
     arc = np.pi * RADIUS
     way = points[:, 0] * (TURNS * (LEG + arc) + LEG + 2.0 * ENDS) - ENDS
     number = np.clip(np.floor(way / (LEG + arc)), 0, TURNS)
