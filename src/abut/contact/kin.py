@@ -1,5 +1,5 @@
 """Surfaces that may touch themselves: which facets see each other through their own body, and which of two is the
-contactor; theory, large sliding."""
+contactor; theory (G11), (G12)."""
 
 from __future__ import annotations
 
