@@ -9,8 +9,8 @@ constexpr double TOUCHING = 1e-12; // of the contactor facet: common parts below
 constexpr double EDGE_ON = 1e-9;   // cosine of normals: facets that the contactor sees edge-on do not face it
 constexpr int MANY_CORNERS = 12;   // polygons with more are halved before they are cut again
 
-// What a segment is for: contact, or only to hide others: those of the same pair seen the other way round hide all that is
-// behind, the far side of the contactor's own body what is seen through it.
+// What a segment is for: contact, or only to hide others: those of the same pair seen the other way round hide all that
+// is behind, the far side of the contactor's own body what is seen through it.
 enum class Role : std::uint8_t { counts, hides, through };
 
 // An interval of a contactor line, or a polygon in a contactor facet's mean plane, that sees one target facet.

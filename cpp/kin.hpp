@@ -4,8 +4,8 @@
 
 namespace abut {
 
-// Whether a facet is one of the body seen through its own material: each lies behind the other in the undeformed body, no
-// further away than either's depth.
+// Whether a facet is one of the body seen through its own material, by theory (G11): each lies behind the other in the
+// undeformed body, no further away than either's depth.
 inline bool through_body(const double *a, const double *b) {
   double way[3], length = 0, from = 0, to = 0;
   for (int i = 0; i < 3; ++i) {

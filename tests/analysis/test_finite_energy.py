@@ -84,7 +84,7 @@ def total(own: list[abut.solution.energy.Energy], name: str) -> float:
 
 @pytest.mark.parametrize("model", [bent, rubbing, turned])
 def test_energy_is_balanced_exactly(model: Callable[[], abut.Model]) -> None:
-    """Theory (G11) is an identity of states in equilibrium: nothing but what this leaves is left."""
+    """Theory (G13) is an identity of states in equilibrium: nothing but what this leaves is left."""
     own = energies(model())
     assert max(energy.error for energy in own) < BALANCED
     assert all(energy.error <= energy.limit <= 1e-5 for energy in own)

@@ -11,6 +11,7 @@ import abut
 from abut.errors import InputError
 from abut.job import load_job
 from abut.job.convert import write_job
+from abut.job.pairs import write_pairs
 
 JOB = """
 schema = 1
@@ -115,3 +116,22 @@ def test_wrong(path: Path, old: str, new: str, words: str) -> None:
     path.write_text(JOB.replace(old, new))
     with pytest.raises(InputError, match=words):
         load_job(path)
+
+
+def test_every_two_bodies_may_meet(tmp_path: Path) -> None:
+    """auto = true: bodies far apart, the softer one the contactor, and each body with itself; entries of their own come
+    first. Written out, the pairs are the same."""
+    job = tmp_path / "job.toml"
+    job.write_text(JOB + "[[contacts]]\nauto = true\n")
+    loaded = load_job(job)
+    made = [(contact.contactor, contact.target) for contact in loaded.model.contacts]
+    assert made == [("strip", "strip"), ("tool", "tool"), ("strip", "tool")]
+    assert len(loaded.model.sides(loaded.model.contacts[2])[0]) == 10  # its whole outside
+    write_pairs(loaded, tmp_path / "pairs.toml")
+    assert load_job(tmp_path / "pairs.toml").model.contacts == loaded.model.contacts
+    own = '[[contacts]]\ncontactor = "strip.top"\ntarget = "tool.bottom"\n'
+    job.write_text(JOB + own + "[[contacts]]\nauto = true\n")
+    assert [c.name for c in load_job(job).model.contacts[1:]] == ["strip-strip", "tool-tool"]
+    job.write_text(JOB + "[[contacts]]\nauto = true\nreach = 1.0\n")
+    with pytest.raises(InputError, match=r"contacts\[0\]\.reach: with kinematics"):
+        load_job(job)

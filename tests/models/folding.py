@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 
 
 def folded(points: Array) -> Array:
-    """A strip (share of the length, distance from its middle) laid in legs up and down with half circles between them, the outer legs longer."""
+    """A strip (share of the length, distance from its middle) laid in legs up and down with half circles between
+    them, the outer legs longer."""
     arc = np.pi * RADIUS
     way = points[:, 0] * (TURNS * (LEG + arc) + LEG + 2.0 * ENDS) - ENDS
     number = np.clip(np.floor(way / (LEG + arc)), 0, TURNS)
@@ -37,7 +38,10 @@ def accordion(
     lines = [np.linspace(0.0, 1.0, cells + 1), np.linspace(-0.5, 0.5, 3) * THICKNESS]
     made = grid(lines, cell, folded)
     held = {}
-    for name, side, x in (("first", "top", -0.5 * THICKNESS), ("last", "bottom", 2.0 * RADIUS * TURNS + 0.5 * THICKNESS)):
+    for name, side, x in (
+        ("first", "top", -0.5 * THICKNESS),
+        ("last", "bottom", 2.0 * RADIUS * TURNS + 0.5 * THICKNESS),
+    ):
         rows = made.surfaces[side]
         on = [np.abs(made.points[nodes[nodes >= 0], 0] - x).max() < 1e-9 for nodes in made.facets(rows).nodes]
         held[name] = rows[np.array(on)]

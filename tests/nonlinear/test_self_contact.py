@@ -12,6 +12,7 @@ import abut
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.geometry import facet_sizes
 from abut.mesh import make
+from abut.mesh.make.block import grid
 from abut.mesh.mesh import Mesh
 from abut.model import Model
 from abut.problem.current import Current
@@ -55,7 +56,22 @@ def test_either_fold_may_be_the_contactor(pressed: Solution) -> None:
     assert np.abs(x[partner] + x - 2.0 * middle).max() < 1e-9
     shift = np.array([-PUSHED, 0.0])
     apart = pressed.displacement + pressed.displacement[partner] - shift
-    assert np.abs(apart).max() < 0.25 * facet_sizes(pressed.contacts[0].contactor).min()
+    assert np.abs(apart).max() < 0.25 * np.median(facet_sizes(pressed.contacts[0].contactor))
+
+
+def test_friction_between_folds() -> None:
+    """What slips carries the coefficient times the pressure; forces of both sides are told apart at common nodes."""
+    solution = abut.solve(accordion(PUSHED, sides=SIDES, friction=0.3))
+    assert solution.converged
+    pair = solution.contacts[0]
+    assert pair.friction is not None
+    checks = {check.name: check.value for check in solution.certificate}
+    assert checks["friction cone"] < 1e-6
+    assert checks["force balance"] < 1e-12
+    assert pair.friction.slipping_area > 0.0
+    assert np.allclose(pair.contactor_forces.sum(axis=0), -pair.target_forces.sum(axis=0), atol=1e-9)
+    assert np.allclose(pair.force, pair.contactor_forces.sum(axis=0), atol=1e-9)
+    assert -pair.force[0] > 30.0  # it is the normal force of two valleys nearly upright: 52 without friction
 
 
 def test_tangent_is_the_derivative(pressed: Solution) -> None:
@@ -103,8 +119,25 @@ def test_a_body_is_not_in_contact_with_its_far_side() -> None:
     assert (at.gap > 0.0).all()
 
 
+def test_folds_in_space() -> None:
+    """A folded plate, 3D: of every two facets in a valley one sees the other, along the whole valley, and no gap is
+    through the plate."""
+    lines = [np.linspace(0.0, 1.0, 31), np.linspace(-0.5, 0.5, 2) * THICKNESS, np.linspace(0.0, 1.0, 3)]
+    mesh = grid(lines, "hex8", lambda x: np.column_stack([folded(x[:, :2]), x[:, 2]]))
+    model = Model(
+        mesh, [abut.Solid("body", abut.NeoHooke(young=1.0, poisson=0.3))], [abut.Support("left", x=0, y=0, z=0)],
+        contacts=[abut.Contact("body", "body", name="self")], kinematics="finite",
+    )  # fmt: skip
+    at = couple(*model.sides(model.contacts[0]), 1, CouplingOptions(reach=0.7, keep_points=True)).points
+    assert at is not None
+    pairs = set(zip(at.facet.tolist(), at.target_facet.tolist()))
+    assert not any((other, own) in pairs for own, other in pairs)
+    assert (at.gap > 0.0).all()
+    assert at.weight.sum() > 2.0 * 2.0  # two valleys, legs 2 long, 1 deep
+
+
 def test_small_displacements_do_not_fold() -> None:
-    with pytest.raises(abut.InputError, match='the same surface .* kinematics = "finite"'):
+    with pytest.raises(abut.InputError, match=r'the same surface .* kinematics = "finite"'):
         replace(accordion(), kinematics="small", solids=[abut.Solid("strip", abut.LinearElastic(1.0, 0.3))])
 
 

@@ -1,4 +1,4 @@
-"""Energy over a load step with finite kinematics, theory (G11): what forces do on the way between two converged states."""
+"""Energy over a load step with finite kinematics, theory (G13): what forces do on the way between two converged states."""
 
 from __future__ import annotations
 

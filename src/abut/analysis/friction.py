@@ -10,6 +10,7 @@ from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
 from abut.contact.smooth_friction import slip_of
+from abut.contact.tangential import quarter
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
@@ -62,7 +63,7 @@ def friction_result(
         total_work=work + (0.0 if earlier is None else earlier.total_work),
         work_per_area=each,
         total_work_per_area=each + (0.0 if earlier is None else earlier.total_work_per_area),
-        force=tangential_forces(pair, multipliers)[pair.contactor.node_ids].sum(axis=0),
+        force=_on_contactor(pair, tangential_forces(pair, multipliers), _own_traction(pair, multipliers)).sum(axis=0),
         force_by_area=float(weight @ size),
         force_limit=float(weight @ bound),
         largest_share=_largest_share(size, bound),
@@ -118,9 +119,28 @@ def _status_at_nodes(pair: Pair, status: NDArray[np.int8]) -> NDArray[np.int32]:
 def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
     """Nodal forces of pressure and friction on all points, on the contactor's side and on the target's, (n_points, dim)."""
     force = np.asarray(pair.rows.T @ multipliers).reshape(-1, pair.contactor.dim)
+    pressed = pair.space.transfer @ multipliers[pair.normal]
+    mine = _on_contactor(pair, force, pair.coupling.contactor_part.T @ pressed + _own_traction(pair, multipliers))
+    return mine, force - mine
+
+
+def _on_contactor(pair: Pair, force: Vector, own: Vector) -> Vector:
+    """What of nodal forces (n_points, dim) acts on the contactor: all of its nodes', or, of a body that touches itself,
+    ``own`` (dim n_points,)."""
+    if pair.contactor.kin is not None and len(np.intersect1d(pair.contactor.node_ids, pair.target.node_ids)):
+        return np.asarray(own).reshape(force.shape)
     mine = np.zeros((len(force), 1), dtype=bool)
     mine[pair.contactor.node_ids] = True
-    return np.where(mine, force, 0.0), np.where(mine, 0.0, force)
+    return np.where(mine, force, 0.0)
+
+
+def _own_traction(pair: Pair, multipliers: Vector) -> Vector:
+    """Nodal forces of tractions on the contactor (dim n_points,), in 2D: those of a pressure turned by a right angle."""
+    size = pair.rows.shape[1]
+    if pair.contactor.dim != 2:
+        return np.zeros(size)
+    along = pair.components[1].transfer @ multipliers[pair.tangential]
+    return np.asarray(quarter(size // 2).T @ (pair.coupling.contactor_part.T @ along))
 
 
 def _creep(pair: Pair, size: Vector, bound: Vector) -> Vector:

@@ -1,5 +1,5 @@
 """Surfaces that may touch themselves: which facets see each other through their own body, and which of two is the
-contactor; theory, large sliding."""
+contactor; theory (G11), (G12)."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, 
     if not np.isin(own, other).any():
         return contactor, target
     codes = [8 * side.cells + side.local for side in (contactor, target)]
-    every, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)
+    _, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)
     whole = replace(
         contactor,
-        **{
-            key: np.concatenate([getattr(contactor, key), getattr(target, key)])[first]
-            for key in ("kinds", "nodes", "cells", "local")
-        },
+        kinds=np.concatenate([contactor.kinds, target.kinds])[first],
+        nodes=np.concatenate([contactor.nodes, target.nodes])[first],
+        cells=np.concatenate(both)[first],
+        local=np.concatenate([contactor.local, target.local])[first],
         parts=None,
         axisymmetric=False,
     )

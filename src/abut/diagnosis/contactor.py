@@ -78,7 +78,9 @@ def _normals(surface: Surface) -> NDArray[np.float64]:
 
 def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:
     """To swap the sides of a contact, in words; empty where the present contactor is clearly the right one, and where the
-    model would be refused."""
+    model would be refused, or the same."""
+    if contact.contactor == contact.target:
+        return ""
     choice = choice or choose(*measured(model, contact))
     if choice.clear and choice.contactor == 0:
         return ""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from abut.contact.sides import Names, bodies_of, listed
-from abut.detection import AUTO, FoundContact, add_surfaces, find_contacts
+from abut.detection import AUTO, BodyPair, FoundContact, add_surfaces, every_pair, find_contacts
 from abut.errors import InputError, nearest
 from abut.job.schema import ContactTable
 from abut.job.values import values
@@ -29,8 +29,10 @@ class Resolved:
     notes: tuple[str, ...]
 
 
-def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequence[Solid]) -> Resolved:
-    """All contacts of a job.
+def resolve_contacts(
+    tables: Sequence[ContactTable], mesh: Mesh, solids: Sequence[Solid], finite: bool = False
+) -> Resolved:
+    """All contacts of a job. finite: bodies may move anywhere and fold, so that auto = true takes every two of them.
 
     Pairs of bodies that an entry names by its surfaces, or that an earlier entry with auto = true has found, are left out
     of what a later one finds. Raises InputError for keys that do not go together and for pairs that do not exist.
@@ -50,6 +52,13 @@ def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequenc
         if not table.auto:
             contacts.append((i, Contact(table.contactor, table.target, **options)))
             continue
+        if finite and table.kind != "tied":
+            every = _anywhere(table, f"contacts[{i}]", mesh, solids, coupled)
+            name = options.pop("name")
+            contacts += [(i, pair.contact(name, **options)) for pair in every]
+            notes += [pair.note for pair in every]
+            coupled |= {frozenset(pair.bodies) for pair in every}
+            continue
         found = [f for f in finder.find(table) if frozenset(f.bodies) not in coupled]
         if not found:
             raise InputError(
@@ -64,6 +73,20 @@ def resolve_contacts(tables: Sequence[ContactTable], mesh: Mesh, solids: Sequenc
             contacts.append((i, f.contact(name=f"{first}-{own.name}", **options) if first else own))
         notes += [f.note for f in found]
     return Resolved(mesh, tuple(c for _, c in contacts), tuple(i for i, _ in contacts), tuple(notes))
+
+
+def _anywhere(
+    table: ContactTable, where: str, mesh: Mesh, solids: Sequence[Solid], coupled: set[frozenset[str]]
+) -> list[BodyPair]:
+    """Pairs of bodies that no other entry couples."""
+    if table.reach is not None:
+        raise InputError(
+            f'{where}.reach: with kinematics = "finite" bodies may meet however far apart they begin: leave it out'
+        )
+    every = [pair for pair in every_pair(mesh, solids, table.bodies) if frozenset(pair.bodies) not in coupled]
+    if not every:
+        raise InputError(f"{where}: auto: other entries couple every two bodies already; take it out")
+    return every
 
 
 class _Finder:

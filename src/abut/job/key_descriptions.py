@@ -133,7 +133,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
         "offset": "added to the gap; negative: interference [length]",
-        "auto": "contact detection: find the pairs of bodies whose facets face each other",
+        "auto": "contact detection: find the pairs of bodies whose facets face each other; with kinematics finite every two "
+        "bodies, and each with itself",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
         "friction": "Coulomb's coefficient, or pairs of pressure and coefficient (linear between, constant outside), or "

@@ -132,7 +132,9 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
         solids.append(Solid(s.body, materials[s.material], s.temperature, s.integration))
-    resolved = resolve_contacts(file.contacts, _mesh(file.mesh, folder, refine), solids)
+    resolved = resolve_contacts(
+        file.contacts, _mesh(file.mesh, folder, refine), solids, file.model.kinematics == "finite"
+    )
     model = Model(
         mesh=resolved.mesh,
         plane=file.model.plane,

@@ -7,9 +7,12 @@ import re
 import sys
 from pathlib import Path
 
+from abut.contact.sides import listed
+from abut.detection import AUTO
 from abut.errors import InputError
 from abut.io.atomic import write_text
 from abut.job.load import Job, load_job
+from abut.model import Contact
 from abut.types import Json
 
 if sys.version_info >= (3, 11):
@@ -85,8 +88,13 @@ def _trailing(piece: str) -> str:
 def _entry(job: Job, number: int, table: Json) -> str:
     contact = job.model.contacts[number]
     keys = {"name": contact.name, "contactor": contact.contactor, "target": contact.target}
-    keys |= {key: value for key, value in table.items() if key not in ("auto", *keys)}
+    left = ("auto",) if _found(contact) else ("auto", "bodies")
+    keys |= {key: value for key, value in table.items() if key not in (*left, *keys)}
     return "[[contacts]]\n" + "".join(f"{key} = {_value(value)}\n" for key, value in keys.items())
+
+
+def _found(contact: Contact) -> bool:
+    return any(name.startswith(AUTO) for name in listed(contact.contactor))
 
 
 def _value(value: object) -> str:
