@@ -53,9 +53,7 @@ def _stretch(law: str) -> Benchmark:
         return float(brentq(lambda t: cauchy(law, np.diag([STRETCH, t, t]))[1, 1], 0.3, 1.5, xtol=1e-15))
 
     def model(level: int) -> Model:
-        held = [
-            support_along(f"block.{on}", axis, 0.0) for on, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))
-        ]
+        held = [support_along(f"block.{on}", axis, 0.0) for on, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))]
         return _block(law, [*held, Support("block.right", x=STRETCH - 1.0)], level, 4)
 
     def measure(solution: Solution) -> dict[str, float]:

@@ -61,7 +61,8 @@ def _forces(solution: Solution) -> Mapping[str, float]:
     pulls = [step.reactions["upper.bottom"] for step in solution.steps if step.factor > SLIDING]
     sizes = [float(np.linalg.norm(force)) for force in contact.body_forces.values()]
     return {
-        "pull over pressing force": float(np.mean([force[2] / -force[1] for force in pulls])), "force to the side": float(abs(x / y)),
+        "pull over pressing force": float(np.mean([force[2] / -force[1] for force in pulls])),
+        "force to the side": float(abs(x / y)),
         "forces on both wires": sizes[0] / sizes[1],
         "friction over its limit": contact.friction.force_by_area / contact.friction.force_limit,
         "iterations": float(sum(len(step.iterations) for step in solution.steps)),
