@@ -1,6 +1,7 @@
 """A die pressed into a slab and drawn along it at large displacements, friction 0.3, in abut and in Kratos on the same mesh:
 iterations and processor time.
 
+    kratos/bin/pip install KratosContactStructuralMechanicsApplication KratosConstitutiveLawsApplication
     KRATOS_PYTHON=kratos/bin/python python bench/sliding.py [--level 0] [--steps 20]
 
 Kratos: augmented Lagrangian mortar contact with friction, total Lagrangian cells of 8 nodes, its neo-Hookean law, sparse LU,
