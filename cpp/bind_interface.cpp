@@ -24,9 +24,11 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                bool sights, bool axisymmetric, double reach, double rounding, bool hidden) {
+                                bool sights, bool axisymmetric, double reach, double rounding, bool hidden,
+                                Matrix<double> kin_c, Matrix<double> kin_t) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
-  const SurfaceView target = view(points_t, kinds_t, nodes_t);
+  SurfaceView target = view(points_t, kinds_t, nodes_t);
+  add_kin(contactor, kin_c), add_kin(target, kin_t);
   contactor.normals = normals.data();
   const RuleTable rule_table = table(rules);
   const std::size_t dim = contactor.dim, facets = contactor.facets, width = vectorial ? dim : 1;
@@ -84,6 +86,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
         nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
+        nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
         "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
 }
 

@@ -11,6 +11,15 @@ inline SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matri
   return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
 }
 
+// What the facets of a surface are to others of their body; nothing where the array is empty.
+inline void add_kin(SurfaceView &surface, Matrix<double> kin) {
+  if (!kin.shape(0))
+    return;
+  if (kin.shape(0) != surface.facets || kin.shape(1) != KIN)
+    throw nb::value_error("kin must be (facets, KIN)");
+  surface.kin = kin.data();
+}
+
 inline RuleTable table(Tensor3<double> rules) {
   if (rules.shape(0) != 4)
     throw nb::value_error("rules must be (4, count, width)");

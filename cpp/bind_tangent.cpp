@@ -16,10 +16,12 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
                                Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                Vector<std::int32_t> subdivide_t, int degree, bool axisymmetric, double reach,
-                               double rounding, bool hidden, Matrix<double> pressure, Tensor3<double> traction,
+                               double rounding, bool hidden, Matrix<double> kin_c, Matrix<double> kin_t,
+                               Matrix<double> pressure, Tensor3<double> traction,
                                Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
-  const SurfaceView target = view(points_t, kinds_t, nodes_t);
+  SurfaceView target = view(points_t, kinds_t, nodes_t);
+  add_kin(contactor, kin_c), add_kin(target, kin_t);
   contactor.normals = normals.data();
   const RuleTable rule_table = table(rules);
   const std::size_t dim = contactor.dim, rows = MAX_FACET_NODES * contactor.facets;
@@ -50,7 +52,8 @@ void bind_tangent(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("axisymmetric"), nb::arg("reach"),
-        nb::arg("rounding"), nb::arg("hidden"), nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(),
+        nb::arg("rounding"), nb::arg("hidden"),
+        nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(), nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(),
         nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"),
         "Derivatives of the coupling by points and nodal normals; see abut.contact.coupling_tangent.");
 }

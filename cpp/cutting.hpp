@@ -3,6 +3,7 @@
 #include "contactor.hpp"
 #include "hidden.hpp"
 #include "horizon.hpp"
+#include "kin.hpp"
 #include "lines.hpp"
 #include "tree.hpp"
 
@@ -138,7 +139,7 @@ inline void find_hidden(const Over &over, const std::vector<Facet> &targets, con
       },
       [&](const Segment &own, Point2 middle) {
         Sight3 at(over.c, own.xi, own.eta);
-        return std::abs(at.look(targets[own.target], middle));
+        return at.look(targets[own.target], middle);
       });
 }
 
@@ -234,43 +235,54 @@ public:
   // facet follow each other.
   template <class Line, class Face> void cut(std::size_t f, Line line, Face face) {
     const Facet c = both_.contactor.surface.facet(f);
-    find(c);
+    find(f, c);
     if (found_.empty())
       return;
     segments_.clear(), pieces_.clear();
     if (c.dim == 2) {
-      cut_all(c);
+      cut_all(f, c);
       line(c, segments_);
       return;
     }
     const Contactor3 own(c, both_.contactor.subdivisions[f]);
     const Over over{own, pieces_};
-    cut_all(over);
+    cut_all(f, over);
     face(over, segments_);
   }
 
 private:
   // The target facets that the contactor facet may see within reach.
-  void find(const Facet &c) {
+  void find(std::size_t f, const Facet &c) {
     const double reach = both_.options.reach;
     const Horizon horizon(c, reach);
     both_.tree.query(swept_box(c, reach), found_, [&](const Box &box) { return horizon.may_see(box); });
-    std::erase_if(found_, [&](int t) { return !horizon.may_see(both_.hulls[t]); });
+    std::erase_if(found_, [&](int t) {
+      return !horizon.may_see(both_.hulls[t]) ||
+             !may_touch(both_.contactor.surface, f, both_.target.surface, std::size_t(t));
+    });
   }
 
-  void cut_all(const Facet &c) {
+  // Says what each segment is for.
+  void cast(std::size_t f) {
+    for (Segment &own : segments_)
+      own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
+  }
+
+  void cut_all(std::size_t f, const Facet &c) {
     for (int t : found_)
       cut_line(c, both_.targets[t], t, both_.options.reach, segments_);
+    cast(f);
     if (!both_.options.hidden)
       find_hidden(c, both_.targets, both_.target.surface.nodes, segments_);
   }
 
-  void cut_all(const Over &over) {
+  void cut_all(std::size_t f, const Over &over) {
     const Planned &target = both_.target;
     carried_.begin();
     for (int t : found_)
       cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, both_.options.reach,
                 carried_, segments_);
+    cast(f);
     if (!both_.options.hidden)
       find_hidden(over, both_.targets, target.surface.nodes, segments_);
   }
@@ -282,11 +294,16 @@ private:
   Carried carried_;
 };
 
-// Calls begin(t), then integrate(segment) for each of its segments, then end(t), for one target facet after another.
+// Calls begin(t), then integrate(segment) for each of its segments, then end(t), for one target facet that counts after
+// another.
 template <class Begin, class Integrate, class End>
 void by_target(const std::vector<Segment> &segments, Begin begin, Integrate integrate, End end) {
   for (std::size_t i = 0; i < segments.size();) {
     const int t = segments[i].target;
+    if (segments[i].role != Role::counts) {
+      ++i;
+      continue;
+    }
     begin(t);
     for (; i < segments.size() && segments[i].target == t; ++i)
       integrate(segments[i]);

@@ -9,9 +9,14 @@ constexpr double TOUCHING = 1e-12; // of the contactor facet: common parts below
 constexpr double EDGE_ON = 1e-9;   // cosine of normals: facets that the contactor sees edge-on do not face it
 constexpr int MANY_CORNERS = 12;   // polygons with more are halved before they are cut again
 
+// What a segment is for: contact, or only to hide others: those of the same pair seen the other way round hide all that is
+// behind, the far side of the contactor's own body what is seen through it.
+enum class Role : std::uint8_t { counts, hides, through };
+
 // An interval of a contactor line, or a polygon in a contactor facet's mean plane, that sees one target facet.
 struct Segment {
   int target;
+  Role role = Role::counts;
   double begin = 0, end = 0; // 2D
   Polygon polygon, finished; // 3D: uncut by others, its vertices on the chords, and where the curves cross
   int mine = 0, theirs = 0;  // 3D: the two pieces
@@ -29,10 +34,10 @@ inline bool adjacent(const std::int32_t *a, const std::int32_t *b) {
 }
 
 // Writes down which segments lie behind which: of two with a common part, whichever is farther off in its middle.
-// `common(a, b, p)` gives the middle p of the common part of two segments, false where there is none; `distance(a, p)`
-// how far off segment a is there.
-template <class P, class Common, class Distance>
-void find_hidden(std::vector<Segment> &segments, const std::int32_t *nodes, Common common, Distance distance) {
+// `common(a, b, p)` gives the middle p of the common part of two segments, false where there is none; `gap(a, p)` that
+// of segment a there.
+template <class P, class Common, class Gap>
+void find_hidden(std::vector<Segment> &segments, const std::int32_t *nodes, Common common, Gap gap) {
   for (std::size_t i = 0; i < segments.size(); ++i)
     for (std::size_t j = i + 1; j < segments.size(); ++j) {
       Segment &a = segments[i], &b = segments[j];
@@ -40,7 +45,11 @@ void find_hidden(std::vector<Segment> &segments, const std::int32_t *nodes, Comm
       if (a.target == b.target || !common(a, b, p) ||
           adjacent(nodes + MAX_FACET_NODES * a.target, nodes + MAX_FACET_NODES * b.target))
         continue;
-      if (distance(b, p) < distance(a, p))
+      const double gap_a = gap(a, p), gap_b = gap(b, p);
+      const bool second = std::abs(gap_b) < std::abs(gap_a);
+      if ((second ? b : a).role == Role::through && std::signbit(gap_a) != std::signbit(gap_b))
+        continue;
+      if (second)
         a.behind.push_back(int(j));
       else
         b.behind.push_back(int(i));

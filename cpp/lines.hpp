@@ -94,7 +94,7 @@ inline void find_hidden(const Facet &c, const std::vector<Facet> &targets, const
       },
       [&](const Segment &own, double middle) {
         Sight2 at(c, own.eta[0]);
-        return at.look(targets[own.target], middle) ? std::abs(at.gap) : HUGE_VAL;
+        return at.look(targets[own.target], middle) ? at.gap : HUGE_VAL;
       });
 }
 

@@ -6,6 +6,9 @@
 
 namespace abut {
 
+// Of each facet: number of its body, rank, and of the undeformed body its middle, normal and depth.
+constexpr std::size_t KIN = 9;
+
 struct SurfaceView {
   int dim;
   const double *points;
@@ -13,6 +16,7 @@ struct SurfaceView {
   const std::uint8_t *kinds;
   const std::int32_t *nodes;       // facets x MAX_FACET_NODES
   const double *normals = nullptr; // facets x MAX_FACET_NODES x dim, contactor only
+  const double *kin = nullptr;     // facets x KIN, of surfaces that may touch themselves
   Facet facet(std::size_t f) const;
   const std::int32_t *facet_nodes(std::size_t f) const { return nodes + MAX_FACET_NODES * f; }
 };

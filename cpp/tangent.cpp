@@ -56,6 +56,10 @@ private:
     sums.begin(f, c);
     for (std::size_t i = 0; i < segments.size();) {
       const int t = segments[i].target;
+      if (segments[i].role != Role::counts) {
+        ++i;
+        continue;
+      }
       const std::size_t first = i;
       while (i < segments.size() && segments[i].target == t)
         ++i;

@@ -86,7 +86,7 @@ MODELS: dict[str, Callable[[], abut.Model]] = {
 
 @pytest.mark.parametrize("name", MODELS)
 def test_energy_is_balanced_exactly(name: str) -> None:
-    """Theory (R7) is an identity of the discrete problem: nothing but rounding is left, whatever loads, slips or closes."""
+    """Theory (R10) is an identity of the discrete problem: nothing but rounding is left, whatever loads, slips or closes."""
     solution = abut.solve(MODELS[name]())
     assert solution.converged
     own = [step.energy for step in solution.steps if step.energy is not None]

@@ -109,7 +109,7 @@ def found(model: abut.Model) -> tuple[Uniqueness, np.ndarray]:
 
 
 def test_bounds_of_a_single_node() -> None:
-    """Klarbring 1990: one solution if and only if the coefficient is below k_tt / |k_nt|; and theory (R14)."""
+    """Klarbring 1990: one solution if and only if the coefficient is below k_tt / |k_nt|; and theory (R17)."""
     result, stiffness = found(corner(2))
     assert stiffness.shape == (2, 2)
     tangential, both, normal = stiffness[0, 0], stiffness[0, 1], stiffness[1, 1]

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 import abut
 from abut.contact.laws import Complementarity, Coulomb
+from abut.errors import SingularModelError
 from abut.linear import iterative
+from abut.linear.choice import chosen
 from abut.linear.iterative import Iterative
 from abut.linear.saddle_point import newton_step
 from abut.linear.sliding_rows import reduced
@@ -143,3 +145,22 @@ def test_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
     counts[0] = krylov(free, replace(plain, residual=jump[:n]), monkeypatch)
     assert counts[2] <= 1.2 * counts[0] + 1
     assert counts[1] <= 1.8 * counts[0]
+
+
+def test_a_motion_that_nothing_holds() -> None:
+    """Said at once, as by a direct solver, where loads move it; one that they do not move may rest."""
+    motions, held = np.eye(4)[:, :2], np.diag([2.0, 0.0])
+    iterative.require_held(motions, held, np.array([1.0, 0.0, 1.0, 1.0]), 1.0)
+    iterative.require_held(motions, held, np.array([1.0, 1e-9, 1.0, 1.0]), 1.0)
+    with pytest.raises(SingularModelError, match="unconstrained rigid-body mode"):
+        iterative.require_held(motions, held, np.array([1.0, 0.1, 1.0, 1.0]), 1.0)
+    with pytest.raises(SingularModelError):
+        iterative.require_held(motions, np.zeros((2, 2)), np.array([1.0, 0.0, 1.0, 1.0]), 1.0)
+
+
+def test_auto_takes_multigrid_for_large_models_with_friction() -> None:
+    problem = assembled(rubbed())
+    large = {1: problem.n_free, 2: problem.n_free}
+    for size, expected in ((0, "amg"), (1, "direct")):
+        sizes = {degree: own + size for degree, own in large.items()}
+        assert chosen("auto", problem.n_free, problem.pairs, problem.model.mesh, False, sizes) == expected

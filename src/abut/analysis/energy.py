@@ -1,4 +1,4 @@
-"""Energy over a load step with friction, theory (R7): what forces do on the way from one converged state to the next."""
+"""Energy over a load step with friction, theory (R10): what forces do on the way from one converged state to the next."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Acting:
 
 
 def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
-    """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R8)."""
+    """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R11)."""
     force = np.zeros(system.pairs[0].rows.shape[1])
     for pair, own in zip(system.pairs, multipliers):
         part = pair.normal if pair.frictional else slice(None)

@@ -135,7 +135,7 @@ def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | N
     """Relative errors of force and moment between the two sides with pressure and traction; None without friction.
 
     Across a gap g a traction acts on one line on the contactor and on another on the target: of the moments, this couple
-    g N x t is left out, theory (R9)."""
+    g N x t is left out, theory (R12)."""
     if pair.slip is None:
         return None
     dim, ids = pair.contactor.dim, pair.contactor.node_ids

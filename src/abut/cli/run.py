@@ -222,7 +222,8 @@ def _failure(solution: Solution, directory: Path) -> str:
     where = "; ".join(places) or step.reason
     where = where or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
     tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
-    return f"step {step.number} did not converge: {where}. The last state is in {directory}." + (f" Try{tries}" if tries else "")
+    text = f"step {step.number} did not converge: {where}. The last state is in {directory}."
+    return f"{text} Try{tries}" if tries else text
 
 
 def _print_result(solution: Solution, directory: Path) -> None:

@@ -1,4 +1,4 @@
-"""Normals for contact with friction: between those of contactor and target, theory (R16)."""
+"""Normals for contact with friction: between those of contactor and target, theory (R2)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def common_normals(
     contactor: Surface, target: Surface, own: Array, other: Array, share: float, reach: float, couple: Couple
 ) -> Array:
     """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``own`` turned by
-    ``share`` of the way to the target opposite, theory (R16); as they are where there is none, or it leans by more than at
+    ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by more than at
     a crease. own, other: of contactor and target, as from ``nodal_normals``; reach: length, as for ``couple``."""
     at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=own)).points
     if share == 0.0 or at is None or not len(at.weight):

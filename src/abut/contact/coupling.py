@@ -239,6 +239,18 @@ def cutting_arguments(
         "reach": default_reach(contactor, target) if options.reach is None else options.reach,
         "rounding": no_gap(contactor, target, options.adjust),
         "hidden": options.hidden,
+        **_kin(part, target),
+    }
+
+
+def _kin(contactor: Surface, target: Surface) -> Json:
+    """What facets are to each other; nothing where not both sides say so."""
+    none = np.zeros((0, 9))
+    own, other = contactor.kin, target.kin
+    both = own is not None and other is not None
+    return {
+        "kin_c": np.ascontiguousarray(own) if both else none,
+        "kin_t": np.ascontiguousarray(other) if both else none,
     }
 
 

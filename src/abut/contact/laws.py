@@ -88,7 +88,7 @@ class Tied:
 
 @dataclass(frozen=True)
 class Coulomb:
-    """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R3), (R4), (R5).
+    """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R5), (R6), (R7).
 
     jump: gap, and slip since the last converged step; traction: pressure, and tangential traction on the contactor.
     stiffness: as of ``Complementarity``; friction: the coefficient, infinite where nothing slips, or the bound of each

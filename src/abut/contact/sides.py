@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from abut.contact.coupling import Coupling, CouplingOptions, couple, default_reach
 from abut.contact.geometry import CREASE, area_vectors, full_moments, straight
+from abut.contact.kin import with_kin
 from abut.errors import InputError, nearest
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
@@ -71,15 +72,19 @@ def bodies_of(mesh: Mesh, side: Names) -> set[str]:
     return {body for body, own in mesh.bodies.items() if np.isin(cells, own).any()}
 
 
+def moving_sides(mesh: Mesh, contactor: Names, target: Names) -> Sides:
+    """The surfaces of both sides of bodies that may move anywhere and fold: a body stands for its whole outside."""
+    own, other = (_rows(mesh, side, _outside_asked(mesh, side))[0] for side in (contactor, target))
+    return with_kin(mesh, mesh.facets(own, label(contactor)), mesh.facets(other, label(target)))
+
+
 def find_sides(mesh: Mesh, contactor: Names, target: Names, moved: float = 0.0) -> Sides:
     """The surfaces of both sides, each facet once; names are known, and that of a surface comes before that of a body.
 
     A body stands for its outside, as far as it can meet the other side: facets of the contactor that see the target along
     their normals with nothing in between (another body, or the thickness of their own), the facets seen, and those around
     them. moved: the largest prescribed displacement, length. Where nothing is seen, the whole outside is left."""
-    outside = (
-        exterior(mesh) if any(n not in mesh.surfaces for side in (contactor, target) for n in listed(side)) else None
-    )
+    outside = _outside_asked(mesh, (*listed(contactor), *listed(target)))
     own, of_body = _rows(mesh, contactor, outside)
     other, of_other = _rows(mesh, target, outside)
     if outside is not None:
@@ -87,6 +92,11 @@ def find_sides(mesh: Mesh, contactor: Names, target: Names, moved: float = 0.0) 
         if met[0].any():
             own, other = own[met[0] | ~of_body], other[met[1] | ~of_other]
     return mesh.facets(own, label(contactor)), mesh.facets(other, label(target))
+
+
+def _outside_asked(mesh: Mesh, names: Names) -> Rows | None:
+    """The exterior facets, where one of the names is a body's."""
+    return exterior(mesh) if any(name not in mesh.surfaces for name in listed(names)) else None
 
 
 def _rows(mesh: Mesh, side: Names, outside: Rows | None) -> tuple[Rows, NDArray[np.bool_]]:
@@ -165,7 +175,13 @@ def _and_around(surface: Surface, core: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def check_own(sides: Sides, contactor: Names, target: Names, where: str) -> None:
-    """Raise InputError for a side all of whose facets belong to the other one too."""
+    """Raise InputError for surfaces that would press on themselves, where displacements are small."""
+    both = [name for name in listed(contactor) if name in listed(target)]
+    if both:
+        raise InputError(
+            f"{where}: contactor and target are the same surface {words(both)}: a body touches itself only where it folds, "
+            'which takes kinematics = "finite"; add it, or name the surface opposite'
+        )
     own, other = (_codes(_of(surface)) for surface in sides)
     if np.isin(own, other).all() or np.isin(other, own).all():
         raise InputError(

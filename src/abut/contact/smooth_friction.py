@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 def friction_function(size: Array, epsilon: float) -> tuple[Array, Array]:
-    """f(s) for s >= 0, which solves f = 2/pi atan((s - f) / epsilon), and its derivative: theory (R10).
+    """f(s) for s >= 0, which solves f = 2/pi atan((s - f) / epsilon), and its derivative: theory (R13).
 
     With s = tau + u this is tau + w of the constraint function w(u, tau) of El-Abbasi and Bathe, which is implicit:
     tau + w - 2/pi atan((u - w) / epsilon) = 0. epsilon -> 0 gives min(s, 1).
@@ -36,7 +36,7 @@ def friction_function(size: Array, epsilon: float) -> tuple[Array, Array]:
 
 
 def slip_of(traction: Array, bound: Array, epsilon: float) -> Array:
-    """Slip times the stiffness under tractions of that size, (n,): the function solved for u, theory (R11)."""
+    """Slip times the stiffness under tractions of that size, (n,): the function solved for u, theory (R14)."""
     share = np.minimum(traction / np.maximum(bound, 1e-300), 1.0)
     return np.asarray(epsilon * bound * np.tan(0.5 * np.pi * share))
 
@@ -44,7 +44,7 @@ def slip_of(traction: Array, bound: Array, epsilon: float) -> Array:
 @dataclass(frozen=True)
 class SmoothCoulomb:
     """The constraint function of contact in the first component, ``constraint_function``, and that of friction along the
-    direction of slip in the others, ``friction_function``: theory (R12). No status is held.
+    direction of slip in the others, ``friction_function``: theory (R15). No status is held.
 
     jump, traction, stiffness: as of ``Coulomb``; bound: of the tangential traction; epsilon: of friction, its square that of
     contact; reference: the largest pressure."""

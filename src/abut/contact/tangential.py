@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class SlipOperators:
     """Of slip and of its forces, facet by facet. along: (9 n_facets, dim n_points) sparse for each direction d, int H_k d .
-    (u_C - u_T), theory (R1); arms: (9 n_facets, 3) int H_k (x_C - x_T), in 2D its size (9 n_facets, 1), theory (R9)."""
+    (u_C - u_T), theory (R1); arms: (9 n_facets, 3) int H_k (x_C - x_T), in 2D its size (9 n_facets, 1), theory (R12)."""
 
     along: tuple[Sparse, ...]
     arms: Array

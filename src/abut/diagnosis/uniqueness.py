@@ -29,9 +29,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Uniqueness:
-    """certain: below this coefficient there is one solution in each load step, whatever the loads, theory (R13), (R14); 0
+    """certain: below this coefficient there is one solution in each load step, whatever the loads, theory (R16), (R17); 0
     where contact alone holds a body; critical: the smallest coefficient at which there are infinitely many for some loads,
-    while all contact is closed and slips one way, theory (R15); infinite where there is none."""
+    while all contact is closed and slips one way, theory (R18); infinite where there is none."""
 
     certain: float
     critical: float

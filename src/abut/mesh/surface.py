@@ -20,6 +20,8 @@ class Surface:
             normal points out of the body.
     axisymmetric: the coordinates are (r, z), and integrals run round the axis.
     parts:  (n_facets,) numbers, where the pressure on it may jump from facets of one number to those of another.
+    kin: (n_facets, 9) where the surface may touch itself, ``abut.contact.kin``: number of the body, rank (of two facets the
+            lower is the contactor), and of the undeformed body middle, normal and how far its other side may be.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 
@@ -31,6 +33,7 @@ class Surface:
     name: str = "surface"
     axisymmetric: bool = False
     parts: NDArray[np.int64] | None = None
+    kin: NDArray[np.float64] | None = None
 
     @property
     def dim(self) -> int:
@@ -50,6 +53,7 @@ class Surface:
             cells=self.cells[facets],
             local=self.local[facets],
             parts=None if self.parts is None else self.parts[facets],
+            kin=None if self.kin is None else self.kin[facets],
         )
 
     def __len__(self) -> int:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from abut import checks
 from abut.contact.laws import Law
-from abut.contact.sides import Names, label, listed, normalised, words
+from abut.contact.sides import Names, label, normalised
 from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
 from abut.model.friction import ROUGH, Friction, checked
@@ -101,9 +101,6 @@ class Contact:
             raise InputError(f"{where}: adjust: expected a length >= 0, got {self.adjust!r}")
         if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):
             raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
-        both = [name for name in listed(self.contactor) if name in listed(self.target)]
-        if both:
-            raise InputError(f"{where}: contactor and target are the same surface {words(both)}")
 
     @property
     def frictional(self) -> bool:

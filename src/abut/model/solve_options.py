@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 from abut import checks
 from abut.errors import InputError
@@ -24,7 +25,7 @@ class SolveOptions:
     (0.25, 0.5, 0.75, 1.0)
     """
 
-    steps: int | str = "auto"
+    steps: int | Literal["auto"] = "auto"
     linear: str = "auto"
     max_iterations: int = 50
     times: tuple[float, ...] | None = None

@@ -2,7 +2,7 @@
 
 Each function of a contact has a pressure and a gap with a product, as in ``interior_point``, and with friction two vectors
 in second-order cones: the bound and the traction (mu p, t), and beside it (|v|, v), both of which the solution puts on the
-boundary where it slips, and the second to zero where it sticks. Theory: docs/theory/friction.md, "Search"."""
+boundary where it slips, and the second to zero where it sticks: theory (R8)."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ class Manner:
 
 @dataclass(frozen=True)
 class Programme:
-    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap per
-    pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none; idle:
-    numbers of tractions without friction."""
+    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
+    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none;
+    idle: numbers of tractions without friction."""
 
     solver: Prepared
     normal: Numbers
@@ -59,14 +59,16 @@ class Programme:
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
             if not pair.tied:
-                own = np.full((len(pair.space), width), -1)
+                beside = np.full((len(pair.space), width), -1)
                 if pair.frictional:
-                    own = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
+                    beside = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
                 normal.append(first + np.arange(len(pair.space)))
-                along.append(own)
+                along.append(beside)
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
-        own = cls(solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver))
+        own = cls(
+            solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver)
+        )
         holds = own.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
         idle = tangents[~holds]

@@ -53,7 +53,7 @@ class Course:
         seconds, missed = time.perf_counter() - clock, self._missed(state)
         largest = largest_pressure(state, self.increment)
         row = report(self.solver.system, state, self.increment, len(self.done) + 1, changed, np.zeros(1), seconds)
-        row = replace(row, contact_residual=missed / largest)
+        row = replace(row, contact_residual=float(missed / largest))
         self.done.append(row)
         self.observe(row)
         self.recent = [*self.recent[1 - RECENT :], state.status]
@@ -147,7 +147,7 @@ def coulomb(pair: Pair, system: Linearised) -> Coulomb:
 
 
 def next_status(system: Linearised, state: State, increment: Increment) -> Status:
-    """The status that the laws ask for, theory (R3), (R4), of each multiplier. What differs by rounding alone stays."""
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])

@@ -15,7 +15,7 @@ from abut.solution.state import CLOSED, OPEN, State
 
 BOLD, CAREFUL, CONVEX = Manner(0.95, 1e-3), Manner(0.7, 0.05), Manner(0.95, 1e-3, dilates=True)
 FEW = 0.02  # share of the multipliers that may change in an iteration for Newton's method to be worth a try
-NEWTON = 5  # iterations of a try
+NEWTON = 15  # iterations of a try at most, as long as it gets better
 CLOSE = 1.0  # difference between gaps and what they are to be, over the largest pressure, likewise
 LESS = 0.3  # of the dilatancy that is left by an iteration that close
 NONE = 1e-3  # dilatancy that is none
@@ -64,7 +64,7 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
             return _apart(course, programme, now)
         if close and changed <= few and not here.dilatancy:
             try:
-                found = newton(course, now, NEWTON, patience=1)
+                found = newton(course, now, NEWTON, patience=2)
             except SingularModelError:
                 found = None
             if found is not None:

@@ -97,7 +97,8 @@ def march(
     """Load step after load step, from the state ``first``; number: of the next one.
 
     Each attempt starts from the last converged state: the state of a failed one is dropped, and yielded only where no other
-    follows it; attempts that are parts of a step have its number; a solver that fails is replaced by another one, which begins the step again."""
+    follows it; attempts that are parts of a step have its number; a solver that fails is replaced by another one, which
+    begins the step again."""
     before, attempt = first, None
     own, prepared = None, None
     time = schedule.next(attempt)

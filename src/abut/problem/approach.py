@@ -1,4 +1,4 @@
-"""What the surfaces of a contact with friction move past each other while they only come closer: no slip, theory (R17)."""
+"""What the surfaces of a contact with friction move past each other while they only come closer: no slip, theory (R4)."""
 
 from __future__ import annotations
 

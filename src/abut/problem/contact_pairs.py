@@ -40,6 +40,7 @@ from abut.problem.contact_normals import contact_normals
 from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
+from abut.problem.repeated_rows import repeats
 from abut.problem.scales import scales
 from abut.problem.tied_rows import tied_rows
 from abut.types import Array, Sparse
@@ -51,8 +52,6 @@ SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
-FEW = 1000  # multipliers of a pair up to which a look for repeated constraints costs little
-DEPENDENT = 1e-13  # smallest eigenvalue of their Gram matrix over the largest below which they repeat each other
 
 
 @dataclass(frozen=True)
@@ -207,7 +206,7 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
             for own, keep in zip(result, kept)
         ]
     tied_together = bool(model.equations or model.rigid)
-    return [replace(p, repeated=True) if tied_together and _repeats(p.operator) else p for p in result]
+    return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 
 def _shared(own: Pair) -> Functions | None:
@@ -215,16 +214,6 @@ def _shared(own: Pair) -> Functions | None:
     if own.tied or own.contact.method != METHODS[0] or not own.space.continuous:
         return None
     return functions(own.space, own.contactor, own.coupling)
-
-
-def _repeats(operator: Sparse) -> bool:
-    """Whether rows depend on each other. Not looked for where they are too many for a dense matrix."""
-    if not 0 < operator.shape[0] <= FEW:
-        return False
-    size = sp.linalg.norm(operator, axis=1)
-    rows = sp.diags(1.0 / np.where(size > 0.0, size, 1.0)) @ operator
-    values = np.linalg.eigvalsh((rows @ rows.T).toarray())
-    return bool(values[0] < DEPENDENT * values[-1])
 
 
 def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple, sides: Sides | None = None) -> Pair:
@@ -274,9 +263,7 @@ def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple
     return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, held)
 
 
-def _with_friction(
-    model: Model, own: Pair, operators: SlipOperators, normals: NDArray[np.float64], held: Supports
-) -> Pair:
+def _with_friction(model: Model, own: Pair, operators: SlipOperators, normals: Array, held: Supports) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
     sides = FrictionSides(own.contactor, own.target, normals, reach_of(held, own.contactor, own.target))
     made = friction_rows(sides, own.space, own.rows, operators, held)
@@ -337,15 +324,14 @@ def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> 
         prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
     )  # fmt: skip
-    if own.slip is None:
+    if own.slip is None or own.slip.at_facets is None:
         return changed
-    assert own.slip.at_facets is not None
     return _with_friction(model, changed, own.slip.operators, own.slip.at_facets, held)
 
 
 def _couple(
     contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple,
-    normals: NDArray[np.float64] | None,
+    normals: Array | None,
 ) -> tuple[Surface, Coupling, PressureSpace]:  # fmt: skip
     """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
     space: PressureSpace | None

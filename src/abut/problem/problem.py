@@ -225,7 +225,7 @@ class ContactProblem:
         return self.springs.added_to(sum(tangents[1:], tangents[0]))
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
-        """Weighted tangential jumps of each pair from which the next step's slip counts, theory (R2): those in a converged
+        """Weighted tangential jumps of each pair from which the next step's slip counts, theory (R3): those in a converged
         state, and what is open moved on until it closes; empty without friction."""
         if not any(pair.frictional for pair in self.pairs):
             return []

@@ -197,7 +197,7 @@ def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | 
 
 
 def _pushes_and_drags(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None) -> NDArray[np.float64]:
-    """The same with friction: the edges of each multiplier's cone, theory (R6), or of a pyramid round it in 3D."""
+    """The same with friction: the edges of each multiplier's cone, theory (R9), or of a pyramid round it in 3D."""
     moved = np.asarray(pair.operator @ moves) / pair.weight[:, None]
     there = np.ones(len(pair.space), dtype=bool) if active is None else active[pair.normal]
     along = [np.where(at[:, None] >= 0, moved[at], 0.0)[there] for at in pair.index.T]

@@ -10,7 +10,7 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy of one load step comes from and where it goes, theory (R7): loads + supports + contact = stored +
+    """Where the energy of one load step comes from and where it goes, theory (R10): loads + supports + contact = stored +
     friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on

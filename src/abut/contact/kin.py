@@ -1,0 +1,84 @@
+"""Surfaces that may touch themselves: which facets see each other through their own body, and which of two is the
+contactor; theory, large sliding."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.geometry import facet_sizes, mean_normals, straight
+from abut.mesh.mesh import Mesh
+from abut.mesh.surface import Surface
+
+Array = NDArray[np.float64]
+DEPTH = 3.0  # thicknesses of the body, up to which a facet's far side lies opposite after large strains
+ASLANT = np.array([1.0, 0.764, 0.583])  # facets further along are targets: aslant, so that hardly any two are level
+APART = 1e3  # in extents: ranks of different bodies do not mix
+BODY, RANK, MIDDLE, NORMAL, REACH = 0, 1, slice(2, 5), slice(5, 8), 8  # columns of ``Surface.kin``
+
+
+def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, Surface]:
+    """Both surfaces with what ``Surface.kin`` says, where they have a body in common; else as they are."""
+    both = contactor.cells, target.cells
+    bodies = _bodies(mesh)
+    own, other = (bodies[cells] for cells in both)
+    if not np.isin(own, other).any():
+        return contactor, target
+    codes = [8 * side.cells + side.local for side in (contactor, target)]
+    every, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)
+    whole = replace(
+        contactor,
+        **{
+            key: np.concatenate([getattr(contactor, key), getattr(target, key)])[first]
+            for key in ("kinds", "nodes", "cells", "local")
+        },
+        parts=None,
+        axisymmetric=False,
+    )
+    kin = _kin(straight(whole), bodies[whole.cells])
+    parts = [kin[own] for own in np.split(number.ravel(), [len(contactor)])]
+    parts[0][~np.isin(codes[0], codes[1]), RANK] = -np.inf
+    parts[1][~np.isin(codes[1], codes[0]), RANK] = np.inf
+    return replace(contactor, kin=parts[0]), replace(target, kin=parts[1])
+
+
+def _kin(surface: Surface, body: NDArray[np.int64]) -> Array:
+    """(n_facets, 9) of an undeformed surface."""
+    dim = surface.dim
+    used = surface.nodes >= 0
+    middle = np.where(used[:, :, None], surface.points[surface.nodes], 0.0).sum(axis=1) / used.sum(axis=1)[:, None]
+    extent = float(np.ptp(surface.points[surface.node_ids], axis=0).max())
+    result = np.zeros((len(surface), 9))
+    result[:, BODY] = body
+    result[:, RANK] = APART * np.unique(body, return_inverse=True)[1].ravel() + middle @ ASLANT[:dim] / extent
+    result[:, MIDDLE][:, :dim] = middle
+    result[:, NORMAL][:, :dim] = mean_normals(surface)
+    result[:, REACH] = DEPTH * _thickness(surface, body, extent) + 2.0 * facet_sizes(surface)
+    return result
+
+
+def _thickness(surface: Surface, body: NDArray[np.int64], extent: float) -> Array:
+    """Of the body behind each facet (n_facets,), infinite where its far side is not on the surface."""
+    options = CouplingOptions(points=1, reach=2.0 * extent, keep_points=True, hidden=True)
+    at = couple(surface, surface, 0, options).points
+    assert at is not None
+    behind = (at.gap < 0.0) & (body[at.facet] == body[at.target_facet])
+    result = np.full(len(surface), np.inf)
+    np.minimum.at(result, at.facet[behind], -at.gap[behind])
+    return result
+
+
+def _bodies(mesh: Mesh) -> NDArray[np.int64]:
+    """Number of the body of each cell, (n_cells,): cells that hang together by points."""
+    rows, columns = [], []
+    for block, first in zip(mesh.blocks, mesh.starts):
+        rows.append(first + np.repeat(np.arange(len(block.nodes)), block.nodes.shape[1]))
+        columns.append(mesh.n_cells + block.nodes.ravel().astype(np.int64))
+    row, column, size = np.concatenate(rows), np.concatenate(columns), mesh.n_cells + len(mesh.points)
+    touch = sp.csr_matrix((np.ones(len(row)), (row, column)), shape=(size, size))
+    return connected_components(touch, directed=False)[1][: mesh.n_cells].astype(np.int64)

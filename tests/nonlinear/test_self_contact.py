@@ -1,0 +1,115 @@
+"""A body that folds until it touches itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import abut
+from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.geometry import facet_sizes
+from abut.mesh import make
+from abut.mesh.mesh import Mesh
+from abut.model import Model
+from abut.problem.current import Current
+from abut.solution import Solution
+from models.folding import RADIUS, THICKNESS, TURNS, accordion, folded
+from models.sliding import finite
+
+SIDES = ("top", "bottom")
+PUSHED = 1.1
+
+
+@pytest.fixture(scope="module")
+def pressed() -> Solution:
+    return abut.solve(accordion(PUSHED, sides=SIDES))
+
+
+def test_folds_touch(pressed: Solution) -> None:
+    """Both valleys close: forces add up to none, no multiplier is left open where its surface overlaps, and at points the
+    surfaces overlap by what the corners of the bends press in between nodes, a twentieth of the thickness."""
+    assert pressed.converged
+    pair = pressed.contacts[0]
+    assert pair.area > 3.5  # of 5.1, the sides of two valleys
+    checks = {check.name: check.value for check in pressed.certificate}
+    assert checks["force balance"] < 1e-12
+    assert checks["moment balance"] < 1e-12
+    assert checks["penetration"] < 1e-8
+    problem = finite(pressed.model)
+    current = problem.moving[0]
+    assert isinstance(current, Current)
+    seen = current.shown(pressed.displacement.ravel()).sights
+    assert seen is not None
+    assert seen.gap.min() > -0.05 * THICKNESS
+
+
+def test_either_fold_may_be_the_contactor(pressed: Solution) -> None:
+    """A half turn about the middle brings the mesh on itself and reverses all ranks: what was the contactor becomes the
+    target. Nothing but the bends holds the middle leg upright; displacements agree to a quarter of a facet."""
+    middle = np.array([RADIUS * TURNS, 0.0])
+    x = pressed.model.mesh.points
+    partner = np.array([int(np.argmin(np.linalg.norm(x - (2.0 * middle - own), axis=1))) for own in x])
+    assert np.abs(x[partner] + x - 2.0 * middle).max() < 1e-9
+    shift = np.array([-PUSHED, 0.0])
+    apart = pressed.displacement + pressed.displacement[partner] - shift
+    assert np.abs(apart).max() < 0.25 * facet_sizes(pressed.contacts[0].contactor).min()
+
+
+def test_tangent_is_the_derivative(pressed: Solution) -> None:
+    """Of balance and gaps in the folded state, as between two bodies."""
+    problem, rng = finite(pressed.model), np.random.default_rng(5)
+    before, n = problem.start(), problem.operator.shape[0]
+    free = problem.held.free
+    unknowns = np.linalg.lstsq(free.toarray(), pressed.displacement.ravel(), rcond=None)[0]
+    at = replace(before, time=1.0, unknowns=unknowns, multipliers=rng.uniform(0.0, 5.0, n))
+    system, way = problem.linearise(at, at), rng.standard_normal(problem.n_free)
+
+    def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        state = replace(at, unknowns=at.unknowns + step * way)
+        near = problem.linearise(at, state)
+        return near.unbalanced(state), near.gap(state)
+
+    (force, gap), (force_back, gap_back) = there(1e-7), there(-1e-7)
+    forces, gaps = (force - force_back) / 2e-7, (gap - gap_back) / 2e-7
+    assert np.abs(forces - system.stiffness @ way).max() < 1e-6 * np.abs(forces).max()
+    assert np.abs(gaps - system.operator @ way).max() < 1e-6 * np.abs(gaps).max()
+
+
+def whole(mesh: Mesh, *sides: str) -> Model:
+    return Model(
+        mesh, [abut.Solid("body", abut.NeoHooke(young=1.0, poisson=0.3))], [abut.Support("left", x=0.0, y=0.0)],
+        contacts=[abut.Contact(sides, sides, name="self")], plane="strain", kinematics="finite",
+    )  # fmt: skip
+
+
+def test_a_body_is_not_in_contact_with_its_far_side() -> None:
+    """A thin strip: its other side lies within reach, behind it. Each pair of facets counts once: of the sides of a slit
+    the one further along is the target."""
+    strip = make.rectangle([0, 4], [0, 0.1], (16, 1))
+    contactor, target = whole(strip, "top", "bottom").sides(whole(strip, "top", "bottom").contacts[0])
+    far = CouplingOptions(reach=1.0, keep_points=True)
+    assert couple(contactor, target, 1, far).segments.sum() == 0
+    bare = couple(replace(contactor, kin=None), replace(target, kin=None), 1, far)
+    assert bare.segments.sum() > 0
+    model = accordion(sides=SIDES)
+    at = couple(*model.sides(model.contacts[0]), 1, far).points
+    assert at is not None
+    pairs = set(zip(at.facet.tolist(), at.target_facet.tolist()))
+    assert pairs
+    assert not any((other, own) in pairs for own, other in pairs)
+    assert (at.gap > 0.0).all()
+
+
+def test_small_displacements_do_not_fold() -> None:
+    with pytest.raises(abut.InputError, match='the same surface .* kinematics = "finite"'):
+        replace(accordion(), kinematics="small", solids=[abut.Solid("strip", abut.LinearElastic(1.0, 0.3))])
+
+
+def test_folded() -> None:
+    """The model's strip has its thickness everywhere."""
+    x = np.linspace(0.0, 1.0, 200)
+    sides = [folded(np.stack([x, np.full_like(x, side * THICKNESS)], axis=1)) for side in (-0.5, 0.5)]
+    assert np.allclose(np.linalg.norm(sides[1] - sides[0], axis=1), THICKNESS)
