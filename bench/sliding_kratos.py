@@ -12,6 +12,7 @@ from typing import Any
 import KratosMultiphysics
 import KratosMultiphysics.ConstitutiveLawsApplication
 import KratosMultiphysics.ContactStructuralMechanicsApplication
+import KratosMultiphysics.LinearSolversApplication
 from KratosMultiphysics.StructuralMechanicsApplication import structural_mechanics_analysis
 
 

@@ -63,7 +63,7 @@ def test_twisted_hub() -> None:
 
 @pytest.mark.long
 def test_snap_joint() -> None:
-    """At the largest force the hook slides up the straight side of its catch: forces are as on a wedge with Coulomb's friction,
+    """At the largest force the hook slides up the straight side of its catch: forces are as on a wedge with friction,
     tan(slope + angle of friction), but for what bends (2 %). Behind the peak the catch draws it in, and then lets go."""
     solution = abut.solve(load_job(FOLDER / "snap-joint" / "job.toml").model)
     along, up = np.array([step.contacts[0].force for step in solution.steps]).T

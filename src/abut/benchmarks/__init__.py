@@ -12,6 +12,7 @@ from abut.benchmarks import (
     finite_gears,
     finite_rubber,
     finite_uniform,
+    finite_wires,
     fits,
     friction,
     friction_balls,
@@ -45,5 +46,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_contact.BENCHMARKS,
         *finite_contact_3d.BENCHMARKS,
         *finite_gears.BENCHMARKS,
+        *finite_wires.BENCHMARKS,
     )
 }
