@@ -67,9 +67,9 @@ public:
     emit(lists_.target, other_, nodes, target_nodes_);
   }
   void count_segment() { ++out_.segments[f_]; }
-  bool wants_sights() const { return options_.sights; }
+  bool wants_sights() const { return options_.gap_samples; }
   void see(const double *nc, const double *nt, double gap, const double *normal) {
-    Sights &s = lists_.sights;
+    GapSamples &s = lists_.gap_samples;
     s.gap.push_back(std::abs(gap) < options_.rounding ? 0 : gap);
     s.normal.insert(s.normal.end(), normal, normal + dim_);
     for (int k = 0; k < MAX_FACET_NODES; ++k) {
@@ -160,7 +160,7 @@ inline void append(IntegrationPoints &to, IntegrationPoints &from) {
   append(to.pressure, from.pressure), append(to.contactor, from.contactor), append(to.target, from.target);
   append(to.contactor_facet, from.contactor_facet), append(to.target_facet, from.target_facet);
 }
-inline void append(Sights &to, Sights &from) {
+inline void append(GapSamples &to, GapSamples &from) {
   append(to.gap, from.gap), append(to.normal, from.normal);
   append(to.contactor, from.contactor), append(to.target, from.target);
   append(to.contactor_facet, from.contactor_facet), append(to.target_facet, from.target_facet);

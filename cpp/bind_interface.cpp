@@ -24,7 +24,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                bool sights, bool axisymmetric, double reach, double rounding, bool hidden,
+                                bool gap_samples, bool axisymmetric, double reach, double rounding, bool hidden,
                                 Matrix<double> kin_c, Matrix<double> kin_t) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
@@ -36,7 +36,7 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
-               rule_table, {degree, vectorial, keep_points, sights, axisymmetric, reach, rounding, hidden});
+               rule_table, {degree, vectorial, keep_points, gap_samples, axisymmetric, reach, rounding, hidden});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -62,15 +62,15 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
     out["point_contactor_facet"] = to_numpy(std::move(c.lists.points.contactor_facet));
     out["point_target_facet"] = to_numpy(std::move(c.lists.points.target_facet));
   }
-  if (sights) {
-    Sights &s = c.lists.sights;
+  if (gap_samples) {
+    GapSamples &s = c.lists.gap_samples;
     const std::size_t n = s.gap.size();
-    out["sight_gap"] = to_numpy(std::move(s.gap));
-    out["sight_normal"] = to_numpy(std::move(s.normal), {n, dim});
-    out["sight_contactor"] = to_numpy(std::move(s.contactor), {n, MAX_FACET_NODES});
-    out["sight_target"] = to_numpy(std::move(s.target), {n, MAX_FACET_NODES});
-    out["sight_contactor_facet"] = to_numpy(std::move(s.contactor_facet));
-    out["sight_target_facet"] = to_numpy(std::move(s.target_facet));
+    out["gap_sample_gap"] = to_numpy(std::move(s.gap));
+    out["gap_sample_normal"] = to_numpy(std::move(s.normal), {n, dim});
+    out["gap_sample_contactor"] = to_numpy(std::move(s.contactor), {n, MAX_FACET_NODES});
+    out["gap_sample_target"] = to_numpy(std::move(s.target), {n, MAX_FACET_NODES});
+    out["gap_sample_contactor_facet"] = to_numpy(std::move(s.contactor_facet));
+    out["gap_sample_target_facet"] = to_numpy(std::move(s.target_facet));
   }
   return out;
 }
@@ -85,7 +85,7 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("sights"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
+        nb::arg("gap_samples"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
         nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
         "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
 }

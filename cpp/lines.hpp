@@ -108,7 +108,7 @@ inline void integrate_line(const Facet &c, const Facet &t, double begin, double 
         const double normal[2] = {-at.n[0], -at.n[1]};
         sums.see(at.nc, at.nt, at.gap, normal);
       }
-    at.begin(start); // the integration begins at the same place with sights and without
+    at.begin(start); // the integration begins at the same place with gap_samples and without
   }
   for (int q = 0; q < rule.n; ++q) {
     const double xi = begin + rule.t[q] * (end - begin);

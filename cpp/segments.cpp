@@ -40,7 +40,7 @@ void integrate_part(const Over &over, const Facet &t, const Segment &own, const 
     see(polygon.middle());
     for (int i = 0; i < polygon.size; ++i)
       see(polygon.v[i].p);
-    at.begin(own.xi, own.eta); // integrals are the same with sights and without
+    at.begin(own.xi, own.eta); // integrals are the same with gap_samples and without
   }
   integrate_polygon(
       polygon, [&](const Vertex &v) { return over.curve(v); }, rule, !over.c.flat,
@@ -120,7 +120,7 @@ Coupling couple(const Planned &contactor, const Planned &target, const RuleTable
   });
   for (Lists &part : lists) {
     append(out.lists.contactor, part.contactor), append(out.lists.target, part.target);
-    append(out.lists.points, part.points), append(out.lists.sights, part.sights);
+    append(out.lists.points, part.points), append(out.lists.gap_samples, part.gap_samples);
   }
   return out;
 }

@@ -57,7 +57,7 @@ struct Options {
   int degree;        // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
   bool vectorial;    // couple along the normal (dim values an entry) or componentwise (1 value an entry)
   bool keep_points;  // also return every integration point
-  bool sights;       // also return where each segment's corners and middle see the target
+  bool gap_samples;  // also return where each segment's corners and middle see the target
   bool axisymmetric; // coordinates are (r, z): integrals run round the axis
   double reach;      // largest distance between the surfaces, either sign
   double rounding;   // gaps below this are rounding errors of the coordinates: none
@@ -78,7 +78,7 @@ struct IntegrationPoints {
 };
 
 // Points of the contactor and what they see: gap, normal from target to contactor, shape functions of both sides.
-struct Sights {
+struct GapSamples {
   std::vector<double> gap, normal, contactor, target; // n, n dim, MAX_FACET_NODES n twice
   std::vector<std::int32_t> contactor_facet, target_facet;
 };
@@ -86,7 +86,7 @@ struct Sights {
 struct Lists {
   Entries contactor, target;
   IntegrationPoints points;
-  Sights sights;
+  GapSamples gap_samples;
 };
 
 struct Coupling {

@@ -24,7 +24,7 @@ def coupled(kind: str) -> tuple:
     contactor = grid(kind, (5, 4), distort=0.15, seed=1)
     target = grid("quad4", (3, 3), distort=0.1, up=False, seed=2)
     target = replace(target, points=target.points + np.array([0.07, -0.05, 0.0]))
-    coupling = couple(contactor, target, resolve("auto", contactor)[1], CouplingOptions(keep_sights=True))
+    coupling = couple(contactor, target, resolve("auto", contactor)[1], CouplingOptions(keep_gap_samples=True))
     return contactor, of_corners(contactor, coupling)
 
 
@@ -78,7 +78,7 @@ def test_gap_of_a_step_is_that_on_either_side() -> None:
     mesh = join({"contactor": contactor, "high": steps})
     both = np.concatenate([mesh.surfaces["high.high.bottom"], mesh.surfaces["high.low.bottom"]])
     top = mesh.surface("contactor.top")
-    raw = couple(top, mesh.facets(both), 1, CouplingOptions(reach=2.0, keep_sights=True))
+    raw = couple(top, mesh.facets(both), 1, CouplingOptions(reach=2.0, keep_gap_samples=True))
     fit = np.linalg.solve(raw.mass[0, :2, :2], raw.gap[:2])
     assert sorted(fit) == pytest.approx([-0.25, 1.25])
     kept = np.linalg.solve(raw.mass[0, :2, :2], of_corners(top, raw).gap[:2])

@@ -156,15 +156,15 @@ def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
     contactor = grid(kc, (3, 4), distort=0.15, seed=1, bulge=in_plane)
     target = grid(kt, (4, 3), distort=0.15, up=False, seed=2, bulge=in_plane)
     target = replace(target, points=target.points + np.array([0.0, 0.0, 0.1]))
-    plain, seen = (couple(contactor, target, 1, CouplingOptions(keep_sights=sights)) for sights in (False, True))
-    assert plain.sights is None
+    plain, seen = (couple(contactor, target, 1, CouplingOptions(keep_gap_samples=sights)) for sights in (False, True))
+    assert plain.gap_samples is None
     assert (plain.operator != seen.operator).nnz == 0
     np.testing.assert_array_equal(plain.gap, seen.gap)
-    at = seen.sights
+    at = seen.gap_samples
     assert at is not None
     assert len(at.gap) >= 4 * seen.segments.sum()
     assert at.gap == pytest.approx(0.1, rel=1e-12)
-    assert at.own.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
+    assert at.contactor_shapes.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
     assert at.other.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
 
 

@@ -43,7 +43,9 @@ def keyway(size: float = 2.0) -> abut.Model:
     def build(gmsh: Any) -> None:
         occ = gmsh.model.occ
         shaft = occ.addDisk(0, 0, 0, radius, radius)
-        shaft = occ.cut([(2, shaft)], [(2, occ.addDisk(0, 0, 0, 6, 6)), (2, occ.addRectangle(-6, 13, 0, 12, 10))])[0][0][1]
+        shaft = occ.cut([(2, shaft)], [(2, occ.addDisk(0, 0, 0, 6, 6)), (2, occ.addRectangle(-6, 13, 0, 12, 10))])[0][
+            0
+        ][1]
         hub = occ.addDisk(0, 0, 0, 36, 36)
         hole = occ.fuse([(2, occ.addDisk(0, 0, 0, radius, radius))],
                         [(2, occ.addRectangle(-6 - play, 10, 0, 12 + 2 * play, 15))])[0]  # fmt: skip

@@ -78,7 +78,7 @@ def test_a_long_way_into_the_target_is_seen() -> None:
     model, before = problem.model, problem.start()
     moved = np.zeros_like(model.mesh.points)
     moved[model.mesh.nodes_of("upper.bottom"), 1] = -0.95
-    trial = replace(before, unknowns=problem.held.free.T @ moved.ravel(), time=0.1)
+    trial = replace(before, unknowns=problem.constraints.free.T @ moved.ravel(), time=0.1)
     own = problem.moving[0].at(
         Place(problem.displacement(trial), problem.displacement(before), None, 0.0), before.multipliers
     )
@@ -297,7 +297,7 @@ def test_refused(what: dict[str, Any], words: str) -> None:
         abut.solve(replace(model, contacts=[replace(model.contacts[0], **what)]))
 
 
-def test_held_by_friction_alone() -> None:
+def test_restrained_friction_alone() -> None:
     """A block that rests on another one by a pressure, and is dragged by less than friction bears: it sticks, and
     the traction is the drag's; by more, and the run says what it is that moves."""
     first, then = (

@@ -42,7 +42,7 @@ def test_folds_touch(pressed: Solution) -> None:
     problem = finite(pressed.model)
     current = problem.moving[0]
     assert isinstance(current, Current)
-    seen = current.shown(pressed.displacement.ravel()).sights
+    seen = current.shown(pressed.displacement.ravel()).gap_samples
     assert seen is not None
     assert seen.gap.min() > -0.05 * THICKNESS
 
@@ -78,7 +78,7 @@ def test_tangent_is_the_derivative(pressed: Solution) -> None:
     """Of balance and gaps in the folded state, as between two bodies."""
     problem, rng = finite(pressed.model), np.random.default_rng(5)
     before, n = problem.start(), problem.operator.shape[0]
-    free = problem.held.free
+    free = problem.constraints.free
     unknowns = np.linalg.lstsq(free.toarray(), pressed.displacement.ravel(), rcond=None)[0]
     at = replace(before, time=1.0, unknowns=unknowns, multipliers=rng.uniform(0.0, 5.0, n))
     system, way = problem.linearise(at, at), rng.standard_normal(problem.n_free)

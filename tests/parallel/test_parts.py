@@ -41,7 +41,7 @@ def test_couplings_of_parts_add_up(pair: tuple[str, str], tied: bool) -> None:
     """Each facet by itself sees what it sees in the whole: one part is empty."""
     mesh = blocks(*pair)
     contactor, target = mesh.surface("lower.top"), mesh.surface("upper.bottom")
-    options = CouplingOptions(keep_points=True, keep_sights=True, componentwise=tied)
+    options = CouplingOptions(keep_points=True, keep_gap_samples=True, componentwise=tied)
     whole = couple(contactor, target, 1, options)
     owner = np.arange(len(contactor)) % 3
     parts = [couple(contactor, target, 1, options, owner == rank) for rank in (0, 1, 2, 3)]

@@ -156,7 +156,7 @@ def test_the_list_is_never_there_before_its_pieces(
         seen.append((tmp_path / "fields_0001.pvtu").exists())
         if function.__name__ == "write_piece":
             raise KeyboardInterrupt
-        return each(function, *shared, own=own)
+        return each(function, *shared, per_rank=own)
 
     monkeypatch.setattr(team, "each", killed)
     with pytest.raises(KeyboardInterrupt):

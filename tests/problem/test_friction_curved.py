@@ -138,7 +138,7 @@ def test_half_of_it_is_half(materials: tuple[float, float]) -> None:
     assert np.abs(whole[first] - half[own]).max() < 1e-9 * 200.0
 
 
-def test_held_by_friction_alone_in_one_step() -> None:
+def test_restrained_friction_alone_in_one_step() -> None:
     """A cylinder that lies on another by its weight, which leans by a hundredth: all but one node close in the step."""
     model = cylinders("quad4", True, CELLS, PUSHES)
     lean = 0.01

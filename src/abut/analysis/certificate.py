@@ -190,10 +190,10 @@ def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
         else:
             turn = np.cross(x, force).sum(axis=0)
         sides.append((force.sum(axis=0), turn, np.abs(force).sum()))
-    (own, own_turn, size), (other, other_turn, _) = sides
+    (near, own_turn, size), (other, other_turn, _) = sides
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     size = max(float(size), 1e-300)
-    return float(np.abs(own - other).max()) / size, float(np.abs(own_turn - other_turn).max()) / (size * extent)
+    return float(np.abs(near - other).max()) / size, float(np.abs(own_turn - other_turn).max()) / (size * extent)
 
 
 def _moment_error(

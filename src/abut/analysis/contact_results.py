@@ -112,18 +112,18 @@ FAINT = 1e-3  # pressure over the largest of all contacts from which down the la
 
 
 def contact_result(
-    mesh: Mesh, own: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
+    mesh: Mesh, state: PairState, residual: float, around: Surroundings, earlier: ContactResult | None = None
 ) -> ContactResult:
     """residual: of the contact law; earlier: of the step before, None in the first."""
-    pair, coupling, degree = own.pair, own.pair.coupling, own.pair.coupling.degree
-    forces, others = own.forces
+    pair, coupling, degree = state.pair, state.pair.coupling, state.pair.coupling.degree
+    forces, others = state.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
-    raw = facet_node_values(pair.contactor, degree, own.normal)
-    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(own, at))
+    raw = facet_node_values(pair.contactor, degree, state.normal)
+    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(state, at))
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
-    statistics, amount = _statistics(mesh, own, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
     return ContactResult(
@@ -132,24 +132,36 @@ def contact_result(
         target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
-        area=own.area,
-        max_penetration=own.penetration,
-        active=int(own.closed.sum()),
-        multipliers=len(own.pressure),
+        area=state.area,
+        max_penetration=state.penetration,
+        active=int(state.closed.sum()),
+        multipliers=len(state.pressure),
         removed=pair.space.removed,
         segments=int(coupling.segments.sum()),
         pressure=nodal,
         multiplier=raw,
         share=share,
-        gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, own.gaps), np.nan),
+        gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, state.gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
         checks=certificate(
-            pair, own.values, nodal, own.penetration, residual, share, around, friction_balance(pair, own.multipliers)
+            pair,
+            state.values,
+            nodal,
+            state.penetration,
+            residual,
+            share,
+            around,
+            friction_balance(pair, state.multipliers),
         )
         + friction_checks(
-            pair, own.multipliers, own.status, own.slips, own.limit, max(around.reference, FAINT * around.beside)
+            pair,
+            state.multipliers,
+            state.status,
+            state.slips,
+            state.limit,
+            max(around.reference, FAINT * around.beside),
         ),
         statistics=statistics,
         resultant=amount,
@@ -158,7 +170,7 @@ def contact_result(
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
         friction=None
         if at is None
-        else friction_result(pair, at, own.multipliers, own.status, own.slips, own.limit, before),
+        else friction_result(pair, at, state.multipliers, state.status, state.slips, state.limit, before),
     )
 
 
@@ -169,30 +181,30 @@ def _undeformed(mesh: Mesh, surface: Surface) -> Surface:
 
 def _statistics(
     mesh: Mesh,
-    own: PairState,
+    state: PairState,
     at: Averages | None,
     nodal: NDArray[np.float64],
     share: NDArray[np.float64],
     nothing: float,
 ) -> tuple[PressureStatistics, Resultant]:
     """nodal, share: (n_facets, 9) reported pressure and covered share; nothing: pressure that is left after unloading."""
-    pair = own.pair
-    fields = own.normal, loaded_part(pair, own.pressure, own.closed, own.normal)
+    pair = state.pair
+    fields = state.normal, loaded_part(pair, state.pressure, state.closed, state.normal)
     load, loaded = (nodal_parts(pair.coupling, at, field) for field in fields)
-    forces, _ = own.forces
-    ids, none = pair.contactor.node_ids, bool(np.abs(own.values).max(initial=0.0) <= nothing)
+    forces, _ = state.forces
+    ids, none = pair.contactor.node_ids, bool(np.abs(state.values).max(initial=0.0) <= nothing)
     return (
         pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
         resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 
-def _reported(own: PairState, at: Averages) -> NDArray[np.float64]:
+def _reported(state: PairState, at: Averages) -> NDArray[np.float64]:
     """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients, by
     theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
     planes of symmetry mended, theory (P14)."""
-    pair, average = own.pair, at.of(own.normal)
-    if pair.tied or (own.closed.all() and pair.space.continuous and pair.space.ordinary):
+    pair, average = state.pair, at.of(state.normal)
+    if pair.tied or (state.closed.all() and pair.space.continuous and pair.space.ordinary):
         sharp = at.sharpened(average, at.surface.points)
         if pair.tied or sharp.min() >= 0.0:
             return sharp

@@ -34,7 +34,9 @@ def covered(
         pairs.append(pair)
         keeps.append(keep)
     keep = np.concatenate([np.zeros(0, bool), *keeps])
-    slips = {p.contact.name: slips[p.contact.name][own] for p, own in zip(pairs, keeps) if p.contact.name in slips}
+    slips = {
+        p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
+    }
     assert system.pushing is not None
     smaller = replace(
         system, pairs=pairs, operator=system.operator[keep], offset=system.offset[keep], pushing=system.pushing[keep],
@@ -50,7 +52,7 @@ def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array,
     of the laws, theory (G3)."""
     coupling = kind.shown(here)
     ends = np.cumsum([len(part) for part in pair.components])[:-1]
-    components = [_weighed(only(part, own), coupling) for part, own in zip(pair.components, np.split(keep, ends))]
+    components = [_weighed(only(part, chosen), coupling) for part, chosen in zip(pair.components, np.split(keep, ends))]
     functions = keep[pair.normal]
     number = np.where(keep, np.cumsum(keep) - 1, -1)
     index = np.where(pair.index >= 0, number[np.maximum(pair.index, 0)], -1)[functions]

@@ -44,15 +44,15 @@ class Acting:
 def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
     """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R11)."""
     force = np.zeros(system.pairs[0].rows.shape[1])
-    for pair, own in zip(system.pairs, multipliers):
+    for pair, values in zip(system.pairs, multipliers):
         part = pair.normal if pair.frictional else slice(None)
-        force += pair.rows[part].T @ own[part]
+        force += pair.rows[part].T @ values[part]
     return force
 
 
 def tractions(system: Linearised, multipliers: Sequence[Vector]) -> list[Vector]:
     """Multipliers of friction of each pair, none without."""
-    return [own[pair.tangential] if pair.frictional else own[:0] for pair, own in zip(system.pairs, multipliers)]
+    return [part[pair.tangential] if pair.frictional else part[:0] for pair, part in zip(system.pairs, multipliers)]
 
 
 def energy(

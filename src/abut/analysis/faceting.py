@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.contact.coupling import Sights
+from abut.contact.coupling import GapSamples
 from abut.contact.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 
 MIDDLE = 2.0 / 3.0  # weight of a segment's middle; its corners share the rest: exact for parabolas on lines and squares
@@ -39,8 +39,8 @@ def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64
     of a line the normal is known from one side only; there the other end stands for both.
     """
     linear = np.zeros(len(surface), dtype=bool)
-    for kind, own in by_kind(surface):
-        linear[own] = CELLS[kind].degree == 1
+    for kind, facets in by_kind(surface):
+        linear[facets] = CELLS[kind].degree == 1
     height = np.zeros(len(facet))
     if not linear.any():
         return height
@@ -63,10 +63,12 @@ def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64
 
 def misfit(pair: Pair) -> Misfit | None:
     """Of a pair, or None where both sides are flat or quadratic, or nothing is known of its sights."""
-    at = pair.coupling.sights
+    at = pair.coupling.gap_samples
     if at is None or not len(at.gap):
         return None
-    point = -bulge(pair.contactor, at.facet, at.own) - bulge(pair.target, at.target_facet, at.other)
+    point = -bulge(pair.contactor, at.facet, at.contactor_shapes) - bulge(
+        pair.target, at.target_facet, at.target_shapes
+    )
     if np.abs(point).max() <= ROUND * pair.size:
         return None
     moments = _moments(pair, at, point)
@@ -82,11 +84,11 @@ def misfit(pair: Pair) -> Misfit | None:
     return Misfit(point, node)
 
 
-def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.float64]:
+def _moments(pair: Pair, at: GapSamples, value: NDArray[np.float64]) -> NDArray[np.float64]:
     """Integrals (9 n_facets,) of a value given at the sights with the facet-wise pressure functions; in 2D exact to
     the third order (Simpson's rule), in 3D an estimate."""
     contactor, degree = pair.contactor, pair.coupling.degree
-    functions = np.zeros_like(at.own)
+    functions = np.zeros_like(at.contactor_shapes)
     for kind, facets in by_kind(contactor):
         here = np.isin(at.facet, facets)
         if degree == 0:
@@ -94,7 +96,7 @@ def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.f
             continue
         carrier = CELLS[pressure_kind(kind, degree)]
         values, _ = shape_functions(carrier.code, node_coordinates(kind))
-        functions[np.ix_(here, np.arange(carrier.nodes))] = at.own[here, : CELLS[kind].nodes] @ values
+        functions[np.ix_(here, np.arange(carrier.nodes))] = at.contactor_shapes[here, : CELLS[kind].nodes] @ values
     area, middle, number = _segments(contactor, at)
     corners = np.bincount(number, minlength=len(middle)) - 1
     weight = (1.0 - MIDDLE) / np.maximum(corners, 1)[number]
@@ -106,21 +108,21 @@ def _moments(pair: Pair, at: Sights, value: NDArray[np.float64]) -> NDArray[np.f
 
 def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:
     """The part of the misfit at the sights, (n_sights,), that no mean over a pressure function sees."""
-    at = pair.coupling.sights
+    at = pair.coupling.gap_samples
     assert at is not None
     nodes = np.maximum(pair.contactor.nodes[at.facet], 0)
     mean = np.nan_to_num(of.node[nodes])
-    return np.asarray(of.point - (at.own * mean).sum(axis=1))
+    return np.asarray(of.point - (at.contactor_shapes * mean).sum(axis=1))
 
 
-def free_axes(model: Model, held: Supports, pair: Pair) -> NDArray[np.bool_]:
+def free_axes(model: Model, constraints: Constraints, pair: Pair) -> NDArray[np.bool_]:
     """Along which axes, (dim,), the body of one side at least may shift as a whole: no support holds it there."""
     free = np.zeros(model.dim, dtype=bool)
     for surface in (pair.contactor, pair.target):
         bodies = [body for body, cells in model.mesh.bodies.items() if np.isin(surface.cells, cells).any()]
         nodes = np.unique(np.concatenate([model.mesh.nodes_of(body) for body in bodies]))
         for a, axis in enumerate(np.eye(model.dim)):
-            share = held.held_share(nodes, np.broadcast_to(axis, (len(nodes), model.dim)))
+            share = constraints.held_share(nodes, np.broadcast_to(axis, (len(nodes), model.dim)))
             free[a] |= bool((share < HELD).all())
     return free
 
@@ -170,8 +172,8 @@ def _edges(surface: Surface) -> NDArray[np.int64]:
     ends = []
     for kind, facets in by_kind(surface):
         corners = CELLS[kind].corners if CELLS[kind].dim == 2 else 2
-        own = surface.nodes[facets]
-        ends += [own[:, [i, (i + 1) % corners]] for i in range(corners if corners > 2 else 1)]
+        nodes = surface.nodes[facets]
+        ends += [nodes[:, [i, (i + 1) % corners]] for i in range(corners if corners > 2 else 1)]
     return np.concatenate(ends).astype(np.int64)
 
 
@@ -194,14 +196,14 @@ def _near_rim(surface: Surface) -> NDArray[np.bool_]:
     return rim
 
 
-def _segments(surface: Surface, at: Sights) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+def _segments(surface: Surface, at: GapSamples) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
     """Area of every segment, (n_segments,), the number of its sight in the middle, which comes first, and of every sight
     that of its segment, (n_sights,)."""
     new = np.ones(len(at.gap), dtype=bool)
     new[1:] = (at.facet[1:] != at.facet[:-1]) | (at.target_facet[1:] != at.target_facet[:-1])
     middle = np.flatnonzero(new)
     number = np.cumsum(new) - 1
-    x = np.einsum("ka,kad->kd", at.own, surface.points[np.maximum(surface.nodes[at.facet], 0)])
+    x = np.einsum("ka,kad->kd", at.contactor_shapes, surface.points[np.maximum(surface.nodes[at.facet], 0)])
     arm = x - x[middle[number]]
     if surface.dim == 2:
         area = np.linalg.norm(arm, axis=1)

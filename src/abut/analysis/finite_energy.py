@@ -51,7 +51,7 @@ def finite_energy(
     def work(name: str) -> float:
         return float(0.5 * (getattr(before, name) + getattr(now, name)) @ moved)
 
-    supports = sum(0.5 * float(own.reaction @ (moved - own.follows @ step)) for own in (before, now))
+    supports = sum(0.5 * float(side.reaction @ (moved - side.follows @ step)) for side in (before, now))
     stored, friction = now.stored - before.stored, sum(c.friction.work for c in contacts if c.friction is not None)
     internal, way = work("internal"), np.abs(step)
     rounding = np.finfo(float).eps * (np.abs(stiffness) * np.abs(now.free)) @ way

@@ -42,13 +42,13 @@ def friction_result(
     of the step before, None in the first; None without friction."""
     if limit is None:
         return None
-    weight, own = pair.space.weight, status[pair.normal]
+    weight, states = pair.space.weight, status[pair.normal]
     area = weight if pair.slip is None or pair.slip.area is None else pair.slip.area
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     values = traction_values(pair, multipliers)
     shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
-    size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], own)
-    taken = np.where(own != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
+    size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], states)
+    taken = np.where(states != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
     work, each = float(area @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
         coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
@@ -56,9 +56,9 @@ def friction_result(
         traction_limit=_limit_at_nodes(pair, at, bound),
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
-        status=_status_at_nodes(pair, own),
-        sticking_area=float(weight[own == CLOSED].sum()),
-        slipping_area=float(weight[own == SLIPPING].sum()),
+        status=_status_at_nodes(pair, states),
+        sticking_area=float(weight[states == CLOSED].sum()),
+        slipping_area=float(weight[states == SLIPPING].sum()),
         work=work,
         total_work=work + (0.0 if earlier is None else earlier.total_work),
         work_per_area=each,
@@ -92,15 +92,15 @@ def _largest_share(size: Vector, bound: Vector) -> float:
 
 def tangential_forces(pair: Pair, multipliers: Vector) -> Vector:
     """Nodal forces of friction alone on all points, (n_points, dim)."""
-    own = pair.rows[pair.tangential].T @ multipliers[pair.tangential]
-    return np.asarray(own).reshape(-1, pair.contactor.dim)
+    forces = pair.rows[pair.tangential].T @ multipliers[pair.tangential]
+    return np.asarray(forces).reshape(-1, pair.contactor.dim)
 
 
 def _at_nodes(pair: Pair, values: Vector) -> Vector:
     """Vectors (n_functions, dim) at the facets' nodes, (n_facets, 9, dim), NaN where padded."""
-    own = pair.space.plain @ values
+    at_rows = pair.space.plain @ values
     degree = pair.coupling.degree
-    return np.stack([facet_node_values(pair.contactor, degree, component) for component in own.T], axis=-1)
+    return np.stack([facet_node_values(pair.contactor, degree, component) for component in at_rows.T], axis=-1)
 
 
 def _status_at_nodes(pair: Pair, status: NDArray[np.int8]) -> NDArray[np.int32]:
@@ -124,11 +124,11 @@ def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
     return mine, force - mine
 
 
-def _on_contactor(pair: Pair, force: Vector, own: Vector) -> Vector:
+def _on_contactor(pair: Pair, force: Vector, forces: Vector) -> Vector:
     """What of nodal forces (n_points, dim) acts on the contactor: all of its nodes', or, of a body that touches itself,
     ``own`` (dim n_points,)."""
     if pair.contactor.kin is not None and len(np.intersect1d(pair.contactor.node_ids, pair.target.node_ids)):
-        return np.asarray(own).reshape(force.shape)
+        return np.asarray(forces).reshape(force.shape)
     mine = np.zeros((len(force), 1), dtype=bool)
     mine[pair.contactor.node_ids] = True
     return np.where(mine, force, 0.0)
@@ -187,18 +187,18 @@ def friction_checks(
     friction; largest: pressure, now or in a step before."""
     if limit is None:
         return ()
-    name, own = pair.contact.name, status[pair.normal]
+    name, states = pair.contact.name, status[pair.normal]
     pressure = np.maximum(multipliers[pair.normal], 0.0)
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     size, way = np.linalg.norm(traction, axis=1), np.linalg.norm(slip, axis=1)
-    bound = _bound(limit, pressure, own)
+    bound = _bound(limit, pressure, states)
     largest = max(largest, float(pressure.max(initial=0.0)), 1e-300)
-    slips_now, sticks = own == SLIPPING, own == CLOSED
+    slips_now, sticks = states == SLIPPING, states == CLOSED
     power = np.einsum("kd,kd->k", traction, slip)
     against = (size * way + power)[slips_now]
-    faint = FAINT * largest * float(way[own != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
+    faint = FAINT * largest * float(way[states != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
     most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
-    work = -(power * pair.space.weight)[own != OPEN]
+    work = -(power * pair.space.weight)[states != OPEN]
     unit = max(1e-300, float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
     values = (
         ("friction cone", max(float((size - bound).max(initial=0.0)), 0.0) / largest, CONE,

@@ -51,11 +51,13 @@ def linear_solver(kind: str, problem: ContactProblem, team: Team | None) -> Line
     motions = near_null(problem.model.mesh, problem.restraint.rigid)
     if team is None:
         return (
-            Direct() if kind == "direct" else Multigrid(problem.held.free, motions, problem.model.mesh.points, Count())
+            Direct()
+            if kind == "direct"
+            else Multigrid(problem.constraints.free, motions, problem.model.mesh.points, Count())
         )
     from abut.parallel.linear import PetscDirect, PetscIterations
 
-    return PetscDirect() if kind == "direct" else PetscIterations(problem.held.free.T @ motions, Count())
+    return PetscDirect() if kind == "direct" else PetscIterations(problem.constraints.free.T @ motions, Count())
 
 
 def setting_up(solver: LinearSolver, problem: ContactProblem) -> tuple[str, float]:

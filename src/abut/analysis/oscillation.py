@@ -66,7 +66,7 @@ class Graph:
         for kind, facets in by_kind(surface):
             corners, nodes = CELLS[kind].corners, surface.nodes[facets].astype(np.int64)
             pairs = [(0, 1)] if CELLS[kind].dim == 1 else [(i, (i + 1) % corners) for i in range(corners)]
-            ends += [np.sort(nodes[:, list(own)], axis=1) for own in pairs]
+            ends += [np.sort(nodes[:, list(ends_of_edge)], axis=1) for ends_of_edge in pairs]
         edges, count = np.unique(np.concatenate(ends), axis=0, return_counts=True)
         rim = np.zeros(n, dtype=bool)
         if surface.dim == 2:
@@ -131,7 +131,7 @@ def _jumps(
         local.append(np.tile(np.arange(n), len(facets)))
         node.append(surface.nodes[facets, :n].ravel())
     i, k, at = np.concatenate(facet), np.concatenate(local), np.concatenate(node)
-    own = values.reshape(-1, MAX_FACET_NODES)[i, k]
-    opened = np.bincount(at, own <= CLOSED * largest, minlength=len(pressure))
+    at_edge = values.reshape(-1, MAX_FACET_NODES)[i, k]
+    opened = np.bincount(at, at_edge <= CLOSED * largest, minlength=len(pressure))
     inside = (opened == 0)[at]
-    return float(np.abs(own - pressure[at])[inside].max(initial=0.0)) / largest
+    return float(np.abs(at_edge - pressure[at])[inside].max(initial=0.0)) / largest

@@ -23,14 +23,14 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
 
     displacement: (n_points, dim); offset: added to the geometric gap, a length.
     """
-    at = pair.coupling.sights
+    at = pair.coupling.gap_samples
     deepest = np.zeros(len(pair.contactor))
     if at is None or not len(at.gap):
         return deepest
     change = np.zeros(len(at.gap))
     for sign, surface, facet, shapes in (
-        (1.0, pair.contactor, at.facet, at.own),
-        (-1.0, pair.target, at.target_facet, at.other),
+        (1.0, pair.contactor, at.facet, at.contactor_shapes),
+        (-1.0, pair.target, at.target_facet, at.target_shapes),
     ):
         nodes = np.maximum(surface.nodes[facet], 0)  # shape functions are zero where padded
         for a in range(surface.dim):
@@ -56,9 +56,9 @@ def covered_elsewhere(pairs: Sequence[Pair], pressures: Sequence[NDArray[np.floa
         size = np.abs(values).reshape(-1, MAX_FACET_NODES).max(axis=1)
         share = pair.coupling.covered / np.maximum(full_moments(pair.contactor, 0)[:, 0], 1e-300)
         loaded.append(np.column_stack([share, np.where(size > CLOSED * size.max(initial=0.0), share, 0.0)]))
-    for i, own in enumerate(numbers):
+    for i, facet_numbers in enumerate(numbers):
         for j, other in enumerate(numbers):
             if i != j:
-                _, here, there = np.intersect1d(own, other, assume_unique=True, return_indices=True)
+                _, here, there = np.intersect1d(facet_numbers, other, assume_unique=True, return_indices=True)
                 result[i][here] += loaded[j][there]
     return result

@@ -26,9 +26,9 @@ def _contact(parts: Sequence[ContactResult]) -> ContactResult:
         return replace(last, checks=checks)
     friction = replace(
         rubbed[-1],
-        slip=sum((own.slip for own in rubbed[:-1]), rubbed[-1].slip),
-        work=sum(own.work for own in rubbed),
-        work_per_area=sum((own.work_per_area for own in rubbed[:-1]), rubbed[-1].work_per_area),
+        slip=sum((result.slip for result in rubbed[:-1]), rubbed[-1].slip),
+        work=sum(result.work for result in rubbed),
+        work_per_area=sum((result.work_per_area for result in rubbed[:-1]), rubbed[-1].work_per_area),
     )
     return replace(last, checks=checks, friction=friction)
 
@@ -36,12 +36,14 @@ def _contact(parts: Sequence[ContactResult]) -> ContactResult:
 def _worst(check: Check, others: Sequence[Check]) -> Check:
     if check.last:
         return check
-    return max((other for other in others if other.name == check.name), key=lambda own: own.value / own.limit)
+    return max(
+        (other for other in others if other.name == check.name), key=lambda candidate: candidate.value / candidate.limit
+    )
 
 
 def _energy(parts: Sequence[Energy | None]) -> Energy | None:
-    own = [part for part in parts if part is not None]
-    if not own:
+    known = [part for part in parts if part is not None]
+    if not known:
         return None
-    total = {f.name: sum(getattr(part, f.name) for part in own) for f in fields(Energy) if f.name != "elastic"}
-    return Energy(**{**total, "size": max(part.size for part in own), "elastic": own[-1].elastic})
+    total = {f.name: sum(getattr(part, f.name) for part in known) for f in fields(Energy) if f.name != "elastic"}
+    return Energy(**{**total, "size": max(part.size for part in known), "elastic": known[-1].elastic})

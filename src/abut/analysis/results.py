@@ -71,8 +71,8 @@ def step_result(
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
     problem, system, state = end.problem, end.system, end.state
-    model, held, springs = problem.model, problem.held, problem.springs
-    carried = end.reaction if held.links is None else end.reaction - held.links.forces(end.reaction)
+    model, constraints, springs = problem.model, problem.constraints, problem.springs
+    carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     contacts = _contacts(end, attempt, before)
     told = _finite_energy if model.finite else _energy
@@ -89,7 +89,7 @@ def step_result(
         stress=assembled.bodies.stress(end.motion),
         reaction=end.reaction.reshape(-1, model.dim).sum(axis=0),
         reactions={
-            on: by_supports[_with_bodies(model.mesh.nodes_of(on), held.bodies)].sum(axis=0)
+            on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
         load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
@@ -97,7 +97,7 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
-        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in held.bodies},
+        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -143,17 +143,17 @@ def _energy(
     end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acted, Energy | None]:
     """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
-    system, held = end.system, end.problem.held
+    system, constraints = end.system, end.problem.constraints
     if not attempt.converged or not any(pair.frictional for pair in system.pairs):
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
-        end.displacement, held.prescribed @ system.factors, end.internal, end.loads, end.reaction,
+        end.displacement, constraints.prescribed @ system.factors, end.internal, end.loads, end.reaction,
         pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
         largest * max(attempt.iterations[-1].residual, TOLERANCE),
     )  # fmt: skip
     if not isinstance(acted, Acting):
-        acted = Acting.none(held.prescribed @ weights(end.problem.model.histories, 0.0), system)
+        acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
     slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
     return now, energy(system, acted, now, slips, contacts, _largest_size(steps))
@@ -172,10 +172,10 @@ def _finite_energy(
     now = FiniteActing(
         end.displacement, end.internal, end.loads, end.reaction, pressed,
         end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
-        problem.held.near(state.unknowns, weights(histories, state.time)).free, left,
+        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
     )  # fmt: skip
     if not isinstance(acted, FiniteActing):
-        acted = FiniteActing.none(problem.held.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
+        acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     return now, finite_energy(acted, now, system.stiffness.diagonal(), contacts, _largest_size(steps))
 
 
@@ -192,7 +192,7 @@ def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
     """Of all pairs."""
-    system, model, held = end.system, end.problem.model, end.problem.held
+    system, model, constraints = end.system, end.problem.model, end.problem.constraints
     references = _largest_pressures(len(system.pairs), before)
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
@@ -201,7 +201,7 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         constant, varying = offsets(model, pair.contact)
         moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
         overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
-        around.append(Surroundings(reference, beside, overlap, free_axes(model, held, pair), elsewhere))
+        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(
@@ -210,17 +210,17 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     )  # fmt: skip
     earlier = before[-1].contacts if before else [None] * len(system.pairs)
     return tuple(
-        contact_result(model.mesh, PairState.of(*own, system.factors), residual, beside_it, one_before)
-        for own, beside_it, one_before in zip(found, around, earlier)
+        contact_result(model.mesh, PairState.of(*state, system.factors), residual, beside_it, one_before)
+        for state, beside_it, one_before in zip(found, around, earlier)
     )
 
 
 def _cycling(system: Linearised, changing: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
     """The facets of each contact whose multipliers keep changing."""
     cycling = {}
-    for pair, own in zip(system.pairs, system.split(changing)):
-        if own.any():
-            rows = np.unique(pair.transfer.tocsc()[:, own].tocoo().row // MAX_FACET_NODES)
+    for pair, of_pair in zip(system.pairs, system.split(changing)):
+        if of_pair.any():
+            rows = np.unique(pair.transfer.tocsc()[:, of_pair].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return cycling
 
@@ -231,10 +231,10 @@ def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
         return {}
     flips = {}
     for pair, between, changing in zip(system.pairs, system.split(attempt.between), system.split(attempt.cycling)):
-        own = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
-        if own.any():
-            bits = between[pair.normal][own, None] >> np.arange(3) & 1
-            flips[pair.contact.name] = Flips(pair.space.node[own].astype(np.int64), bits.astype(bool))
+        here = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
+        if here.any():
+            bits = between[pair.normal][here, None] >> np.arange(3) & 1
+            flips[pair.contact.name] = Flips(pair.space.node[here].astype(np.int64), bits.astype(bool))
     return flips
 
 

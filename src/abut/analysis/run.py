@@ -75,10 +75,10 @@ class Run:
             from abut.parallel.team import start_team
 
             team = start_team()
-        held, loaded = prescribed(model)
+        constraints, loaded = prescribed(model)
         clock.mark("set-up")
         backend = assembled_bodies(model, observe, told.note, clock, team)
-        assembled = assemble(model, held, loaded, backend, observe, told.note, clock)
+        assembled = assemble(model, constraints, loaded, backend, observe, told.note, clock)
         problem = assembled.problem
         check_order(resume, problem.n_free, int(problem.operator.shape[0]))
         kind = solver_kind(problem, team)
@@ -110,7 +110,7 @@ class Run:
             if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
                 return
             factors = weights(self.model.histories, time)
-            loads = problem.held.free.T @ (self.assembled.loaded.forces @ factors)
+            loads = problem.constraints.free.T @ (self.assembled.loaded.forces @ factors)
             require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
 
         def prepares(what: LinearSolver) -> None:

@@ -36,9 +36,9 @@ def supported(surface: Surface, share: NDArray[np.float64]) -> NDArray[np.bool_]
     result = np.zeros(share.shape, dtype=bool)
     for kind, facets in by_kind(surface):
         cell = CELLS[kind]
-        own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(kind))
+        functions, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(kind))
         low = share[facets, : cell.corners] < SUPPORTED
-        result[facets, : cell.nodes] = low @ own.T < NONE
+        result[facets, : cell.nodes] = low @ functions.T < NONE
     return result
 
 
@@ -105,8 +105,10 @@ def quantile(values: NDArray[np.float64], weight: NDArray[np.float64], share: fl
     if not len(values):
         return float("nan")
     step = SAME * float(np.abs(values).max())
-    _, first, own = np.unique(np.round(values / step) if step > 0.0 else values, return_index=True, return_inverse=True)
-    weights = np.bincount(own.ravel(), weight)
+    _, first, level = np.unique(
+        np.round(values / step) if step > 0.0 else values, return_index=True, return_inverse=True
+    )
+    weights = np.bincount(level.ravel(), weight)
     middle = np.cumsum(weights) - 0.5 * weights
     return float(np.interp(share * weights.sum(), middle, values[first]))
 
@@ -118,8 +120,8 @@ def nodal_forces(
     unit thickness, axisymmetric of the full circumference.
 
     values: facet-wise coefficients of the pressure (9 n_facets,), of a tie's traction (9 n_facets, dim)."""
-    own, other = (np.asarray(part.T @ values) for part in (coupling.contactor_part, coupling.target_part))
-    return own.reshape(-1, dim), -other.reshape(-1, dim)
+    on_contactor, other = (np.asarray(part.T @ values) for part in (coupling.contactor_part, coupling.target_part))
+    return on_contactor.reshape(-1, dim), -other.reshape(-1, dim)
 
 
 def resultant(
@@ -173,8 +175,8 @@ def forces_on_bodies(
     total = np.bincount(node, area[facet], minlength=len(ids))
     result = {}
     for name, cells in bodies.items():
-        own = np.isin(surface.cells, cells)
-        if own.any():
-            part = np.bincount(node, np.where(own, area, 0.0)[facet], minlength=len(ids)) / total
+        inside = np.isin(surface.cells, cells)
+        if inside.any():
+            part = np.bincount(node, np.where(inside, area, 0.0)[facet], minlength=len(ids)) / total
             result[name] = part @ forces
     return result

@@ -37,6 +37,6 @@ def restored(saved: Saved) -> list[Attempt]:
     ends = np.cumsum([part.iterations for part in parts])
     rows = [saved.iterations[end - part.iterations : end] for part, end in zip(parts, ends)]
     return [
-        Attempt(saved.number, part.state, True, own, none, part.inside, part.state.time)
-        for part, own in zip(parts, rows)
+        Attempt(saved.number, part.state, True, row, none, part.inside, part.state.time)
+        for part, row in zip(parts, rows)
     ]

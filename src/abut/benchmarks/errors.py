@@ -64,13 +64,13 @@ def pressure_l2(solution: Solution, exact: Field, contact: int = 0) -> float:
     error = size = 0.0
     for code in np.unique(surface.kinds[result.covered]):
         cell = BY_CODE[code]
-        own = np.flatnonzero((surface.kinds == code) & result.covered)
+        facets = np.flatnonzero((surface.kinds == code) & result.covered)
         xi, weights = field_rule(cell.name)
         shapes, _ = shape_functions(code, np.ascontiguousarray(xi))
-        x, _, area = facet_measure(surface, cell.name, own, xi)
+        x, _, area = facet_measure(surface, cell.name, facets, xi)
         area = area * weights
         wanted = evaluate(exact, x, "exact pressure")
-        error += float((area * (result.pressure[own, : cell.nodes] @ shapes.T - wanted) ** 2).sum())
+        error += float((area * (result.pressure[facets, : cell.nodes] @ shapes.T - wanted) ** 2).sum())
         size += float((area * wanted**2).sum())
     return _ratio(error, size)
 

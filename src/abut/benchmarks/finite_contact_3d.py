@@ -67,8 +67,8 @@ def _measures(solution: Solution) -> Mapping[str, float]:
 
 def _unbalanced(step: Step) -> float:
     """Sum of the forces on contactor and target over the sum of their sizes."""
-    own, other = step.contacts[0].contactor_forces, step.contacts[0].target_forces
-    return float(np.abs(own.sum(axis=0) + other.sum(axis=0)).max() / np.abs(own).sum())
+    on_contactor, other = step.contacts[0].contactor_forces, step.contacts[0].target_forces
+    return float(np.abs(on_contactor.sum(axis=0) + other.sum(axis=0)).max() / np.abs(on_contactor).sum())
 
 
 def _tail(step: Step) -> int:

@@ -53,8 +53,10 @@ def _stretch(law: str) -> Benchmark:
         return float(brentq(lambda t: cauchy(law, np.diag([STRETCH, t, t]))[1, 1], 0.3, 1.5, xtol=1e-15))
 
     def model(level: int) -> Model:
-        held = [support_along(f"block.{on}", axis, 0.0) for on, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))]
-        return _block(law, [*held, Support("block.right", x=STRETCH - 1.0)], level, 4)
+        constraints = [
+            support_along(f"block.{on}", axis, 0.0) for on, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))
+        ]
+        return _block(law, [*constraints, Support("block.right", x=STRETCH - 1.0)], level, 4)
 
     def measure(solution: Solution) -> dict[str, float]:
         far = solution.displacement[np.isclose(solution.model.mesh.points.sum(axis=1), 3.0)]
@@ -111,9 +113,9 @@ def _turn() -> Benchmark:
         )  # fmt: skip
 
     def measure(solution: Solution) -> dict[str, float]:
-        own = solution.model.mesh.points
-        moved = own + solution.displacement
-        change = np.linalg.norm(moved - moved[0], axis=1) - np.linalg.norm(own - own[0], axis=1)
+        start = solution.model.mesh.points
+        moved = start + solution.displacement
+        change = np.linalg.norm(moved - moved[0], axis=1) - np.linalg.norm(start - start[0], axis=1)
         return {
             "stress": float(np.abs(solution.steps[-1].stress).max()) / YOUNG,
             "distances": float(np.abs(change).max()),

@@ -33,7 +33,7 @@ NEAR = 1.1  # of half the contact: as far as tractions are compared
 
 def traction(x: Array) -> Array:
     """Tangential traction at x under ``DOWN``, then ``ALONG``."""
-    outer, inner = (np.sqrt(np.maximum(1.0 - (x / own) ** 2, 0.0)) for own in (WIDTH, STICK))
+    outer, inner = (np.sqrt(np.maximum(1.0 - (x / width) ** 2, 0.0)) for width in (WIDTH, STICK))
     return np.asarray(COEFFICIENT * 2.0 * DOWN / (np.pi * WIDTH) * (outer - STICK / WIDTH * inner))
 
 
@@ -90,7 +90,7 @@ def measure(solution: Solution) -> dict[str, float]:
     x, drag, sticks = along(solution.contacts[0])
     near = np.abs(x) < NEAR * WIDTH
     exact = traction(x)
-    missed, size = (np.trapezoid(own[near] ** 2, x[near]) for own in (drag - exact, exact))
+    missed, size = (np.trapezoid(values[near] ** 2, x[near]) for values in (drag - exact, exact))
     return {
         "middle": float(np.interp(0.0, x, drag)),
         "largest": float(drag.max()),
@@ -147,7 +147,7 @@ def _cycle(level: int) -> Model:
 
 def _work(solution: Solution) -> dict[str, float]:
     done = [step.contacts[0].friction for step in solution.steps[-2:]]
-    return {"loop": sum(own.work for own in done if own is not None)}
+    return {"loop": sum(result.work for result in done if result is not None)}
 
 
 LOOP = "Mindlin and Deresiewicz 1953, for cylinders by Ciavarella 1998 and Jaeger 1998"

@@ -80,8 +80,8 @@ def _belt(level: int) -> Model:
 
 def _tension(solution: Solution) -> dict[str, float]:
     """The drum carries what pulls at both ends: at the one that is loaded along x, at the one that is held along y."""
-    pulled, held = solution.contacts[0].force
-    return {"tension": float(pulled / held)}
+    pulled, constraints = solution.contacts[0].force
+    return {"tension": float(pulled / constraints)}
 
 
 JOINT = 0.1  # coefficient of the press fit

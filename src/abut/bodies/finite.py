@@ -47,12 +47,12 @@ def respond_finite(
     values = no_values(solids) if tangent else None
     moved = np.ascontiguousarray(displacement, dtype=float)
     for group in solids.groups():
-        own = np.zeros(len(group.cells))
+        energies = np.zeros(len(group.cells))
         _integrate(
             solids, group, moved, temperature, force=force,
-            tangent=None if values is None else (*solids.pattern, values), energy=own,
+            tangent=None if values is None else (*solids.pattern, values), energy=energies,
         )  # fmt: skip
-        energy[group.cells] = own
+        energy[group.cells] = energies
     return FiniteResponse(force.ravel(), None if values is None else matrix_of(solids, values), energy)
 
 

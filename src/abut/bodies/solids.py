@@ -69,9 +69,9 @@ class Solids:
         number = np.array([-1, *(distinct.index(key) for key in keys.values())])
         used = dict.fromkeys(distinct, 0)
         for block, first in zip(self.mesh.blocks, self.mesh.starts.tolist()):
-            own = number[1 + self.body_of[first : first + len(block.nodes)]]
-            for i in np.unique(own[own >= 0]).tolist():
-                rows = np.flatnonzero(own == i)
+            body_numbers = number[1 + self.body_of[first : first + len(block.nodes)]]
+            for i in np.unique(body_numbers[body_numbers >= 0]).tolist():
+                rows = np.flatnonzero(body_numbers == i)
                 nodes = np.ascontiguousarray(block.nodes[rows], dtype=np.int32)
                 body, law, integration = distinct[i]
                 yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]], law)

@@ -28,26 +28,28 @@ def partly_adjusted(
     the contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
 
     adjust, reach: lengths; closed: with sights; without: the same coupling with nothing adjusted."""
-    if not adjust or closed.sights is None:
+    if not adjust or closed.gap_samples is None:
         return closed
-    gap, facets = closed.sights.gap, np.arange(len(contactor))
-    partly = np.isin(facets, closed.sights.facet[gap == 0.0]) & np.isin(facets, closed.sights.facet[gap != 0.0])
+    gap, facets = closed.gap_samples.gap, np.arange(len(contactor))
+    partly = np.isin(facets, closed.gap_samples.facet[gap == 0.0]) & np.isin(
+        facets, closed.gap_samples.facet[gap != 0.0]
+    )
     if not partly.any():
         return closed
-    own = without()
+    plain = without()
     move = _on_to_target(contactor, target, partly, adjust, reach)
-    whole = np.zeros(own.contactor_part.shape[1])
+    whole = np.zeros(plain.contactor_part.shape[1])
     whole[: move.size] = move.ravel()
     rows = np.repeat(partly, MAX_FACET_NODES)
-    result = replace(closed, gap=np.where(rows, own.gap + own.contactor_part @ whole, closed.gap))
-    if own.sights is not None:
-        at = own.sights
+    result = replace(closed, gap=np.where(rows, plain.gap + plain.contactor_part @ whole, closed.gap))
+    if plain.gap_samples is not None:
+        at = plain.gap_samples
         nodes = np.maximum(contactor.nodes[at.facet], 0)
-        moved = at.gap + np.einsum("ij,ijd,id->i", at.own, move[nodes], at.normal)
-        result = replace(result, sights=replace(closed.sights, gap=np.where(partly[at.facet], moved, gap)))
-    if own.points is not None and closed.points is not None:
-        moved = own.points.gap + own.points.gap_operator @ whole
-        gaps = np.where(partly[own.points.facet], moved, closed.points.gap)
+        moved = at.gap + np.einsum("ij,ijd,id->i", at.contactor_shapes, move[nodes], at.normal)
+        result = replace(result, gap_samples=replace(closed.gap_samples, gap=np.where(partly[at.facet], moved, gap)))
+    if plain.points is not None and closed.points is not None:
+        moved = plain.points.gap + plain.points.gap_operator @ whole
+        gaps = np.where(partly[plain.points.facet], moved, closed.points.gap)
         result = replace(result, points=replace(closed.points, gap=gaps))
     return result
 
@@ -60,15 +62,15 @@ def _on_to_target(
     normals = nodal_normals(contactor)
     move = np.zeros_like(contactor.points)
     for kind, facets in by_kind(contactor):
-        own, n = facets[partly[facets]], CELLS[kind].corners
-        nodes, first = np.unique(contactor.nodes[own, :n], return_index=True)
-        normal = normals[own, :n].reshape(-1, contactor.dim)[first]
+        chosen, n = facets[partly[facets]], CELLS[kind].corners
+        nodes, first = np.unique(contactor.nodes[chosen, :n], return_index=True)
+        normal = normals[chosen, :n].reshape(-1, contactor.dim)[first]
         facet, _, gap = feet(contactor.points[nodes], normal, target, reach)
         near = (facet >= 0) & (np.abs(gap) <= adjust)
         move[nodes[near]] = gap[near, None] * normal[near]
     for kind, facets in by_kind(contactor):
-        own, between = facets[partly[facets]], corner_functions(kind, CELLS[kind].degree)
-        nodes = contactor.nodes[own, : len(between)]
+        chosen, between = facets[partly[facets]], corner_functions(kind, CELLS[kind].degree)
+        nodes = contactor.nodes[chosen, : len(between)]
         move[nodes] = np.einsum("kc,fcd->fkd", between, move[nodes[:, : between.shape[1]]])
     return move
 
@@ -81,17 +83,17 @@ def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
     within the gaps that are there; slivers keep the gap as it is."""
     n_rows = coupling.contactor_part.shape[0]
     result = coupling if coupling.degree == 1 else _restricted(contactor, coupling)
-    if coupling.sights is None or not len(coupling.sights.gap):
+    if coupling.gap_samples is None or not len(coupling.gap_samples.gap):
         return result
     stepped, low, high = _steps(contactor, coupling)
     gap, integrals = result.gap.reshape(-1, MAX_FACET_NODES).copy(), coupling.gap.reshape(-1, MAX_FACET_NODES)
     for kind, facets in by_kind(contactor):
         n, m = CELLS[kind].corners, function_count(kind, coupling.degree)
-        own = facets if m > n else facets[stepped[facets]]
-        own = own[sound_facets(coupling.mass[own][:, :m, :m])]
-        fit = np.linalg.solve(coupling.mass[own][:, :m, :m], integrals[own, :m, None])[:, :n]
-        kept = np.clip(fit, low[own, None, None], high[own, None, None])
-        gap[own, :n] = (result.mass[own][:, :n, :n] @ kept)[..., 0]
+        chosen = facets if m > n else facets[stepped[facets]]
+        chosen = chosen[sound_facets(coupling.mass[chosen][:, :m, :m])]
+        fit = np.linalg.solve(coupling.mass[chosen][:, :m, :m], integrals[chosen, :m, None])[:, :n]
+        kept = np.clip(fit, low[chosen, None, None], high[chosen, None, None])
+        gap[chosen, :n] = (result.mass[chosen][:, :n, :n] @ kept)[..., 0]
     return replace(result, gap=gap.reshape(n_rows))
 
 
@@ -99,12 +101,12 @@ def _restricted(contactor: Surface, coupling: Coupling) -> Coupling:
     """The coupling of degree 2 in terms of the corners' functions."""
     blocks, mass = {}, np.zeros_like(coupling.mass)
     for kind, facets in by_kind(contactor):
-        own = corner_functions(kind, 2)
-        m, n = own.shape
+        functions = corner_functions(kind, 2)
+        m, n = functions.shape
         blocks[kind] = np.zeros((m, m))
-        blocks[kind][:, :n] = own
+        blocks[kind][:, :n] = functions
         mass[facets[:, None, None], np.arange(n)[:, None], np.arange(n)] = (
-            own.T @ coupling.mass[facets][:, :m, :m] @ own
+            functions.T @ coupling.mass[facets][:, :m, :m] @ functions
         )
     corners = block_diagonal(contactor, blocks)
     points = coupling.points
@@ -127,7 +129,7 @@ def _steps(
     """Facets whose gap jumps from one target facet to the next, and the smallest and largest gap of each, (n_facets,).
 
     The range of a continuous gap is at most the sum of its ranges over the pieces."""
-    at = coupling.sights
+    at = coupling.gap_samples
     assert at is not None
     n = len(contactor)
     pieces, of = np.unique(np.stack([at.facet, at.target_facet], axis=1), axis=0, return_inverse=True)

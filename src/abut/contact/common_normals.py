@@ -16,19 +16,20 @@ Array = NDArray[np.float64]
 
 
 def common_normals(
-    contactor: Surface, target: Surface, own: Array, other: Array, share: float, reach: float, couple: Couple
+    contactor: Surface, target: Surface, outward: Array, other: Array, share: float, reach: float, couple: Couple
 ) -> Array:
-    """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``own`` turned by
-    ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by more than at
-    a crease. own, other: of contactor and target, as from ``nodal_normals``; reach: length, as for ``couple``."""
-    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=own)).points
+    """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``outward``
+    turned by ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by
+    more than at a crease. outward, other: of contactor and target, as from ``nodal_normals``; reach: length, as for
+    ``couple``."""
+    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=outward)).points
     if share == 0.0 or at is None or not len(at.weight):
-        return own
+        return outward
     tilt = _opposite(target, other, at) - at.normal
     tilt[np.einsum("na,na->n", at.normal, at.normal + tilt) < CREASE] = 0.0
     if np.abs(tilt).max(initial=0.0) <= NO_TILT:
-        return own
-    return _turned(contactor, own, share * _at_nodes(contactor, at, tilt))
+        return outward
+    return _turned(contactor, outward, share * _at_nodes(contactor, at, tilt))
 
 
 def _opposite(target: Surface, normals: Array, at: IntegrationPoints) -> Array:

@@ -101,8 +101,8 @@ def much_finer(contactor: Side, target: Side) -> bool:
     return target.size > MUCH_FINER * contactor.size and not target.flat
 
 
-def _bare(own: Side, other: Side) -> bool:
-    return own.covered < BARE and own.covered < other.covered - BARER
+def _bare(side: Side, other: Side) -> bool:
+    return side.covered < BARE and side.covered < other.covered - BARER
 
 
 def _by_size(one: Side, other: Side) -> Choice:

@@ -47,19 +47,20 @@ class IntegrationPoints:
 
 
 @dataclass(frozen=True)
-class Sights:
+class GapSamples:
     """Gap samples: corners and middles of all n segments, with the target opposite.
 
     facet, target_facet: (n,) of contactor and target; gap: (n,) geometric gap, length; normal: (n, dim) unit, from target to
-    contactor; own, other: (n, 9) shape functions of the contactor's and the target's facet, zero where padded.
+    contactor; contactor_shapes, target_shapes: (n, 9) shape functions of the contactor's and the target's facet, zero where
+    padded.
     """
 
     facet: NDArray[np.int32]
     target_facet: NDArray[np.int32]
     gap: NDArray[np.float64]
     normal: NDArray[np.float64]
-    own: NDArray[np.float64]
-    other: NDArray[np.float64]
+    contactor_shapes: NDArray[np.float64]
+    target_shapes: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Coupling:
     contactor_part, target_part: the two terms of ``operator``, both with a plus sign.
     gap, weight: (9 n_facets,) int H_k g and int H_k over the covered part; mass: (n_facets, 9, 9) int H_k H_l.
     covered: (n_facets,) covered area; segments: (n_facets,) how many segments.
-    points, sights: where they were asked for.
+    points, gap_samples: where they were asked for.
     Integrals are in the surfaces' unit of length: areas (2D: lengths; axisymmetric: areas of the full circumference),
     ``gap`` times a length.
     """
@@ -89,7 +90,7 @@ class Coupling:
     covered: NDArray[np.float64]
     segments: NDArray[np.int32]
     points: IntegrationPoints | None = None
-    sights: Sights | None = None
+    gap_samples: GapSamples | None = None
 
 
 def default_reach(contactor: Surface, target: Surface) -> float:
@@ -130,8 +131,8 @@ class CouplingOptions:
             only, theory (S12).
     componentwise: without the normal, for one displacement component (ties).
     normals: (n_facets, 9, dim) unit normals at the contactor's facets' nodes; ``nodal_normals`` where left out.
-    keep_points: keep the integration points; keep_sights: keep corners and middles of the segments, which takes a tenth of
-            the time.
+    keep_points: keep the integration points; keep_gap_samples: keep corners and middles of the segments, which takes a tenth
+            of the time.
     """
 
     rule: str = "gauss"
@@ -141,7 +142,7 @@ class CouplingOptions:
     hidden: bool = False
     componentwise: bool = False
     keep_points: bool = False
-    keep_sights: bool = False
+    keep_gap_samples: bool = False
     normals: NDArray[np.float64] | None = None
 
 
@@ -169,7 +170,7 @@ def couple(
         degree=degree,
         vectorial=not options.componentwise,
         keep_points=options.keep_points,
-        sights=options.keep_sights,
+        gap_samples=options.keep_gap_samples,
     )
     if only is not None:
         raw = _among_all(raw, facets, len(contactor))
@@ -187,7 +188,7 @@ def couple(
         covered=raw["covered"],
         segments=raw["segments"],
         points=_points(raw, contactor, target) if options.keep_points else None,
-        sights=_sights(raw) if options.keep_sights else None,
+        gap_samples=_gap_samples(raw) if options.keep_gap_samples else None,
     )
 
 
@@ -246,10 +247,10 @@ def cutting_arguments(
 def _kin(contactor: Surface, target: Surface) -> Json:
     """What facets are to each other; nothing where not both sides say so."""
     none = np.zeros((0, 9))
-    own, other = contactor.kin, target.kin
-    both = own is not None and other is not None
+    mine, other = contactor.kin, target.kin
+    both = mine is not None and other is not None
     return {
-        "kin_c": np.ascontiguousarray(own) if both else none,
+        "kin_c": np.ascontiguousarray(mine) if both else none,
         "kin_t": np.ascontiguousarray(other) if both else none,
     }
 
@@ -263,7 +264,7 @@ def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
     for name in ("contactor", "target"):
         row, column, value = raw[name]
         result[name] = MAX_FACET_NODES * facets[row // MAX_FACET_NODES] + row % MAX_FACET_NODES, column, value
-    for name in ("point_contactor_facet", "sight_contactor_facet"):
+    for name in ("point_contactor_facet", "gap_sample_contactor_facet"):
         if name in raw:
             result[name] = facets[raw[name]].astype(raw[name].dtype)
     return result
@@ -355,9 +356,9 @@ def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> Integ
     )
 
 
-def _sights(raw: dict[str, Array]) -> Sights:
+def _gap_samples(raw: dict[str, Array]) -> GapSamples:
     names = ("contactor_facet", "target_facet", "gap", "normal", "contactor", "target")
-    return Sights(*(raw[f"sight_{name}"] for name in names))
+    return GapSamples(*(raw[f"gap_sample_{name}"] for name in names))
 
 
 def surface_degree(surface: Surface) -> int:

@@ -127,17 +127,17 @@ def _distinct_normals(surface: Surface, across: Smoothing) -> tuple[NDArray[np.i
 
 def _turning(surface: Surface, across: Smoothing, visits: NDArray[np.int64], n_points: int) -> Sparse:
     """Derivative of the unit normals of some visits, (dim len(visits), dim n_points)."""
-    own = area_vectors(surface)[surface.nodes >= 0]
-    number = np.full(len(own), -1)
+    vectors = area_vectors(surface)[surface.nodes >= 0]
+    number = np.full(len(vectors), -1)
     number[visits] = np.arange(len(visits))
     kept = number[across.here] >= 0
     here, other = number[across.here[kept]], across.other[kept]
     total = np.zeros((len(visits), surface.dim))
-    np.add.at(total, here, own[other])
+    np.add.at(total, here, vectors[other])
     length = np.linalg.norm(total, axis=1)[:, None, None]
     unit = total / length[:, 0]
     across_it = (np.eye(surface.dim) - unit[:, :, None] * unit[:, None, :]) / length
-    sums = sp.csr_matrix((np.ones(len(here)), (here, other)), shape=(len(visits), len(own)))
+    sums = sp.csr_matrix((np.ones(len(here)), (here, other)), shape=(len(visits), len(vectors)))
     n = np.arange(len(visits) + 1)
     project = sp.bsr_matrix((across_it, n[:-1], n))
     return (

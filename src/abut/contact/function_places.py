@@ -21,17 +21,17 @@ def places(contactor: Surface, space: PressureSpace, normals: Array | None = Non
     if normals is not None:
         at[split.nodes[split.nodes >= 0]] = normals[split.nodes >= 0]
     points, outward = split.points[space.side], at[space.side]
-    own = np.flatnonzero(space.node < 0)
-    if not len(own):
+    of_facets = np.flatnonzero(space.node < 0)
+    if not len(of_facets):
         return points, outward
     nodes = split.nodes.ravel()
     gather = sp.csr_matrix(
         (np.ones(int((nodes >= 0).sum())), (np.flatnonzero(nodes >= 0), nodes[nodes >= 0])),
         shape=(len(nodes), len(split.points)),
     )
-    share = abs(space.plain.tocsc()[:, own]).T @ gather
+    share = abs(space.plain.tocsc()[:, of_facets]).T @ gather
     total = np.asarray(share.sum(axis=1))
     mean = share @ at
-    points[own] = (share @ split.points) / total
-    outward[own] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+    points[of_facets] = (share @ split.points) / total
+    outward[of_facets] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
     return points, outward

@@ -83,11 +83,11 @@ def facet_sizes(surface: Surface) -> NDArray[np.float64]:
 def area_vectors(surface: Surface) -> NDArray[np.float64]:
     """Outward normals of each facet by itself at its nodes, as long as its area there, (n_facets, 9, dim), zero where
     padded."""
-    own = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
+    areas = np.zeros((len(surface), MAX_FACET_NODES, surface.dim))
     for kind, facets in by_kind(surface):
         vectors = _area_vectors(surface, kind, facets, node_coordinates(kind))
-        own[facets, : CELLS[kind].nodes] = REFERENCE_AREA.get(CELLS[kind].corners, 1.0) * vectors
-    return own
+        areas[facets, : CELLS[kind].nodes] = REFERENCE_AREA.get(CELLS[kind].corners, 1.0) * vectors
+    return areas
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,11 @@ class Smoothing:
 def smoothing(surface: Surface) -> Smoothing:
     """Creases are edges where facets meet at more than 40 degrees. Raises InputError for a facet without a normal at one
     of its nodes."""
-    own = area_vectors(surface)
+    areas = area_vectors(surface)
     facet, local = _visits(surface)
-    vector = own[facet, local]
+    vector = areas[facet, local]
     length = np.linalg.norm(vector, axis=1, keepdims=True)
-    _check_normals(surface, own, length)
+    _check_normals(surface, areas, length)
     pairs = list(_without_crease(surface.nodes[facet, local].astype(np.int64), vector / length))
     return Smoothing(np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs]))
 
@@ -124,12 +124,12 @@ def nodal_normals(surface: Surface, across: Smoothing | None = None) -> NDArray[
     normal up to their edges. Raises InputError for a facet without a normal at one of its nodes.
     """
     across = across or smoothing(surface)
-    own = area_vectors(surface)
+    areas = area_vectors(surface)
     facet, local = _visits(surface)
-    total = _totals(own[facet, local], across)
-    result = np.zeros_like(own)
+    total = _totals(areas[facet, local], across)
+    result = np.zeros_like(areas)
     length = np.linalg.norm(total, axis=1, keepdims=True)
-    _check_normals(surface, own, length)
+    _check_normals(surface, areas, length)
     result[facet, local] = total / length
     return result
 
@@ -146,10 +146,10 @@ def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float6
     return total
 
 
-def _check_normals(surface: Surface, own: NDArray[np.float64], length: NDArray[np.float64]) -> None:
-    """own: (n_facets, 9, dim) area vectors; length: (n_visits, 1) of what is to become a unit vector."""
+def _check_normals(surface: Surface, vectors: NDArray[np.float64], length: NDArray[np.float64]) -> None:
+    """vectors: (n_facets, 9, dim) area vectors; length: (n_visits, 1) of what is to become a unit vector."""
     facet, local = _visits(surface)
-    flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(own, axis=2).max(axis=1)[facet])
+    flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(vectors, axis=2).max(axis=1)[facet])
     if len(flat):
         raise InputError(
             f"surface '{surface.name}': facet {facet[flat[0]]} has no normal at its point "
@@ -188,9 +188,9 @@ def beside_others(surface: Surface) -> NDArray[np.bool_]:
     result = np.zeros(len(surface), dtype=bool)
     if surface.parts is None:
         return result
-    own = area_vectors(surface)
+    areas = area_vectors(surface)
     facet, local = np.nonzero(surface.nodes >= 0)
-    unit = own[facet, local] / np.maximum(np.linalg.norm(own[facet, local], axis=1, keepdims=True), 1e-300)
+    unit = areas[facet, local] / np.maximum(np.linalg.norm(areas[facet, local], axis=1, keepdims=True), 1e-300)
     part = surface.parts[facet]
     for here, other in _without_crease(surface.nodes[facet, local].astype(np.int64), unit):
         result[facet[here[part[here] != part[other]]]] = True
@@ -228,10 +228,10 @@ def _without_crease(
 def split_at_creases(surface: Surface) -> tuple[Surface, NDArray[np.int64]]:
     """The surface with its points doubled along creases and borders of its parts, one for each smooth side, and (n_points,)
     the point that each of its points was: theory (P13). Points keep their numbers, further ones come at the end."""
-    own = area_vectors(surface)
+    areas = area_vectors(surface)
     facet, local = np.nonzero(surface.nodes >= 0)
     node = surface.nodes[facet, local].astype(np.int64)
-    unit = own[facet, local] / np.maximum(np.linalg.norm(own[facet, local], axis=1, keepdims=True), 1e-300)
+    unit = areas[facet, local] / np.maximum(np.linalg.norm(areas[facet, local], axis=1, keepdims=True), 1e-300)
     pairs = list(_without_crease(node, unit))
     if surface.parts is not None:
         part = surface.parts[facet]
@@ -297,9 +297,9 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
         if degree == 0:
             moments[facets, 0] = area @ weights
         else:
-            own = CELLS[pressure_kind(kind, degree)]
-            values, _ = shape_functions(own.code, np.ascontiguousarray(xi))
-            moments[facets, : own.nodes] = (area * weights) @ values
+            cell = CELLS[pressure_kind(kind, degree)]
+            values, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+            moments[facets, : cell.nodes] = (area * weights) @ values
     return moments
 
 
@@ -307,10 +307,10 @@ def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:
     """int grad H_k . grad H_l along the surface over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
     result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
     for kind, facets in by_kind(surface):
-        own = CELLS[pressure_kind(kind, degree)]
+        cell = CELLS[pressure_kind(kind, degree)]
         xi, weights = gauss_rule(kind, 3)
         _, metric, area = facet_measure(surface, kind, facets, xi)
-        _, slopes = shape_functions(own.code, np.ascontiguousarray(xi))
+        _, slopes = shape_functions(cell.code, np.ascontiguousarray(xi))
         block = np.einsum("fq,qka,fqab,qlb->fkl", area * weights, slopes, np.linalg.inv(metric), slopes, optimize=True)
-        result[facets[:, None, None], np.arange(own.nodes)[:, None], np.arange(own.nodes)] = block
+        result[facets[:, None, None], np.arange(cell.nodes)[:, None], np.arange(cell.nodes)] = block
     return result

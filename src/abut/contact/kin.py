@@ -26,8 +26,8 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, 
     """Both surfaces with what ``Surface.kin`` says, where they have a body in common; else as they are."""
     both = contactor.cells, target.cells
     bodies = _bodies(mesh)
-    own, other = (bodies[cells] for cells in both)
-    if not np.isin(own, other).any():
+    relatives, other = (bodies[cells] for cells in both)
+    if not np.isin(relatives, other).any():
         return contactor, target
     codes = [8 * side.cells + side.local for side in (contactor, target)]
     _, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)
@@ -41,7 +41,7 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, 
         axisymmetric=False,
     )
     kin = _kin(straight(whole), bodies[whole.cells])
-    parts = [kin[own] for own in np.split(number.ravel(), [len(contactor)])]
+    parts = [kin[relatives] for relatives in np.split(number.ravel(), [len(contactor)])]
     parts[0][~np.isin(codes[0], codes[1]), RANK] = -np.inf
     parts[1][~np.isin(codes[1], codes[0]), RANK] = np.inf
     return replace(contactor, kin=parts[0]), replace(target, kin=parts[1])

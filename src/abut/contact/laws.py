@@ -106,20 +106,20 @@ class Coulomb:
         residual = np.where(closed[:, None], -jump, -soft * traction)
         by_jump = np.where(closed[:, None, None], -np.eye(c), 0.0)
         by_traction = np.where(closed[:, None, None], 0.0, -soft * np.eye(c))
-        own = np.flatnonzero(closed & slips)
-        if len(own):
-            slip, drag = jump[own, 1:], traction[own, 1:]
+        sliding = np.flatnonzero(closed & slips)
+        if len(sliding):
+            slip, drag = jump[sliding, 1:], traction[sliding, 1:]
             limit = self.friction if isinstance(self.friction, FrictionBound) else FrictionBound(self.friction)
             bound, slope = limit.at(np.maximum(traction[:, 0] - self.stiffness * jump[:, 0], 0.0))
-            bound, slope = bound[own], slope[own, None, None]
+            bound, slope = bound[sliding], slope[sliding, None, None]
             trial = drag - self.stiffness * slip
             size = np.maximum(np.linalg.norm(trial, axis=1), 1e-300)
             along = trial / size[:, None]
             across = np.eye(c - 1) - along[:, :, None] * along[:, None]
             turn = np.minimum(bound / size, 1.0)[:, None, None] * across
-            residual[own, 1:] = -soft * (drag - bound[:, None] * along)
-            by_jump[own, 1:] = np.concatenate([-slope * along[:, :, None], -turn], axis=2)
-            by_traction[own, 1:] = np.concatenate(
+            residual[sliding, 1:] = -soft * (drag - bound[:, None] * along)
+            by_jump[sliding, 1:] = np.concatenate([-slope * along[:, :, None], -turn], axis=2)
+            by_traction[sliding, 1:] = np.concatenate(
                 [soft * slope * along[:, :, None], soft * (turn - np.eye(c - 1))], axis=2
             )
         return LawResult(residual, by_jump, by_traction, closed)

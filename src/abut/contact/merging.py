@@ -9,14 +9,14 @@ from operator import add
 import numpy as np
 import scipy.sparse as sp
 
-from abut.contact.coupling import Coupling, IntegrationPoints, Sights
+from abut.contact.coupling import Coupling, GapSamples, IntegrationPoints
 from abut.types import Sparse
 
 
 def added(parts: Sequence[Coupling]) -> Coupling:
     """The coupling of all facets from those of disjoint ones."""
     points = [part.points for part in parts if part.points is not None]
-    sights = [part.sights for part in parts if part.sights is not None]
+    samples = [part.gap_samples for part in parts if part.gap_samples is not None]
     return Coupling(
         degree=parts[0].degree,
         operator=_sum([part.operator for part in parts]),
@@ -28,7 +28,7 @@ def added(parts: Sequence[Coupling]) -> Coupling:
         covered=np.sum([part.covered for part in parts], axis=0),
         segments=np.sum([part.segments for part in parts], axis=0, dtype=np.int32),
         points=_points(points) if points else None,
-        sights=_sights(sights) if sights else None,
+        gap_samples=_gap_samples(samples) if samples else None,
     )
 
 
@@ -51,8 +51,8 @@ def _points(parts: Sequence[IntegrationPoints]) -> IntegrationPoints:
     )
 
 
-def _sights(parts: Sequence[Sights]) -> Sights:
+def _gap_samples(parts: Sequence[GapSamples]) -> GapSamples:
     """The same of corners and middles."""
     order = np.argsort(np.concatenate([part.facet for part in parts]), kind="stable")
-    names = ("facet", "target_facet", "gap", "normal", "own", "other")
-    return Sights(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))
+    names = ("facet", "target_facet", "gap", "normal", "contactor_shapes", "target_shapes")
+    return GapSamples(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))

@@ -93,8 +93,8 @@ class Averages:
         used = corners >= 0
         at, parts = corners[used], values[used].reshape(int(used.sum()), -1)
         total = np.zeros((len(self.weight), parts.shape[1]))
-        for component, own in enumerate(parts.T):
-            total[:, component] = np.bincount(at, own, len(self.weight))
+        for component, part in enumerate(parts.T):
+            total[:, component] = np.bincount(at, part, len(self.weight))
         return total.reshape(len(self.weight), *values.shape[2:])
 
 
@@ -112,9 +112,11 @@ def averages(contactor: Surface, coupling: Coupling) -> Averages:
     for kind, facets in by_kind(contactor):
         n = CELLS[kind].corners
         corners[facets, :n] = contactor.nodes[facets, :n]
-        own = corner_functions(kind, coupling.degree)
-        moments[facets[:, None], np.arange(n)] = np.einsum("ki,fkl->fil", own, coupling.mass[facets, : len(own)])
-        mass[facets, :n, :n] = moments[facets, :n, : len(own)] @ own
+        functions = corner_functions(kind, coupling.degree)
+        moments[facets[:, None], np.arange(n)] = np.einsum(
+            "ki,fkl->fil", functions, coupling.mass[facets, : len(functions)]
+        )
+        mass[facets, :n, :n] = moments[facets, :n, : len(functions)] @ functions
     used = corners >= 0
     weight, whole = (
         np.bincount(corners[used], values[used], minlength=len(contactor.points))
@@ -148,8 +150,8 @@ def at_facet_nodes(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.
     result = np.full(surface.nodes.shape, np.nan)
     for kind, facets in by_kind(surface):
         cell = CELLS[kind]
-        own, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(kind))
-        result[facets, : cell.nodes] = values[surface.nodes[facets, : cell.corners]] @ own.T
+        functions, _ = shape_functions(CELLS[pressure_kind(kind, 1)].code, node_coordinates(kind))
+        result[facets, : cell.nodes] = values[surface.nodes[facets, : cell.corners]] @ functions.T
     return result
 
 
@@ -160,8 +162,8 @@ def facet_node_values(contactor: Surface, degree: int, values: NDArray[np.float6
     result = np.full(table.shape, np.nan)
     for kind, facets in by_kind(contactor):
         n = function_count(kind, degree)
-        own, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, node_coordinates(kind))
-        result[facets, : CELLS[kind].nodes] = table[facets, :n] @ own.T
+        functions, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, node_coordinates(kind))
+        result[facets, : CELLS[kind].nodes] = table[facets, :n] @ functions.T
     return result
 
 
@@ -200,16 +202,16 @@ def carry_to_target(
     table = values.reshape(-1, MAX_FACET_NODES)
     for code in np.unique(contactor.kinds):
         kind = BY_CODE[code].name
-        own = seen[contactor.kinds[seen[:, 0]] == code]
-        xi, outside = _foot(contactor, kind, own[:, 0], target.points[own[:, 1]])
+        rows = seen[contactor.kinds[seen[:, 0]] == code]
+        xi, outside = _foot(contactor, kind, rows[:, 0], target.points[rows[:, 1]])
         carrier = CELLS[pressure_kind(kind, 1)]
         shape, _ = shape_functions(carrier.code, np.ascontiguousarray(xi))
-        value = np.einsum("pn,pn->p", shape, table[own[:, 0], : carrier.nodes])
+        value = np.einsum("pn,pn->p", shape, table[rows[:, 0], : carrier.nodes])
         order = np.argsort(-outside)  # the nearest to a facet's inside is written last
         inside = order[outside[order] < 0.05]
-        better = outside[inside] < best[own[inside, 1]]
-        best[own[inside[better], 1]] = outside[inside[better]]
-        pressure[own[inside[better], 1]] = value[inside[better]]
+        better = outside[inside] < best[rows[inside, 1]]
+        best[rows[inside[better], 1]] = outside[inside[better]]
+        pressure[rows[inside[better], 1]] = value[inside[better]]
     return np.where(target.nodes >= 0, pressure[np.maximum(target.nodes, 0)], np.nan)
 
 

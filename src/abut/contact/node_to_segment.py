@@ -55,7 +55,7 @@ def node_to_segment(
     offset = 0 if same else len(contactor.points)
     shape = (MAX_FACET_NODES * len(contactor), dim * (len(contactor.points) + (0 if same else len(target.points))))
     force = -normal * area[:, None]  # along N, from target to contactor
-    own = _rows(row[first][seen], ids[seen, None], np.ones((len(seen), 1)), force[seen], shape)
+    near = _rows(row[first][seen], ids[seen, None], np.ones((len(seen), 1)), force[seen], shape)
     nodes = target.nodes[facet[seen]]
     other = _rows(row[first][seen], np.where(nodes >= 0, offset + nodes, -1), shapes[seen], force[seen], shape)
     weight, weighted_gap = np.zeros(shape[0]), np.zeros(shape[0])
@@ -64,7 +64,7 @@ def node_to_segment(
     nodes_seen = np.bincount(row // MAX_FACET_NODES, np.isin(node, ids[seen]), minlength=len(contactor))
     share = nodes_seen / np.bincount(row // MAX_FACET_NODES, minlength=len(contactor))
     coupling = Coupling(
-        degree=degree, operator=(own - other).tocsr(), contactor_part=own, target_part=other, gap=weighted_gap,
+        degree=degree, operator=(near - other).tocsr(), contactor_part=near, target_part=other, gap=weighted_gap,
         weight=weight, mass=np.zeros((len(contactor), MAX_FACET_NODES, MAX_FACET_NODES)),
         covered=full_moments(contactor, 0)[:, 0] * share, segments=nodes_seen.astype(np.int32),
     )  # fmt: skip
@@ -98,8 +98,8 @@ def feet(
     who, facet = np.repeat(np.arange(len(points)), count), np.concatenate([*near, []]).astype(np.int64)
     best, distance = np.full(len(points), -1), np.full(len(points), np.inf)
     shapes, gaps = np.zeros((len(points), MAX_FACET_NODES)), np.zeros(len(points))
-    for kind, own in by_kind(target):
-        pick = np.flatnonzero(np.isin(facet, own))
+    for kind, facets in by_kind(target):
+        pick = np.flatnonzero(np.isin(facet, facets))
         values, along, hit = _meet(target, kind, facet[pick], points[who[pick]], normals[who[pick]])
         hit &= np.abs(along) <= reach
         for i in np.flatnonzero(hit)[np.argsort(-np.abs(along[hit]))]:  # the nearest is written last

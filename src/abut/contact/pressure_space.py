@@ -145,7 +145,7 @@ def inner_facets(
 def _within(uses: Sparse, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets that have multipliers, all of them closed."""
     some, others = (
-        (uses @ own.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for own in (closed, ~closed)
+        (uses @ chosen.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for chosen in (closed, ~closed)
     )
     return np.asarray(some & ~others)
 

@@ -40,32 +40,32 @@ def rim(surface: Surface) -> Rim:
     return Rim(facet, ends, out, normal / np.linalg.norm(normal, axis=1, keepdims=True))
 
 
-def goes_on(contactor: Surface, own: Rim, target: Surface, reach: float) -> NDArray[np.bool_]:
+def goes_on(contactor: Surface, rim: Rim, target: Surface, reach: float) -> NDArray[np.bool_]:
     """Edges (m,) of a contactor's rim beyond which the target goes on; reach: a length."""
-    if not len(own.facet):
+    if not len(rim.facet):
         return np.zeros(0, dtype=bool)
-    edge = contactor.points[own.ends].mean(axis=1)
-    return np.asarray(feet(edge + BEYOND * own.out, own.normal, target, reach)[0] >= 0)
+    edge = contactor.points[rim.ends].mean(axis=1)
+    return np.asarray(feet(edge + BEYOND * rim.out, rim.normal, target, reach)[0] >= 0)
 
 
-def ends_on_target(contactor: Surface, own: Rim, on: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def ends_on_target(contactor: Surface, rim: Rim, on: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets (n_facets,) with a corner on an edge of the contactor's rim (in 2D an end of it) beyond which the target goes
     on; not those at a rim where the target ends too, as flush blocks and symmetry planes have. on: (m,) as ``goes_on``."""
     touched = np.zeros(len(contactor.points), dtype=bool)
-    touched[own.ends[on]] = True
+    touched[rim.ends[on]] = True
     return np.asarray((touched[np.maximum(contactor.nodes, 0)] & (contactor.nodes >= 0)).any(axis=1))
 
 
 def _edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Facet (m,) and corner points (m, 2) of every edge that belongs to one facet only; in 2D the point twice."""
     facets, ends = [], []
-    for kind, own in by_kind(surface):
-        corners, nodes = CELLS[kind].corners, surface.nodes[own].astype(np.int64)
+    for kind, of_kind in by_kind(surface):
+        corners, nodes = CELLS[kind].corners, surface.nodes[of_kind].astype(np.int64)
         if CELLS[kind].dim == 1:
             pairs = [(0, 0), (1, 1)]
         else:
             pairs = [(i, (i + 1) % corners) for i in range(corners)]
-        facets += [own] * len(pairs)
+        facets += [of_kind] * len(pairs)
         ends += [nodes[:, list(pair)] for pair in pairs]
     facet, every = np.concatenate(facets), np.concatenate(ends)
     _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)

@@ -69,21 +69,21 @@ def one_each(contacts: Sequence[Functions | None]) -> list[NDArray[np.bool_] | N
 
     Of two at one point with one normal, whose targets lie side by side, the one of more weight stays, of equals the first.
     Where targets lie one behind the other both stay: at most one of them closes."""
-    lost = [np.zeros(0 if own is None else len(own.node), dtype=bool) for own in contacts]
+    lost = [np.zeros(0 if functions is None else len(functions.node), dtype=bool) for functions in contacts]
     rivals: list[tuple[int, int, int, int]] = []
-    given = [(i, own) for i, own in enumerate(contacts) if own is not None]
+    given = [(i, functions) for i, functions in enumerate(contacts) if functions is not None]
     for (i, a), (j, b) in combinations_with_replacement(given, 2):
         for k, m in _side_by_side(a, b) if i != j else _twice(a):
             first = a.weight[k] >= b.weight[m] * (1.0 - EVEN)
             lost[j if first else i][m if first else k] = True
             rivals.append((i, k, j, m))
-    for i, own in enumerate(contacts):
-        for k in _alone(own, lost[i]) if own is not None else ():
+    for i, functions in enumerate(contacts):
+        for k in _alone(functions, lost[i]) if functions is not None else ():
             lost[i][k] = False
             for j, m in _rivals_of(rivals, i, k):
                 other = contacts[j]
                 lost[j][m] = other is not None and bool((~lost[j][_beside(other, m)]).any())
-    return [~own if own.any() else None for own in lost]
+    return [~functions if functions.any() else None for functions in lost]
 
 
 def _side_by_side(a: Functions, b: Functions) -> list[tuple[int, int]]:
@@ -95,7 +95,7 @@ def _side_by_side(a: Functions, b: Functions) -> list[tuple[int, int]]:
     layered = of_a[a.covered[of_a] + b.covered[of_b] > 1.0 + TWICE] if len(facets) else of_a
     common = np.setdiff1d(common, a.nodes[layered])
     result = []
-    mine, theirs = (np.flatnonzero(np.isin(own.node, common)) for own in (a, b))
+    mine, theirs = (np.flatnonzero(np.isin(functions.node, common)) for functions in (a, b))
     by_node: dict[int, list[int]] = {}
     for m in theirs.tolist():
         by_node.setdefault(int(b.node[m]), []).append(m)
@@ -104,25 +104,28 @@ def _side_by_side(a: Functions, b: Functions) -> list[tuple[int, int]]:
     return result
 
 
-def _twice(own: Functions) -> list[tuple[int, int]]:
+def _twice(functions: Functions) -> list[tuple[int, int]]:
     """Functions of one contact at the same points with one normal, towards different parts of the target."""
-    order = np.lexsort((own.part, own.node))
-    groups = np.split(order, np.flatnonzero(np.diff(own.node[order])) + 1) if len(order) else []
+    order = np.lexsort((functions.part, functions.node))
+    groups = np.split(order, np.flatnonzero(np.diff(functions.node[order])) + 1) if len(order) else []
     return [
-        (k, m) for group in groups for k, m in combinations(group.tolist(), 2) if own.normal[k] @ own.normal[m] > CREASE
+        (k, m)
+        for group in groups
+        for k, m in combinations(group.tolist(), 2)
+        if functions.normal[k] @ functions.normal[m] > CREASE
     ]
 
 
-def _beside(own: Functions, k: int) -> NDArray[np.int64]:
-    near = own.neighbours.indices[own.neighbours.indptr[k] : own.neighbours.indptr[k + 1]]
+def _beside(functions: Functions, k: int) -> NDArray[np.int64]:
+    near = functions.neighbours.indices[functions.neighbours.indptr[k] : functions.neighbours.indptr[k + 1]]
     return np.asarray(near[near != k])
 
 
-def _alone(own: Functions, lost: NDArray[np.bool_]) -> list[int]:
+def _alone(functions: Functions, lost: NDArray[np.bool_]) -> list[int]:
     """Functions that would go without one to follow, the heaviest of each neighbourhood."""
     kept, result = ~lost, []
-    for k in np.flatnonzero(lost)[np.argsort(-own.weight[lost], kind="stable")].tolist():
-        if not kept[_beside(own, k)].any():
+    for k in np.flatnonzero(lost)[np.argsort(-functions.weight[lost], kind="stable")].tolist():
+        if not kept[_beside(functions, k)].any():
             kept[k] = True
             result.append(k)
     return result
@@ -130,5 +133,5 @@ def _alone(own: Functions, lost: NDArray[np.bool_]) -> list[int]:
 
 def _rivals_of(rivals: Sequence[tuple[int, int, int, int]], contact: int, function: int) -> list[tuple[int, int]]:
     """The functions (contact, number) at the place of another one."""
-    own = (contact, function)
-    return [(j, m) for i, k, j, m in rivals if (i, k) == own] + [(i, k) for i, k, j, m in rivals if (j, m) == own]
+    key = (contact, function)
+    return [(j, m) for i, k, j, m in rivals if (i, k) == key] + [(i, k) for i, k, j, m in rivals if (j, m) == key]

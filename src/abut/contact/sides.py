@@ -69,13 +69,13 @@ def check_names(mesh: Mesh, side: Names, where: str) -> None:
 def bodies_of(mesh: Mesh, side: Names) -> set[str]:
     """The bodies that a side belongs to; names are known."""
     cells = np.concatenate([mesh.surfaces[n][:, 0] if n in mesh.surfaces else mesh.bodies[n][:1] for n in listed(side)])
-    return {body for body, own in mesh.bodies.items() if np.isin(cells, own).any()}
+    return {body for body, of_body in mesh.bodies.items() if np.isin(cells, of_body).any()}
 
 
 def moving_sides(mesh: Mesh, contactor: Names, target: Names) -> Sides:
     """The surfaces of both sides of bodies that may move anywhere and fold: a body stands for its whole outside."""
-    own, other = (_rows(mesh, side, _outside_asked(mesh, side))[0] for side in (contactor, target))
-    return with_kin(mesh, mesh.facets(own, label(contactor)), mesh.facets(other, label(target)))
+    rows, other = (_rows(mesh, side, _outside_asked(mesh, side))[0] for side in (contactor, target))
+    return with_kin(mesh, mesh.facets(rows, label(contactor)), mesh.facets(other, label(target)))
 
 
 def find_sides(mesh: Mesh, contactor: Names, target: Names, moved: float = 0.0) -> Sides:
@@ -85,13 +85,13 @@ def find_sides(mesh: Mesh, contactor: Names, target: Names, moved: float = 0.0) 
     their normals with nothing in between (another body, or the thickness of their own), the facets seen, and those around
     them. moved: the largest prescribed displacement, length. Where nothing is seen, the whole outside is left."""
     outside = _outside_asked(mesh, (*listed(contactor), *listed(target)))
-    own, of_body = _rows(mesh, contactor, outside)
+    rows, of_body = _rows(mesh, contactor, outside)
     other, of_other = _rows(mesh, target, outside)
     if outside is not None:
-        met = _met(mesh, own, other, outside, moved)
+        met = _met(mesh, rows, other, outside, moved)
         if met[0].any():
-            own, other = own[met[0] | ~of_body], other[met[1] | ~of_other]
-    return mesh.facets(own, label(contactor)), mesh.facets(other, label(target))
+            rows, other = rows[met[0] | ~of_body], other[met[1] | ~of_other]
+    return mesh.facets(rows, label(contactor)), mesh.facets(other, label(target))
 
 
 def _outside_asked(mesh: Mesh, names: Names) -> Rows | None:
@@ -113,27 +113,27 @@ def _rows(mesh: Mesh, side: Names, outside: Rows | None) -> tuple[Rows, NDArray[
 
 
 def _outside_of(mesh: Mesh, body: str, outside: Rows) -> Rows:
-    own = outside[np.isin(outside[:, 0], mesh.bodies[body])]
+    of_body = outside[np.isin(outside[:, 0], mesh.bodies[body])]
     if not mesh.axisymmetric:
-        return own
-    nodes = mesh.facets(own).nodes
+        return of_body
+    nodes = mesh.facets(of_body).nodes
     radius = np.where(nodes >= 0, mesh.points[nodes, 0], 0.0).max(axis=1)
-    return own[radius > ON_AXIS * radius.max(initial=0.0)]
+    return of_body[radius > ON_AXIS * radius.max(initial=0.0)]
 
 
 def _met(
-    mesh: Mesh, own: Rows, other: Rows, outside: Rows, moved: float
+    mesh: Mesh, rows: Rows, other: Rows, outside: Rows, moved: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which facets of both sides can meet, and those around them. What lies in between hides: the outside of all bodies,
     the contactor's own included, whose far side is as far away as the body is thick."""
     hiding = outside[~np.isin(_codes(outside), _codes(other))]
     plane = replace(mesh, axisymmetric=False)  # areas do not matter, and this is quicker
-    contactor, target = straight(plane.facets(own)), straight(plane.facets(other))
+    contactor, target = straight(plane.facets(rows)), straight(plane.facets(other))
     every = straight(plane.facets(np.concatenate([other, hiding])))
     reach = default_reach(contactor, target) + 2.0 * moved
-    seen = couple(contactor, every, 0, CouplingOptions(points=1, reach=reach, keep_points=True, keep_sights=True))
+    seen = couple(contactor, every, 0, CouplingOptions(points=1, reach=reach, keep_points=True, keep_gap_samples=True))
     pairs = _facing_pairs(contactor, seen, len(other)) & _not_through(contactor, seen, len(other))
-    met = np.zeros(len(own), dtype=bool), np.zeros(len(other), dtype=bool)
+    met = np.zeros(len(rows), dtype=bool), np.zeros(len(other), dtype=bool)
     for facet, target_facet in pairs:
         met[0][facet] = met[1][target_facet] = True
     return _and_around(contactor, met[0]), _and_around(target, met[1])
@@ -151,9 +151,9 @@ def _facing_pairs(contactor: Surface, seen: Coupling, n_target: int) -> set[tupl
 def _not_through(contactor: Surface, seen: Coupling, n_target: int) -> set[tuple[int, int]]:
     """The same but for those seen through the contactor's body: what lies inside it is seen from where it is nearest to its
     outside. Chords of a bore that cut into a pin do not press on the pin's end."""
-    at = seen.sights
+    at = seen.gap_samples
     assert at is not None
-    x = np.einsum("ik,ikd->id", at.own, contactor.points[np.maximum(contactor.nodes[at.facet], 0)])
+    x = np.einsum("ik,ikd->id", at.contactor_shapes, contactor.points[np.maximum(contactor.nodes[at.facet], 0)])
     place = x - at.gap[:, None] * at.normal
     around = cKDTree(contactor.points[np.unique(contactor.nodes[contactor.nodes >= 0])])
     near = (at.gap >= 0.0) | (-at.gap <= around.query(place)[0] * (1.0 + ROUNDING))
@@ -182,8 +182,8 @@ def check_own(sides: Sides, contactor: Names, target: Names, where: str) -> None
             f"{where}: contactor and target are the same surface {words(both)}: a body touches itself only where it folds, "
             'which takes kinematics = "finite"; add it, or name the surface opposite'
         )
-    own, other = (_codes(_of(surface)) for surface in sides)
-    if np.isin(own, other).all() or np.isin(other, own).all():
+    codes, other = (_codes(_of(surface)) for surface in sides)
+    if np.isin(codes, other).all() or np.isin(other, codes).all():
         raise InputError(
             f"{where}: contactor {words(contactor)} and target {words(target)} are the same facets: a surface does not "
             "press on itself; name the surface opposite"
@@ -194,7 +194,7 @@ def check_twice(names: Sequence[str], sides: Sequence[Sides]) -> None:
     """Raise InputError where two contacts (``names``) would determine the pressure between the same facets twice.
 
     A facet may belong to any number of contacts: what counts is what it faces there."""
-    facets = [tuple(_codes(_of(surface)) for surface in own) for own in sides]
+    facets = [tuple(_codes(_of(surface)) for surface in surfaces) for surfaces in sides]
     for first, second in _with_common(facets):
         for turned in (False, True):
             mine, theirs = facets[first], facets[second][::-1] if turned else facets[second]
@@ -216,8 +216,8 @@ def _with_common(facets: Sequence[tuple[Rows, ...]]) -> Iterable[tuple[int, int]
     """Pairs of contacts that have a facet in common on each of two sides."""
     if len(facets) < 2:
         return ()
-    every = np.concatenate([f for own in facets for f in own])
-    owner = np.repeat(np.arange(len(facets)), [sum(map(len, own)) for own in facets])
+    every = np.concatenate([f for each in facets for f in each])
+    owner = np.repeat(np.arange(len(facets)), [sum(map(len, each)) for each in facets])
     _, inverse, count = np.unique(every, return_inverse=True, return_counts=True)
     several = np.unique(owner[count[inverse.ravel()] > 1]).tolist()
     return combinations(several, 2)

@@ -35,9 +35,9 @@ def planes(contactor: Surface, rim: Rim, mirrored: NDArray[np.bool_]) -> Planes:
     step = contactor.points[ids[ends[:, 1]]] - contactor.points[ids[ends[:, 0]]]
     edge, out = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (step, rim.out[mirrored]))
     tangent, normals, edges = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.bincount(ends.ravel(), minlength=n)
-    for own in ends.T:
-        np.add.at(tangent, own, edge)
-        np.add.at(normals, own, np.einsum("ea,eb->eab", out, out))
+    for end in ends.T:
+        np.add.at(tangent, end, edge)
+        np.add.at(normals, end, np.einsum("ea,eb->eab", out, out))
     size, length = np.linalg.eigvalsh(normals), np.linalg.norm(tangent, axis=1)
     several = size[:, 1] > APART * size[:, 2]
     straight = ~several & (length >= STRAIGHT * edges)

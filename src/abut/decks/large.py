@@ -90,9 +90,9 @@ def _automatic(step: Step) -> bool:
 
 def _increments(step: Step) -> list[float]:
     """Their ends within a step, from its beginning."""
-    own = step.increments
-    length = own.first if not _automatic(step) else max(own.first, SHARE * step.period)
-    count = math.ceil(step.period / min(length, own.longest) * (1.0 - SAME))
-    if own.fixed:
-        return [*(i * own.first for i in range(1, count)), step.period]
+    increments = step.increments
+    length = increments.first if not _automatic(step) else max(increments.first, SHARE * step.period)
+    count = math.ceil(step.period / min(length, increments.longest) * (1.0 - SAME))
+    if increments.fixed:
+        return [*(i * increments.first for i in range(1, count)), step.period]
     return [i / count * step.period for i in range(1, count + 1)]

@@ -19,10 +19,10 @@ def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Ri
     """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one that carries a
     force or follows several amplitudes."""
     result = []
-    held = courses(deck, "boundary") if deck.rigid else {}
+    supported = courses(deck, "boundary") if deck.rigid else {}
     for name, body in zip(names, deck.rigid):
         _check_forces(deck, body)
-        components = _components(held, body, plane)
+        components = _components(supported, body, plane)
         units = {scaled(course)[1] for course in components.values() if not zero(course)}
         if len(units) > 1:
             raise DeckError(
@@ -48,11 +48,11 @@ def _check_forces(deck: Deck, body: RigidBody) -> None:
                 )
 
 
-def _components(held: Mapping[tuple[float, ...], Course], body: RigidBody, plane: str | None) -> dict[str, Course]:
+def _components(supported: Mapping[tuple[float, ...], Course], body: RigidBody, plane: str | None) -> dict[str, Course]:
     """Prescribed components by their name in ``abut.Rigid``."""
     known = {None: ("x", "y", "z", "rx", "ry", "rz"), "axisymmetric": ("y",)}.get(plane, ("x", "y", "rz"))
     result = {}
-    for (node, direction), course in held.items():
+    for (node, direction), course in supported.items():
         if node == body.reference:
             name = ("x", "y", "z", "rx", "ry", "rz")[int(direction) - 1]
         elif node == body.turning and direction <= 3:
@@ -70,11 +70,11 @@ def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
     Raises InputError where a rigid body is not whole bodies."""
     free, rigid = list(parts), []
     for body in deck.rigid:
-        own = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
-        own = np.setdiff1d(own, [body.reference, body.turning])
-        inside = [piece for piece in free if np.isin(_nodes(deck, piece.elements), own).all()]
+        nodes = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
+        nodes = np.setdiff1d(nodes, [body.reference, body.turning])
+        inside = [piece for piece in free if np.isin(_nodes(deck, piece.elements), nodes).all()]
         elements = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in inside)])
-        left = np.setdiff1d(own, _nodes(deck, elements))
+        left = np.setdiff1d(nodes, _nodes(deck, elements))
         if len(left) or not inside:
             which = f"node {left[0]} belongs to" if len(left) else "it is part of"
             raise DeckError(
@@ -91,5 +91,5 @@ def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
 
 
 def _nodes(deck: Deck, elements: Numbers) -> Numbers:
-    own = [element_nodes(b, np.intersect1d(elements, b.ids)).ravel() for b in deck.blocks]
-    return np.unique(np.concatenate(own)).astype(np.int64)
+    nodes = [element_nodes(b, np.intersect1d(elements, b.ids)).ravel() for b in deck.blocks]
+    return np.unique(np.concatenate(nodes)).astype(np.int64)

@@ -91,7 +91,7 @@ def translate(deck: Deck) -> Translation:
     groups = Groups(deck)
     every, stiff = join(deck, pieces(deck))
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
-    moving = [name for own in stiff for name, piece in parts.items() if piece is own]
+    moving = [name for body in stiff for name, piece in parts.items() if piece is body]
     hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])
     contacts: list[Contact] = []
     for pair in deck.pairs:
@@ -195,15 +195,15 @@ def _plane(deck: Deck) -> str | None:
 def _solid(name: str, piece: Piece) -> Solid:
     material = piece.section.material
     (a, b), rest = material.constants, (material.density, material.expansion)
-    own: Material
+    law: Material
     try:
         if material.rubber:  # C10 and D1
-            own = NeoHooke(None, None, 2.0 * a, 2.0 / b, None, "isochoric", *rest)
+            law = NeoHooke(None, None, 2.0 * a, 2.0 / b, None, "isochoric", *rest)
         else:
-            own = LinearElastic(a, b, *rest)
+            law = LinearElastic(a, b, *rest)
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
-    return Solid(name, own, integration=piece.integration)
+    return Solid(name, law, integration=piece.integration)
 
 
 def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
@@ -228,9 +228,9 @@ def _history(course: Course) -> tuple[float, Amplitude | None]:
 def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
     """The slave is the contactor, which must deform: elements in ``hard`` are rigid."""
     slave, master = groups.surface(pair.slave), groups.surface(pair.master)
-    for name, own in ((slave, pair.slave), (master, pair.master)):
-        if deck.surfaces[own].nodes is not None:
-            notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{own}' make up")
+    for name, side in ((slave, pair.slave), (master, pair.master)):
+        if deck.surfaces[side].nodes is not None:
+            notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{side}' make up")
     if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
         slave, master = master, slave
         notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
@@ -265,8 +265,8 @@ def _general(
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     """Raise InputError for surfaces that look the same way, which happens where meshes overlap."""
-    push = [stress_load(own, np.eye(mesh.dim)) for own in find_sides(mesh, contact.contactor, contact.target)]
-    a, b = (own.reshape(-1, mesh.dim).sum(axis=0) for own in push)  # area times outward normal
+    push = [stress_load(surface, np.eye(mesh.dim)) for surface in find_sides(mesh, contact.contactor, contact.target)]
+    a, b = (surface.reshape(-1, mesh.dim).sum(axis=0) for surface in push)  # area times outward normal
     if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
         card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(
@@ -282,8 +282,8 @@ def _supports(bound: Bonds, groups: Groups) -> list[Support]:
     for (node, axis), course in bound.supports.items():
         by_node.setdefault(node, {})[axis] = course
     alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
-    for node, own in by_node.items():
-        alike.setdefault(tuple(sorted(own.items())), []).append(node)
+    for node, histories in by_node.items():
+        alike.setdefault(tuple(sorted(histories.items())), []).append(node)
     result: list[Support] = []
     for key, nodes in alike.items():
         on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
@@ -317,8 +317,8 @@ def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -
             size, unit = scaled(course)
             by_node.setdefault((node, unit), {})[axis] = size / thickness
     alike: dict[tuple[Course | None, tuple[float, ...]], list[int]] = {}
-    for (node, unit), own in by_node.items():
-        vector = tuple(own.get(axis, 0.0) for axis in range(2 if plane else 3))
+    for (node, unit), histories in by_node.items():
+        vector = tuple(histories.get(axis, 0.0) for axis in range(2 if plane else 3))
         alike.setdefault((unit, vector), []).append(node)
     return [
         NodalForce(groups.node_set(np.array(nodes), f"force-{i}"), vector, None if unit is None else Amplitude(unit))
@@ -375,15 +375,15 @@ def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:
             alike.setdefault(change, []).append(int(node))
     count = 0
     for change, nodes in alike.items():
-        own = np.intersect1d(np.array(nodes, np.int64), groups.used)
-        if len(own):
+        here = np.intersect1d(np.array(nodes, np.int64), groups.used)
+        if len(here):
             count += 1
-            yield Temperature(groups.node_set(own, f"temperature-{count}"), *_history(change))
+            yield Temperature(groups.node_set(here, f"temperature-{count}"), *_history(change))
 
 
 def _options(deck: Deck) -> SolveOptions:
     """Load steps at the ends of the deck's steps and the corners of its amplitudes."""
-    own = times(deck)
-    if np.allclose(own, np.arange(1, len(own) + 1) / len(own), rtol=0.0, atol=1e-12):
-        return SolveOptions(steps=len(own))
-    return SolveOptions(times=own)
+    ends = times(deck)
+    if np.allclose(ends, np.arange(1, len(ends) + 1) / len(ends), rtol=0.0, atol=1e-12):
+        return SolveOptions(steps=len(ends))
+    return SolveOptions(times=ends)

@@ -28,8 +28,8 @@ class BodyPair:
 
     def contact(self, name: str = "", **options: object) -> Contact:
         """The contact of a model; ``options`` as for ``abut.Contact``."""
-        own = "-".join(self.bodies)
-        return Contact(*self.bodies, name=f"{name}-{own}" if name else own, **options)  # type: ignore[arg-type]
+        shown = "-".join(self.bodies)
+        return Contact(*self.bodies, name=f"{name}-{shown}" if name else shown, **options)  # type: ignore[arg-type]
 
     @property
     def note(self) -> str:

@@ -104,7 +104,7 @@ def find_contacts(
         number = f":{count[patch.bodies]}" if count[patch.bodies] > 1 else ""
         a, b = (every.names[i] for i in patch.bodies)
         surface = f"{AUTO}{a}-{b}{number}", f"{AUTO}{b}-{a}{number}"
-        grown = [_widened(every, own) for own in patch.facets]
+        grown = [_widened(every, facets) for facets in patch.facets]
         grown[1 - first] = np.union1d(grown[1 - first], seen_by(every, grown[first], grown[1 - first]))
         result.append(
             FoundContact(
@@ -142,16 +142,16 @@ def _patches(every: Outside, found: Facing) -> list[_Patch]:
     n = len(every.names)
     code = every.body[found.one] * n + every.body[found.other]
     for number in np.unique(code):
-        own = found.where(code == number)
-        facets = np.unique(np.concatenate([own.one, own.other]))
-        one, other = np.searchsorted(facets, own.one), np.searchsorted(facets, own.other)
+        pairs = found.where(code == number)
+        facets = np.unique(np.concatenate([pairs.one, pairs.other]))
+        one, other = np.searchsorted(facets, pairs.one), np.searchsorted(facets, pairs.other)
         nodes = every.surface.nodes[facets]
         facet, local = np.nonzero(nodes >= 0)
         touch = sp.csr_matrix((np.ones(len(facet)), (facet, nodes[facet, local])))
         links = touch @ touch.T + sp.csr_matrix((np.ones(len(one)), (one, other)), shape=(len(facets),) * 2)
         _, label = connected_components(links, directed=False)
         for piece in np.unique(label):  # in the order of their first facets
-            inside = own.where(label[one] == piece)
+            inside = pairs.where(label[one] == piece)
             sides = np.unique(inside.one), np.unique(inside.other)
             result.append(_Patch((int(number // n), int(number % n)), sides, inside))
     return result

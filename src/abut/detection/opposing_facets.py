@@ -76,10 +76,10 @@ def facing(all_of: Outside, reach: float | None) -> Facing:
     """Facets of different bodies that face each other within ``reach`` (length; None: half the sum of their sizes), with
     nothing in between. Overlaps count as far as gaps that come from the sizes, and half way through the bodies at most."""
     count = len(all_of.names)
-    own = [np.flatnonzero(all_of.body == i) for i in range(count)]
-    parts = [_search(all_of, own[a], own[b], reach) for a, b in combinations(range(count), 2)]
-    met = np.unique(np.concatenate([f for p in parts for f in (p.one, p.other)])) if parts else own[0][:0]
-    for facets in own:  # what hides others behind its own thickness
+    of_body = [np.flatnonzero(all_of.body == i) for i in range(count)]
+    parts = [_search(all_of, of_body[a], of_body[b], reach) for a, b in combinations(range(count), 2)]
+    met = np.unique(np.concatenate([f for p in parts for f in (p.one, p.other)])) if parts else of_body[0][:0]
+    for facets in of_body:  # what hides others behind its own thickness
         hidden = _search(all_of, facets[np.isin(facets, met)], facets, reach, boxes=False)
         parts += [hidden, Facing(hidden.other, hidden.one, hidden.gap, hidden.area)]
     every = _joined(parts)
@@ -94,9 +94,9 @@ def seen_by(all_of: Outside, contactor: NDArray[np.int64], target: NDArray[np.in
     """Facets of the target's body that a contactor, and so its pressure, sees within the reach of the two, and does not lie
     deep inside of."""
     body = np.flatnonzero(all_of.body == all_of.body[target[0]])
-    own, other = _part(all_of.surface, contactor), _part(all_of.surface, body)
-    far = default_reach(own, _part(all_of.surface, target))
-    at = couple(own, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
+    part, other = _part(all_of.surface, contactor), _part(all_of.surface, body)
+    far = default_reach(part, _part(all_of.surface, target))
+    at = couple(part, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
     if at is None:
         return target[:0]
     near = NEAR * (all_of.size[contactor[at.facet]] + all_of.size[body[at.target_facet]])
@@ -112,8 +112,8 @@ def _shallow(all_of: Outside, every: Facing) -> NDArray[np.bool_]:
     side. Of bodies that share points the far side of one may be that of the other."""
     one_solid = all_of.solid[every.one] == all_of.solid[every.other]
     deep = -every.gap > HALF * NEAR * (all_of.size[every.one] + all_of.size[every.other])
-    own = (all_of.body[every.one] == all_of.body[every.other]) & (every.gap < 0.0)
-    through = every.where(own | (one_solid & deep))
+    same = (all_of.body[every.one] == all_of.body[every.other]) & (every.gap < 0.0)
+    through = every.where(same | (one_solid & deep))
     thick = np.full(len(all_of.rows), np.inf)
     for facets in (through.one, through.other):
         np.minimum.at(thick, facets, -through.gap)
@@ -176,9 +176,9 @@ def _nearest(all_of: Outside, every: Facing, facet: NDArray[np.int64], partner: 
     return np.asarray(seen[group])
 
 
-def _near(all_of: Outside, own: NDArray[np.int64], others: NDArray[np.int64], reach: float) -> NDArray[np.bool_]:
+def _near(all_of: Outside, facets: NDArray[np.int64], others: NDArray[np.int64], reach: float) -> NDArray[np.bool_]:
     """Facets whose box meets the box of all the others, wider by the reach."""
-    low, high = _boxes(all_of.surface, own)
+    low, high = _boxes(all_of.surface, facets)
     their_low, their_high = _boxes(all_of.surface, others)
     limits = their_low.min(axis=0) - reach, their_high.max(axis=0) + reach
     return np.asarray(((low <= limits[1]) & (high >= limits[0])).all(axis=1))

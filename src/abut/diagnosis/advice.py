@@ -49,8 +49,8 @@ class Place:
     def __str__(self) -> str:
         if self.between is not None:
             some = [
-                f"node {node} at ({', '.join(f'{v:.4g}' for v in at)}) is {' and '.join(compress(STATUSES, own))} in turn"
-                for node, at, own in zip(self.nodes[:NAMED], self.coordinates, self.between)
+                f"node {node} at ({', '.join(f'{v:.4g}' for v in at)}) is {' and '.join(compress(STATUSES, states))} in turn"
+                for node, at, states in zip(self.nodes[:NAMED], self.coordinates, self.between)
             ]
             more = f"; and {len(self.nodes) - NAMED} more" if len(self.nodes) > NAMED else ""
             return f"contact '{self.contact}': {'; '.join(some)}{more}"
@@ -72,8 +72,8 @@ def unsettled(step: Step) -> list[Place]:
             places.append(Place(name, facets, flips.nodes, surfaces[name].points[flips.nodes], flips.between))
             continue
         nodes = surfaces[name].nodes[facets]
-        own = np.unique(nodes[nodes >= 0]).astype(np.int64)
-        places.append(Place(name, facets, own, surfaces[name].points[own]))
+        used = np.unique(nodes[nodes >= 0]).astype(np.int64)
+        places.append(Place(name, facets, used, surfaces[name].points[used]))
     return places
 
 
@@ -81,10 +81,14 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
     """At most three pieces of advice, the most likely first, for a run that did not converge, or whose certificate finds
     surfaces that overlap; else none. Only such as have been seen to help: the search for the contact status converges
     independently of the mesh, the load steps and the choice of the contactor."""
-    found = _by_overlap(solution) if solution.converged else (
-        *_by_deformation(solution),
-        *_by_law(solution),
-        *_by_limit(solution),
+    found = (
+        _by_overlap(solution)
+        if solution.converged
+        else (
+            *_by_deformation(solution),
+            *_by_law(solution),
+            *_by_limit(solution),
+        )
     )
     return tuple(found)[:COUNT]
 

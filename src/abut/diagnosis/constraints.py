@@ -10,25 +10,25 @@ from abut.contact.sides import words
 from abut.diagnosis.finding import Finding
 from abut.errors import SingularModelError
 from abut.model import Model
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.held_multipliers import HELD
 
 MOST, ALL = 0.5, 1.0 - 1e-9  # share of the contactor's nodes: a symmetry plane across a contact holds fewer
 
 
-def constraints(model: Model, pair: Pair, held: Supports) -> list[Finding]:
+def constraints(model: Model, pair: Pair, constraints: Constraints) -> list[Finding]:
     """Contacts and ties most of whose contactor nodes are constrained by supports already."""
     surface = pair.contactor
     facing = surface.nodes[pair.coupling.segments > 0]
     nodes = np.unique(facing[facing >= 0]).astype(np.int64)
     where = f"contact '{pair.contact.name}'"
     if pair.tied:
-        shares = [held.held_share(nodes, np.tile(axis, (len(nodes), 1))) > HELD for axis in np.eye(surface.dim)]
+        shares = [constraints.held_share(nodes, np.tile(axis, (len(nodes), 1))) > HELD for axis in np.eye(surface.dim)]
         part = max(float(share.mean()) for share in shares)
         taken = np.any(shares, axis=0)
     else:
-        taken = held.held_share(nodes, _normals(pair)[nodes]) > HELD
+        taken = constraints.held_share(nodes, _normals(pair)[nodes]) > HELD
         part = float(taken.mean())
     if part <= MOST:
         return []

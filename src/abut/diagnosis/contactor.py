@@ -29,16 +29,17 @@ CURES = {
 def sides(model: Model, contact: Contact) -> list[Finding]:
     """Advice to swap the sides, or to refine one of them, where the pressure would gain by it."""
     where = f"contact '{contact.name}'"
-    own, other = measured(model, contact)
-    summary = (
-        f"E/(1-nu^2) {own.modulus:.3g} (contactor) and {other.modulus:.3g}, facets {own.size:.3g} and {other.size:.3g}"
-    )
-    choice = choose(own, other)
+    first, other = measured(model, contact)
+    moduli = f"E/(1-nu^2) {first.modulus:.3g} (contactor) and {other.modulus:.3g}"
+    summary = f"{moduli}, facets {first.size:.3g} and {other.size:.3g}"
+    choice = choose(first, other)
     if choice.clear and choice.contactor == 1 and swap(model, contact, choice):
-        what = f"contactor {words(contact.contactor)} {_against(choice, own, other)} ({summary})"
+        what = f"contactor {words(contact.contactor)} {_against(choice, first, other)} ({summary})"
         return [Finding("advice", where, what, CURES[choice.rule])]
-    if much_finer(own, other):
-        what = f"contactor {words(contact.contactor)} {_against(replace(choice, rule='kinks'), own, other)} ({summary})"
+    if much_finer(first, other):
+        what = (
+            f"contactor {words(contact.contactor)} {_against(replace(choice, rule='kinks'), first, other)} ({summary})"
+        )
         return [Finding("advice", where, what, "refine the target")]
     return [Finding("info", where, summary)]
 
@@ -47,22 +48,22 @@ def measured(model: Model, contact: Contact) -> tuple[Side, Side]:
     """Contactor and target as the choice sees them: facets within reach of each other, or, where none are so near, of the
     contact's own reach."""
     both = model.sides(contact)
-    moduli = [contact_modulus(softest(model.mesh, model.materials, own.cells)) for own in both]
-    flat = [straight(replace(own, axisymmetric=False)) for own in both]
+    moduli = [contact_modulus(softest(model.mesh, model.materials, surface.cells)) for surface in both]
+    flat = [straight(replace(surface, axisymmetric=False)) for surface in both]
     contactor, target = flat
-    sizes = [facet_sizes(own) for own in flat]
+    sizes = [facet_sizes(surface) for surface in flat]
     options = CouplingOptions(points=1, reach=default_reach(contactor, target), keep_points=True)
     at = couple(contactor, target, 0, options).points
     if at is None or not len(at.gap):
-        facing, opposite = [np.arange(len(own)) for own in flat], np.inf
+        facing, opposite = [np.arange(len(surface)) for surface in flat], np.inf
     else:
         near = np.abs(at.gap) <= NEAR * (sizes[0][at.facet] + sizes[1][at.target_facet])
         near |= not near.any()
         facing = [np.unique(at.facet[near]), np.unique(at.target_facet[near])]
         opposite = float(at.weight[near].sum())
     one, other = (
-        side(size[f], full_moments(own, 0)[f, 0], _normals(own)[f], opposite, modulus)
-        for own, size, f, modulus in zip(flat, sizes, facing, moduli)
+        side(size[f], full_moments(surface, 0)[f, 0], _normals(surface)[f], opposite, modulus)
+        for surface, size, f, modulus in zip(flat, sizes, facing, moduli)
     )
     return one, other
 
@@ -86,18 +87,18 @@ def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:
         return ""
     other = replace(contact, contactor=contact.target, target=contact.contactor)
     try:
-        replace(model, contacts=[other if own is contact else own for own in model.contacts])
+        replace(model, contacts=[other if each is contact else each for each in model.contacts])
     except InputError:
         return ""
     return f"swap the sides (contactor = {code(contact.target)}, target = {code(contact.contactor)})"
 
 
-def _against(choice: Choice, own: Side, other: Side) -> str:
+def _against(choice: Choice, side: Side, other: Side) -> str:
     """What speaks against the contactor, after its name."""
     return {
         "softer": "is the stiffer side",
-        "covered": f"has only {own.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
+        "covered": f"has only {side.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",
-        "kinks": f"is {other.size / own.size:.2g} times finer than its curved target, whose faceting its pressure will show",
-        "finer": f"is {own.size / other.size:.2g} times coarser than its target",
+        "kinks": f"is {other.size / side.size:.2g} times finer than its curved target, whose facets its pressure will show",
+        "finer": f"is {side.size / other.size:.2g} times coarser than its target",
     }[choice.rule]

@@ -12,7 +12,7 @@ from abut.linear.choice import chosen
 from abut.linear.cost_model import LARGE, LARGE_ON_MANY, MEMORY, effort, seconds
 from abut.linear.direct import available_memory
 from abut.model import Model
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 
 
@@ -29,21 +29,21 @@ class Foreseen:
         return sum(self.stages.values())
 
 
-def foresee(model: Model, held: Supports, pairs: Sequence[Pair]) -> Foreseen:
+def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Foreseen:
     """What a run will need: seconds mostly within a factor of two, memory of two or three."""
-    n = int(held.free.shape[1])
+    n = int(constraints.free.shape[1])
     petsc = model.solve.linear == "petsc"
     sizes = LARGE_ON_MANY if petsc else LARGE
-    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, held.coupled, sizes)
+    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, constraints.coupled, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]
     return Foreseen(solver, seconds(effort(model, n, pairs), solver), memory.megabytes(n))
 
 
-def cost(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+def cost(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[Finding]:
     """The linear solver that will be taken, and what it needs; a warning where that is more than the machine has."""
-    n, petsc = int(held.free.shape[1]), model.solve.linear == "petsc"
-    foreseen = foresee(model, held, pairs)
+    n, petsc = int(constraints.free.shape[1]), model.solve.linear == "petsc"
+    foreseen = foresee(model, constraints, pairs)
     solver, megabytes = foreseen.solver, foreseen.megabytes
     multipliers = sum(map(len, pairs))
     name, alone = (f"petsc ({solver})", "on one process ") if petsc else (solver, "")

@@ -17,7 +17,7 @@ from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
 from abut.model import Model
-from abut.problem.constraints import Supports, supports
+from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pair
 
 
@@ -26,36 +26,36 @@ def check(model: Model) -> Report:
     findings, doubts = [*quality(model.mesh), *probes(model)], units(model)
     shown: list[Motion] = []
     try:
-        held = supports(model)
+        supported = supports(model)
     except AbutError as error:
         findings.append(from_error(error, "supports"))
         return Report(in_order([*findings, *doubts]))
-    built, about = _pairs(model, held)
+    built, about = _pairs(model, supported)
     findings += about
     try:
-        about, shown = motions(model, held, built)
+        about, shown = motions(model, supported, built)
         findings += about
     except InputError as error:  # loads that cannot be evaluated
         findings.append(from_error(error, "loads"))
-    findings += friction(model, held, built)
+    findings += friction(model, supported, built)
     if len(built) == len(model.contacts):
-        findings += cost(model, held, built)
+        findings += cost(model, supported, built)
     if not any(MIXED in f.what for f in findings):  # one mistake, said once
         findings += doubts
     return Report(in_order(findings), tuple(shown))
 
 
-def _pairs(model: Model, held: Supports) -> tuple[list[Pair], list[Finding]]:
+def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Finding]]:
     """The contact pairs that can be built, and findings on all of them."""
     built: list[Pair] = []
     findings: list[Finding] = []
     outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
     for contact in model.contacts:
         try:
-            own = pair(model, contact, held)
+            one = pair(model, contact, supported)
         except AbutError as error:
             findings.append(not_facing(model, contact, error))
             continue
-        built.append(own)
-        findings += [*interface(model, own, outside), *sides(model, contact), *constraints(model, own, held)]
+        built.append(one)
+        findings += [*interface(model, one, outside), *sides(model, contact), *constraints(model, one, supported)]
     return built, findings

@@ -13,7 +13,7 @@ from abut.errors import AbutError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.friction import FrictionValues
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.loads import loads
 from abut.problem.restraint import Restraint, restraint
@@ -24,14 +24,14 @@ CLOSE = 0.9  # share of the given coefficient that loads take from which on a bo
 FAR = 3.0  # times the coefficient, beyond which nobody needs to be told of what may happen
 
 
-def friction(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+def friction(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[Finding]:
     """Findings on all contacts with friction; none where there is none. ``pairs``: all that could be built."""
     rubs = [pair for pair in pairs if pair.frictional]
     if not rubs:
         return []
     findings = _axisymmetric(model, rubs)
     if len(pairs) == len(model.contacts):
-        findings += [*_alone(model, held, pairs), *_several(model, held, pairs)]
+        findings += [*_alone(model, constraints, pairs), *_several(model, constraints, pairs)]
     return findings
 
 
@@ -42,7 +42,7 @@ def _axisymmetric(model: Model, pairs: Sequence[Pair]) -> list[Finding]:
     return [Finding("info", f"contact '{pair.contact.name}'", what) for pair in pairs]
 
 
-def _alone(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+def _alone(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[Finding]:
     """Bodies that slide without friction, and the coefficient that holds them, in the step that takes most of it."""
     worst: tuple[float, str] | None = None
     try:
@@ -50,10 +50,10 @@ def _alone(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]
     except AbutError:  # said elsewhere
         return []
     for number, (load, time) in enumerate(zip(ends, model.solve.ends), start=1):
-        at, force = weights(model.histories, time), held.free.T @ load
-        motion = restraint(model.mesh, held, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
+        at, force = weights(model.histories, time), constraints.free.T @ load
+        motion = restraint(model.mesh, constraints, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
         given = _given(pairs, at)
-        needed = _needed(restraint(model.mesh, held, pairs), at, force) if motion and given > 0.0 else None
+        needed = _needed(restraint(model.mesh, constraints, pairs), at, force) if motion and given > 0.0 else None
         if needed is not None and (worst is None or needed / given > worst[0]):
             when = f" in step {number}" if len(ends) > 1 else ""
             least = f"it takes a coefficient of {needed:.3g} at least, {_words(pairs, at)}"
@@ -68,14 +68,14 @@ def _alone(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]
     return [Finding("info", "bodies", worst[1])]
 
 
-def _needed(held_by: Restraint, at: np.ndarray, force: np.ndarray) -> float | None:
+def _needed(restrained: Restraint, at: np.ndarray, force: np.ndarray) -> float | None:
     """The smallest coefficient, of all contacts in the proportion given, by which pressures and tractions can balance forces
     (n_free,); None where what is given cannot."""
-    given = _given(held_by.pairs, at)
+    given = _given(restrained.pairs, at)
 
     def holds(coefficient: float) -> bool:
-        pairs = [_with(pair, at, coefficient / given) for pair in held_by.pairs]
-        return not replace(held_by, pairs=pairs).unbalanced(force)
+        pairs = [_with(pair, at, coefficient / given) for pair in restrained.pairs]
+        return not replace(restrained, pairs=pairs).unbalanced(force)
 
     if not holds(given):
         return None
@@ -123,10 +123,10 @@ def _words(pairs: Sequence[Pair], at: np.ndarray) -> str:
     return f"given is {given:.3g}" if alike else f"where {given:.3g} is given, and others in proportion"
 
 
-def _several(model: Model, held: Supports, pairs: Sequence[Pair]) -> list[Finding]:
+def _several(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[Finding]:
     """A coefficient at which a load step can have several solutions."""
     try:
-        found = uniqueness(model, held, pairs)
+        found = uniqueness(model, constraints, pairs)
     except (AbutError, np.linalg.LinAlgError):  # what is singular is said elsewhere
         return []
     if found is None:

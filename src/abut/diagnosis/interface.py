@@ -32,11 +32,11 @@ def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
     """Why no facet of a contactor faces the target: units, the wrong side of a body, or distance."""
     contactor, target = model.sides(contact)
     where = f"contact '{contact.name}'"
-    own, other = (bodies_at(model.mesh, surface.cells) for surface in (contactor, target))
+    bodies, other = (bodies_at(model.mesh, surface.cells) for surface in (contactor, target))
     distance = _distance(contactor, target)
-    sizes = [body_size(model.mesh, names[0]) for names in (own, other)]
+    sizes = [body_size(model.mesh, names[0]) for names in (bodies, other)]
     if max(sizes) > UNLIKE * min(sizes):
-        small, large = (own[0], other[0]) if sizes[0] < sizes[1] else (other[0], own[0])
+        small, large = (bodies[0], other[0]) if sizes[0] < sizes[1] else (other[0], bodies[0])
         return Finding(
             "error",
             where,
@@ -46,7 +46,9 @@ def not_facing(model: Model, contact: Contact, error: AbutError) -> Finding:
         )
     cosine = float(_mean_normal(contactor) @ _mean_normal(target))
     found = [
-        f for f in find_contacts(model.mesh, model.solids, bodies=[*own, *other]) if set(f.bodies) <= {*own, *other}
+        f
+        for f in find_contacts(model.mesh, model.solids, bodies=[*bodies, *other])
+        if set(f.bodies) <= {*bodies, *other}
     ]
     if cosine > ACROSS or found:
         how = "point the same way" if cosine > SAME_WAY else "do not point at each other"
@@ -77,9 +79,9 @@ def _right_side(model: Model, contact: Contact, found: list[FoundContact]) -> st
     for rows, auto in ((found[0].contactor_facets, found[0].contactor), (found[0].target_facets, found[0].target)):
         wanted = {(int(c), int(f)) for c, f in rows}
         share = {
-            name: len(wanted & own) / len(wanted | own)
+            name: len(wanted & shared) / len(wanted | shared)
             for name, facets in model.mesh.surfaces.items()
-            if (own := {(int(c), int(f)) for c, f in facets})
+            if (shared := {(int(c), int(f)) for c, f in facets})
         }
         best = max(share, key=lambda name: share[name], default="")
         names.append(best if best and share[best] > 0.3 else auto)

@@ -14,7 +14,7 @@ from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.model import Model
 from abut.problem.backend import serial
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.rigid_modes import free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
 
@@ -37,20 +37,23 @@ class Uniqueness:
     critical: float
 
 
-def uniqueness(model: Model, held: Supports, pairs: Sequence[Pair]) -> Uniqueness | None:
+def uniqueness(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Uniqueness | None:
     """For all pairs with friction together; None where the model is too large for it, has materials or contacts of other
     kinds (ties do), a coefficient over pressure or none at all, or bodies that friction alone holds."""
     rubs = [pair for pair in pairs if pair.frictional]
     others = [pair for pair in pairs if not (pair.tied or _plain(pair))]
-    small = held.free.shape[1] <= MOST[model.dim] and sum(map(len, pairs)) <= MULTIPLIERS
+    small = constraints.free.shape[1] <= MOST[model.dim] and sum(map(len, pairs)) <= MULTIPLIERS
     if not rubs or others or not small or not model.deformable.constant:
         return None
     rigid = rigid_modes(model.mesh)
-    supports = [resistance_of_supports(rigid, held), *(resistance_of_rows(rigid, p.rows) for p in pairs if p.tied)]
+    supports = [
+        resistance_of_supports(rigid, constraints),
+        *(resistance_of_rows(rigid, p.rows) for p in pairs if p.tied),
+    ]
     normals = [resistance_of_rows(rigid, pair.rows[pair.normal]) for pair in rubs]
     if free_motions([*supports, *normals]).shape[1]:
         return None
-    stiffness = serial(model).reduce(held)
+    stiffness = serial(model).reduce(constraints)
     for pair in pairs:
         if pair.tied:
             stiffness = _held(stiffness, pair.operator)
@@ -89,9 +92,9 @@ def _along(pair: Pair, angle: float) -> sp.csr_matrix:
         shares = tangents @ (np.cos(angle) * first + np.sin(angle) * second)
     n = len(pair.space)
     result = sp.csr_matrix((n, pair.operator.shape[1]))
-    for b, own in enumerate(pair.index[:, 1:].T):
-        there = np.flatnonzero(own >= 0)
-        picks = sp.csr_matrix((shares[there, b], (there, own[there])), shape=(n, len(pair)))
+    for b, numbers in enumerate(pair.index[:, 1:].T):
+        there = np.flatnonzero(numbers >= 0)
+        picks = sp.csr_matrix((shares[there, b], (there, numbers[there])), shape=(n, len(pair)))
         result = result + picks @ pair.operator
     return result
 
@@ -99,14 +102,14 @@ def _along(pair: Pair, angle: float) -> sp.csr_matrix:
 def _critical(stiffness: sp.csr_matrix, normal: sp.csr_matrix, slips: Sequence[sp.csr_matrix]) -> float:
     """The smallest mu for which (A_nn + mu A_nt) p = 0 for some p, of slip either way."""
     yields = direct.factorized(stiffness)(np.asarray(normal.T.todense()))
-    own = np.asarray(normal @ yields)
-    own = 0.5 * (own + own.T)
-    values = np.linalg.eigvalsh(own)
+    coupling = np.asarray(normal @ yields)
+    coupling = 0.5 * (coupling + coupling.T)
+    values = np.linalg.eigvalsh(coupling)
     if not values[0] > REGULAR**2 * values[-1]:
         raise SingularModelError("contact cannot close")
     result = np.inf
     for slip in slips:
-        found = scipy.linalg.eigvals(np.asarray(slip @ yields).T, own)
+        found = scipy.linalg.eigvals(np.asarray(slip @ yields).T, coupling)
         real = np.abs(found[np.abs(found.imag) <= REAL * np.abs(found)].real)
         result = min(result, 1.0 / max(float(real.max(initial=0.0)), 1e-300))
     return result if result < 1e100 else np.inf

@@ -265,8 +265,8 @@ def _elements_2(source: _Source) -> list[tuple[int, list[tuple[int, int]], NDArr
                 source.fail(f"cannot read element {done + 1}")
             table = source.array("i", n * (1 + tags + nodes)).reshape(n, -1)
             for physical in np.unique(table[:, 1]) if tags else [0]:
-                own = table[table[:, 1] == physical] if tags else table
-                rows[code, int(physical)].extend(own[:, 1 + tags :].tolist())
+                tagged = table[table[:, 1] == physical] if tags else table
+                rows[code, int(physical)].extend(tagged[:, 1 + tags :].tolist())
             done += n
             continue
         try:
@@ -305,11 +305,11 @@ def _collect(
         position = np.searchsorted(ordered, nodes)
         if (position >= len(ordered)).any() or (ordered[np.minimum(position, len(ordered) - 1)] != nodes).any():
             raise InputError(f"{path}: elements use nodes that the file does not list; it is damaged: write it again")
-        own = order[position]
+        rows = order[position]
         if permutation is not None:
-            own = own[:, permutation]
+            rows = rows[:, permutation]
         every: list[tuple[int, int] | None] = [*groups] or [None]
         for key in every:
             name = "" if key is None else names.get(key, f"group_{key[0]}_{key[1]}")
-            parts.setdefault(name, {}).setdefault(kind, []).append(own)
+            parts.setdefault(name, {}).setdefault(kind, []).append(rows)
     return RawMesh(points, {n: {k: np.concatenate(v) for k, v in kinds.items()} for n, kinds in parts.items()})

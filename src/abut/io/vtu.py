@@ -125,15 +125,15 @@ def read_vtu(path: Path) -> RawMesh:
     value, names = _regions(path, grid)
     groups: dict[str, dict[str, list[NDArray[np.int64]]]] = {}
     for code in np.unique(kinds):
-        own = np.flatnonzero(kinds == code)
+        cells = np.flatnonzero(kinds == code)
         kind = VTK_KIND[int(code)]
-        rows = nodes[offsets[own][:, None] + np.arange(NODES[kind])].astype(np.int64)
+        rows = nodes[offsets[cells][:, None] + np.arange(NODES[kind])].astype(np.int64)
         if value is None:
             groups.setdefault("", {}).setdefault(kind, []).append(rows)
             continue
-        for r in np.unique(value[own]).tolist():
+        for r in np.unique(value[cells]).tolist():
             name = names[r] if 0 <= r < len(names) else f"region_{r}"
-            groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[own] == r])
+            groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[cells] == r])
     joined = {name: {k: np.concatenate(v) for k, v in parts.items()} for name, parts in groups.items()}
     return RawMesh(points, joined)
 
@@ -162,8 +162,8 @@ def _check_counts(path: Path, data: bytes) -> None:
     encoded = b"base64" in data[start:begin]
     for offset in re.findall(rb'offset\s*=\s*"\s*(\d+)', head):
         at = begin + 1 + int(offset)
-        own = _decoded(data[at : at + length]) if encoded else data[at : at + size]
-        _check_sizes(path, own[:size], word, count, limit)
+        header = _decoded(data[at : at + length]) if encoded else data[at : at + size]
+        _check_sizes(path, header[:size], word, count, limit)
 
 
 def _decoded(text: bytes) -> bytes:
@@ -173,9 +173,9 @@ def _decoded(text: bytes) -> bytes:
         return b""
 
 
-def _check_sizes(path: Path, own: bytes, word: Foreign, count: int, limit: int) -> None:
-    """Refuse the sizes ``own`` that stand before the data of an array where they cannot be right."""
-    words = np.frombuffer(own[: len(own) // word.itemsize * word.itemsize], word)
+def _check_sizes(path: Path, header: bytes, word: Foreign, count: int, limit: int) -> None:
+    """Refuse the sizes ``header`` that stand before the data of an array where they cannot be right."""
+    words = np.frombuffer(header[: len(header) // word.itemsize * word.itemsize], word)
     if len(words) and words[0] == 0:
         return  # an empty array
     if len(words) != count or (words > limit).any() or int(np.prod(words[:2].astype(float))) > limit:

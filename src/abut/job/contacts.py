@@ -41,7 +41,7 @@ def resolve_contacts(
     for i, table in enumerate(tables):
         _check(table, f"contacts[{i}]")
     named = [() if table.auto else finder.named(table, f"contacts[{i}]") for i, table in enumerate(tables)]
-    used: dict[str, FoundContact] = {found.contactor: found for own in named for found in own}
+    used: dict[str, FoundContact] = {found.contactor: found for each in named for found in each}
     mesh = add_surfaces(mesh, list(used.values()))
     coupled = {pair for table in tables if not table.auto for pair in _bodies(mesh, table)}
     contacts: list[tuple[int, Contact]] = []
@@ -69,8 +69,8 @@ def resolve_contacts(
         mesh = add_surfaces(mesh, found)
         first = options.pop("name")
         for f in found:
-            own = f.contact(**options)
-            contacts.append((i, f.contact(name=f"{first}-{own.name}", **options) if first else own))
+            each = f.contact(**options)
+            contacts.append((i, f.contact(name=f"{first}-{each.name}", **options) if first else each))
         notes += [f.note for f in found]
     return Resolved(mesh, tuple(c for _, c in contacts), tuple(i for i, _ in contacts), tuple(notes))
 
@@ -141,5 +141,5 @@ def _bodies(mesh: Mesh, table: ContactTable) -> set[frozenset[str]]:
     sides = (table.contactor, table.target)
     if not all(name in mesh.surfaces or name in mesh.bodies for side in sides for name in listed(side)):
         return set()
-    own, other = (bodies_of(mesh, side) for side in sides)
-    return {frozenset({a, b}) for a in own for b in other}
+    bodies, other = (bodies_of(mesh, side) for side in sides)
+    return {frozenset({a, b}) for a in bodies for b in other}

@@ -76,7 +76,7 @@ def job_table(model: Model, mesh: str) -> Json:
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "probes"):
-        records = [_load(own) if name == "loads" else _plain(own) for own in getattr(model, name)]
+        records = [_load(record) if name == "loads" else _plain(record) for record in getattr(model, name)]
         if records:
             table[name] = records
     options = _plain(model.solve)
@@ -127,14 +127,14 @@ def _tables(table: Mapping[str, Any], path: str, lines: list[str]) -> None:
         if not isinstance(value, Mapping) and not _of_tables(value):
             lines.append(f"{_key(key)} = {_inline(value)}")
     for key, value in table.items():
-        own = f"{path}.{_key(key)}" if path else _key(key)
+        place = f"{path}.{_key(key)}" if path else _key(key)
         if isinstance(value, Mapping):
             if any(not isinstance(item, Mapping) for item in value.values()):
-                lines += ["", f"[{own}]"]
-            _tables(value, own, lines)
+                lines += ["", f"[{place}]"]
+            _tables(value, place, lines)
         elif _of_tables(value):
             for item in value:
-                lines += ["", f"[[{own}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
+                lines += ["", f"[[{place}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
 
 
 def _of_tables(value: object) -> bool:

@@ -56,7 +56,7 @@ def write_pairs(job: Job, path: Path) -> None:
             text.append(piece)
             continue
         if name == "contacts":
-            text += [_entry(job, i, entries[number]) for i, own in enumerate(job.entries) if own == number]
+            text += [_entry(job, i, entries[number]) for i, each in enumerate(job.entries) if each == number]
         text.append(_trailing(piece))
     write_text(path, "".join(text))
     written = load_job(path)
@@ -100,5 +100,5 @@ def _found(contact: Contact) -> bool:
 def _value(value: object) -> str:
     """A value as TOML; JSON's notation of text, numbers and lists is also TOML's."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_value(own)}" for key, own in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {_value(each)}" for key, each in value.items()) + " }"
     return json.dumps(value, ensure_ascii=False)

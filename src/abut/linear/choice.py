@@ -30,7 +30,7 @@ def choose(linear: str, problem: ContactProblem) -> str:
         if linear == "amg":
             raise InputError('solve.linear: "amg" is for kinematics "small"; choose "direct" or "auto"')
         return "direct"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.held.coupled)
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.constraints.coupled)
 
 
 def chosen(

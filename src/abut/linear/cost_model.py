@@ -115,29 +115,33 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
     )
 
 
-def preparing(own: Stiffness, solver: str) -> float:
+def preparing(size: Stiffness, solver: str) -> float:
     """Seconds to set a linear solver up: to factorise once ("direct"), or to make the levels of multigrid ("amg")."""
-    return own.entries * LEVELS if solver == "amg" else ROW * own.displacements + FRONT * own.fronts
+    return size.entries * LEVELS if solver == "amg" else ROW * size.displacements + FRONT * size.fronts
 
 
-def seconds(own: Effort, solver: str) -> dict[str, float]:
+def seconds(effort: Effort, solver: str) -> dict[str, float]:
     """Seconds of each stage, with "direct" or "amg" as the linear solver."""
-    solutions = FIRST + NEXT * (own.steps - 1) if own.multipliers else own.steps
-    prepared, displacements = preparing(own.stiffness, solver), own.stiffness.displacements
+    solutions = FIRST + NEXT * (effort.steps - 1) if effort.multipliers else effort.steps
+    prepared, displacements = preparing(effort.stiffness, solver), effort.stiffness.displacements
     if solver == "amg":
-        krylov = KRYLOV * own.stretched**STRETCHED * (FIRST + NEXT * (own.steps - 1)) / FIRST
-        solving = prepared + own.stiffness.entries * CYCLE * krylov
+        krylov = KRYLOV * effort.stretched**STRETCHED * (FIRST + NEXT * (effort.steps - 1)) / FIRST
+        solving = prepared + effort.stiffness.entries * CYCLE * krylov
     else:
-        degree = max(CELLS[kind].degree for kind in own.cells)
-        eliminated = own.multipliers <= LARGEST
-        times = (1 + (ELIMINATIONS[degree] - 1) * own.steps if own.multipliers else 1) if eliminated else solutions
+        degree = max(CELLS[kind].degree for kind in effort.cells)
+        eliminated = effort.multipliers <= LARGEST
+        times = (
+            (1 + (ELIMINATIONS[degree] - 1) * effort.steps if effort.multipliers else 1) if eliminated else solutions
+        )
         solving = times * prepared
-        solving += A_PAIR * own.pairs + solutions * (SOLUTION + (DENSE * own.multipliers**3 if eliminated else 0.0))
+        solving += A_PAIR * effort.pairs + solutions * (
+            SOLUTION + (DENSE * effort.multipliers**3 if eliminated else 0.0)
+        )
     return {
-        "assembly": START + sum(ASSEMBLY[kind] * count for kind, count in own.cells.items()),
-        "interface": own.cutting + A_PAIR * own.pairs + A_BODY * own.bodies,
+        "assembly": START + sum(ASSEMBLY[kind] * count for kind, count in effort.cells.items()),
+        "interface": effort.cutting + A_PAIR * effort.pairs + A_BODY * effort.bodies,
         "solve": solving,
-        "results": own.steps * (RESULT * displacements + A_PAIR * own.pairs),
+        "results": effort.steps * (RESULT * displacements + A_PAIR * effort.pairs),
     }
 
 

@@ -159,8 +159,8 @@ class Repeated:
     def _knows(self, matrix: Sparse, symmetric: bool) -> bool:
         if self._pattern is None:
             return False
-        indptr, indices, own = self._pattern
-        return own == symmetric and np.array_equal(indptr, matrix.indptr) and np.array_equal(indices, matrix.indices)
+        indptr, indices, data = self._pattern
+        return data == symmetric and np.array_equal(indptr, matrix.indptr) and np.array_equal(indices, matrix.indices)
 
     def _analyse(self, matrix: Sparse, symmetric: bool) -> None:
         self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)

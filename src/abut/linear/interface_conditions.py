@@ -49,21 +49,21 @@ def conditions(law: Rows, operator: Sparse, pressures: PressureBlock, pairs: Seq
     if not law.symmetric:
         few = reduced(law, pairs)
         return _general(law, operator, pressures) if few is None else _sliding(few, operator, pressures)
-    own = ~law.decoupled
-    corner, forces, push = sp.csr_matrix(law.by_pressure)[own][:, own], operator[own], _selection(own)
+    coupled = ~law.decoupled
+    corner, forces, push = sp.csr_matrix(law.by_pressure)[coupled][:, coupled], operator[coupled], _selection(coupled)
     soft = -corner.diagonal()
     if not soft.any():
         sizes = np.full(len(soft), pressures.scale)
-        inverse = schur_inverse(pressures.parts, own)
+        inverse = schur_inverse(pressures.parts, coupled)
     else:
         diagonal = pressures.diagonal
-        sizes = np.sqrt(pressures.unit / (diagonal[own] + soft))  # residuals are measured in the root of energy
+        sizes = np.sqrt(pressures.unit / (diagonal[coupled] + soft))  # residuals are measured in the root of energy
         inverse = soft_inverse(pressures.forward, diagonal, soft)
-    return Conditions(-forces, forces, corner, law.residual[own], sizes, sizes, inverse, push, law.fixed)
+    return Conditions(-forces, forces, corner, law.residual[coupled], sizes, sizes, inverse, push, law.fixed)
 
 
-def _selection(own: NDArray[np.bool_]) -> Sparse:
-    return sp.identity(len(own), format="csr")[own]
+def _selection(chosen: NDArray[np.bool_]) -> Sparse:
+    return sp.identity(len(chosen), format="csr")[chosen]
 
 
 def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Conditions:
@@ -93,35 +93,38 @@ def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: Pres
 
 def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
     """Rows that look at points, as the constraint function's do: a row is about ``share`` times that of the operator."""
-    own, fixed = ~law.decoupled, law.fixed
-    lower, operator = law.by_displacement[own], operator[own]
-    corner, residual = sp.csr_matrix(law.by_pressure)[own][:, own], (law.residual + law.by_pressure @ fixed)[own]
+    coupled, fixed = ~law.decoupled, law.fixed
+    lower, operator = law.by_displacement[coupled], operator[coupled]
+    corner, residual = (
+        sp.csr_matrix(law.by_pressure)[coupled][:, coupled],
+        (law.residual + law.by_pressure @ fixed)[coupled],
+    )
     size = np.asarray(operator.multiply(operator).sum(axis=1)).ravel()
     share = np.asarray(lower.multiply(operator).sum(axis=1)).ravel() / np.where(size > 0.0, size, 1.0)
     looks = np.maximum(np.abs(share), FAINT * np.abs(share).max(initial=1e-300))
-    diagonal = pressures.diagonal[own]
+    diagonal = pressures.diagonal[coupled]
     columns = np.sqrt(pressures.unit / (diagonal + np.abs(corner.diagonal()) / looks))
     return Conditions(
-        lower, operator, corner, residual, columns, columns / looks, _mixed_inverse(share, corner, own, pressures),
-        _selection(own), fixed, False,
+        lower, operator, corner, residual, columns, columns / looks, _mixed_inverse(share, corner, coupled, pressures),
+        _selection(coupled), fixed, False,
     )  # fmt: skip
 
 
 def _mixed_inverse(
-    share: NDArray[np.float64], corner: Sparse, own: NDArray[np.bool_], pressures: PressureBlock
+    share: NDArray[np.float64], corner: Sparse, coupled: NDArray[np.bool_], pressures: PressureBlock
 ) -> Apply:
     """That of -(share S + corner), theory (V22), by Krylov iterations to ``ACCURACY``. Rows that are mostly closed are
     taken for closed, the others for open, one after the other."""
-    n, places = len(share), np.flatnonzero(own)
-    closed = np.abs(share) * pressures.diagonal[own] > np.abs(corner.diagonal())
-    shut = np.zeros(len(own), dtype=bool)
+    n, places = len(share), np.flatnonzero(coupled)
+    closed = np.abs(share) * pressures.diagonal[coupled] > np.abs(corner.diagonal())
+    shut = np.zeros(len(coupled), dtype=bool)
     shut[places[closed]] = True
     by_gap = schur_inverse(pressures.parts, shut)
     beside = corner[closed][:, ~closed]
     by_pressure = spla.splu(corner[~closed][:, ~closed].tocsc()).solve if (~closed).any() else None
 
     def multiply(p: NDArray[np.float64]) -> NDArray[np.float64]:
-        whole = np.zeros(len(own))
+        whole = np.zeros(len(coupled))
         whole[places] = p
         return np.asarray(share * pressures.forward(whole)[places] + corner @ p)
 

@@ -39,27 +39,32 @@ class Iterative:
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``, preconditioned by theory (V11)."""
-        own = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
-        operator, n = own.forces, len(residual)
-        coarse = self._rigid(own, residual - self.system.operator.T @ own.fixed)
+        interface = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
+        operator, n = interface.forces, len(residual)
+        coarse = self._rigid(interface, residual - self.system.operator.T @ interface.fixed)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            u, p = x[:n], own.columns * x[n:]
+            u, p = x[:n], interface.columns * x[n:]
             return np.concatenate(
-                [self.hierarchy.product(u) - operator.T @ p, own.rows * (own.lower @ u + own.corner @ p)]
+                [
+                    self.hierarchy.product(u) - operator.T @ p,
+                    interface.rows * (interface.lower @ u + interface.corner @ p),
+                ]
             )
 
         def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            p = -own.inverse(x[n:] / own.rows)
+            p = -interface.inverse(x[n:] / interface.rows)
             r = x[:n] + operator.T @ p
-            return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / own.columns])
+            return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / interface.columns])
 
-        rhs = np.concatenate([-residual + self.system.operator.T @ own.fixed, -own.rows * own.residual])
+        rhs = np.concatenate(
+            [-residual + self.system.operator.T @ interface.fixed, -interface.rows * interface.residual]
+        )
         solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
         self.count.iterations += iterations
         if not done or not np.isfinite(solution).all():
             raise NotConverged(FAILED)
-        return solution[:n], own.multipliers(own.columns * solution[n:])
+        return solution[:n], interface.multipliers(interface.columns * solution[n:])
 
     def factorise(self, rows: Rows) -> None:
         """No factors are kept."""
@@ -82,13 +87,13 @@ class Iterative:
         self.count.iterations += iterations
         return answer
 
-    def _rigid(self, own: Conditions, force: Vector) -> Apply:
+    def _rigid(self, interface: Conditions, force: Vector) -> Apply:
         """What multigrid misses: rigid motions of bodies that only contact holds. Raises SingularModelError where nothing
         does, and ``force`` (n_free,) moves them."""
         motions = self.system.motions
         if not motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        small = compliance(own.forces @ motions, own.inverse, -np.asarray(own.lower @ motions))
+        small = compliance(interface.forces @ motions, interface.inverse, -np.asarray(interface.lower @ motions))
         require_held(motions, small, force, float(np.abs(self.system.forces).sum()))
         return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
 
@@ -97,8 +102,8 @@ def require_held(motions: NDArray[np.float64], small: NDArray[np.float64], force
     """Raises SingularModelError where a force (n,) does work on motions (n, m) that nothing resists, whose compliance
     ``small`` (m, m) is zero, as ``compliance`` leaves it. loads: sum of all, beside which what is left is rounding."""
     basis, sizes, _ = np.linalg.svd(small)
-    loose = basis[:, sizes <= LOOSE * sizes.max(initial=0.0)]
-    if np.abs(loose.T @ (motions.T @ force)).max(initial=0.0) > UNBALANCED * (np.abs(force).sum() + loads):
+    unconstrained = basis[:, sizes <= LOOSE * sizes.max(initial=0.0)]
+    if np.abs(unconstrained.T @ (motions.T @ force)).max(initial=0.0) > UNBALANCED * (np.abs(force).sum() + loads):
         raise SingularModelError(UNBALANCED_LOADS)
 
 

@@ -90,11 +90,11 @@ def _inverted(diagonal: NDArray[np.float64], small: float) -> NDArray[np.float64
     return np.asarray(np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > small))
 
 
-def coarse_matrix(matrix: Sparse, own: Level) -> Sparse:
+def coarse_matrix(matrix: Sparse, level: Level) -> Sparse:
     """Galerkin's matrix of the next level, BSR."""
-    block = own.smooth.blocksize
-    image = (matrix @ own.smooth).tobsr(block)
-    return (own.smooth.T.tobsr((block[1], block[0])) @ image).tobsr((block[1], block[1]))
+    block = level.smooth.blocksize
+    image = (matrix @ level.smooth).tobsr(block)
+    return (level.smooth.T.tobsr((block[1], block[0])) @ image).tobsr((block[1], block[1]))
 
 
 def inverse(matrix: Sparse) -> Single:

@@ -117,8 +117,8 @@ class SaddlePoint:
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As in ``Prepared``."""
-        held = self.system.stiffness + sp.diags(springs)
-        return direct.Factorization(store_diagonal(sp.triu(held, format="csr"))).solve(force)
+        sprung = self.system.stiffness + sp.diags(springs)
+        return direct.Factorization(store_diagonal(sp.triu(sprung, format="csr"))).solve(force)
 
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]

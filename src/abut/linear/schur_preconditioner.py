@@ -86,9 +86,9 @@ def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Appl
     position = np.cumsum(active) - 1
     blocks = []
     for part in parts:
-        own = np.flatnonzero(active[part.rows])
-        if len(own):
-            blocks.append((position[part.rows[own]], _inverse(part, own)))
+        here = np.flatnonzero(active[part.rows])
+        if len(here):
+            blocks.append((position[part.rows[here]], _inverse(part, here)))
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
         pressure = np.zeros_like(gap)
@@ -155,8 +155,8 @@ def schur_diagonal(parts: Sequence[Interface], n: int) -> NDArray[np.float64]:
     result = np.zeros(n)
     for part in parts:
         full, mass = part.full.diagonal(), part.mass.diagonal()
-        own = part.coupled.diagonal() ** 2 / mass
-        result[part.rows] = part.compliance * own * np.sqrt(mass / full)
+        diagonal = part.coupled.diagonal() ** 2 / mass
+        result[part.rows] = part.compliance * diagonal * np.sqrt(mass / full)
     return result
 
 
@@ -196,8 +196,8 @@ class PressureBlock:
 def pressure_block(pairs: Sequence[Pair], operator: Sparse, diagonal: NDArray[np.float64]) -> PressureBlock:
     """operator: (n, n_free) of all pairs; diagonal: (n_free,) of the stiffness."""
     parts, unit = interfaces(pairs), float(np.median(diagonal))
-    own = schur_diagonal(parts, operator.shape[0])
-    return PressureBlock(parts, own, pressure_scale(operator, unit), unit)
+    estimate = schur_diagonal(parts, operator.shape[0])
+    return PressureBlock(parts, estimate, pressure_scale(operator, unit), unit)
 
 
 def pressure_scale(operator: Sparse, unit: float) -> float:
@@ -239,10 +239,10 @@ class Foresight:
         p = np.where(tied, 0.0, pressure)
         rest, force = gap - self.half_spaces.forward(p), self.moved.T @ p
         for _ in range(PREDICTIONS):
-            own = active & ~tied
-            if not own.any():
+            normal = active & ~tied
+            if not normal.any():
                 return active
-            p, shift = self._closed(rest, force, own, p)
+            p, shift = self._closed(rest, force, normal, p)
             g = rest + self.half_spaces.forward(p) + self.moved @ shift
             following = np.where(active, p > 0.0, g < 0.0) | tied
             if (following == active).all() or not following[~tied].any():
@@ -251,30 +251,34 @@ class Foresight:
         return active
 
     def _closed(
-        self, rest: NDArray[np.float64], force: NDArray[np.float64], own: NDArray[np.bool_], guess: NDArray[np.float64]
+        self,
+        rest: NDArray[np.float64],
+        force: NDArray[np.float64],
+        normal: NDArray[np.bool_],
+        guess: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Pressures on the rows ``own`` that close the gap there, with the resultants ``force`` on loose bodies, and the
+        """Pressures on the rows ``normal`` that close the gap there, with the resultants ``force`` on loose bodies, and the
         bodies' motions: conjugate gradients among pressures of these resultants, from ``guess`` on."""
-        size = self.half_spaces.size[own]
-        motions = sp.diags(1.0 / size) @ self.moved[own]
+        size = self.half_spaces.size[normal]
+        motions = sp.diags(1.0 / size) @ self.moved[normal]
         small = np.linalg.pinv((motions.T @ motions).toarray(), rcond=LOOSE, hermitian=True)
 
         def balanced(x: NDArray[np.float64]) -> NDArray[np.float64]:
             return np.asarray(x - motions @ (small @ (motions.T @ x)))
 
         def whole(values: NDArray[np.float64]) -> NDArray[np.float64]:
-            result = np.zeros(len(own))
-            result[own] = values
+            result = np.zeros(len(normal))
+            result[normal] = values
             return result
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            return np.asarray(self.half_spaces.forward(whole(x / size))[own] / size)
+            return np.asarray(self.half_spaces.forward(whole(x / size))[normal] / size)
 
         def precondition(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            return balanced(self.half_spaces.inverse(whole(x * size))[own] * size)
+            return balanced(self.half_spaces.inverse(whole(x * size))[normal] * size)
 
-        fixed = rest[own] / size
-        start = balanced(guess[own] * size) + motions @ (small @ force)
+        fixed = rest[normal] / size
+        start = balanced(guess[normal] * size) + motions @ (small @ force)
         left = -fixed - multiply(start)
         accuracy = FORESEEN * float(np.linalg.norm(balanced(fixed)))
         found, left = _conjugate_gradients(multiply, precondition, balanced, start, left, accuracy)
@@ -310,11 +314,11 @@ def _largest(full: Sparse, mass: Sparse, lowest: float) -> float:
     return 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)
 
 
-def _inverse(part: Interface, own: NDArray[np.int64]) -> Apply:
-    full, mass = part.full[own][:, own], part.mass[own][:, own]
+def _inverse(part: Interface, rows: NDArray[np.int64]) -> Apply:
+    full, mass = part.full[rows][:, rows], part.mass[rows][:, rows]
     shifts, weights = inverse_root(part.lowest, _largest(full, mass, part.lowest), ACCURACY)
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
-    undo = spla.splu(part.coupled[own][:, own].tocsc()).solve
+    undo = spla.splu(part.coupled[rows][:, rows].tocsc()).solve
     ordinary = part.coupled is part.mass
     lumped = np.asarray(mass.sum(axis=1)).ravel()
     stiffer = np.where(lumped > 0.0, part.stiffer / np.where(lumped > 0.0, lumped, 1.0), 0.0)

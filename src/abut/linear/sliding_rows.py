@@ -48,13 +48,13 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
             found.append(_slips(rows, by_gap, by_multiplier, np.where(pair.index >= 0, pair.index + first, -1)))
         first += len(pair)
     slips = _joined(found)
-    n, own = len(rows.residual), ~rows.decoupled
-    own[slips.number[slips.number >= 0]] = False
-    plain, corner = np.flatnonzero(own), by_multiplier[own][:, own]
-    if (by_gap.diagonal()[own] != -1.0).any():
+    n, coupled = len(rows.residual), ~rows.decoupled
+    coupled[slips.number[slips.number >= 0]] = False
+    plain, corner = np.flatnonzero(coupled), by_multiplier[coupled][:, coupled]
+    if (by_gap.diagonal()[coupled] != -1.0).any():
         return None
     m, across = len(plain), slips.across
-    place = np.cumsum(own) - 1
+    place = np.cumsum(coupled) - 1
     fixed = rows.fixed
     fixed[slips.number[slips.there]] = slips.known[slips.there]
     dragged = _entries(place[slips.normal], slips.number, slips.drag, (m, n))
@@ -67,7 +67,7 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
         pull=pull,
         corner=sp.block_diag([corner, sp.diags(-across.soft)], format="csr"),
         fixed=fixed,
-        single=own,
+        single=coupled,
         symmetric=dragged.nnz == 0 and _negative_diagonal(corner),
     )
 
@@ -100,21 +100,21 @@ class _Slips:
 
 def _slips(rows: Rows, by_gap: Sparse, by_multiplier: Sparse, index: NDArray[np.int64]) -> _Slips:
     """index: (n_functions, c) numbers of a pair's multipliers."""
-    gaps, own = _blocks(by_gap, index), _blocks(by_multiplier, index)
+    gaps, tractions = _blocks(by_gap, index), _blocks(by_multiplier, index)
     tangents = np.eye(index.shape[1])[1:]
     sticks = (gaps[:, 1:] == -tangents).all(axis=2) | (gaps[:, 1:] == 0.0).all(axis=2)
     slips = ~(sticks | (index[:, 1:] < 0)).all(axis=1)
-    index, gaps, own = index[slips], gaps[slips], own[slips]
+    index, gaps, tractions = index[slips], gaps[slips], tractions[slips]
     number, there = index[:, 1:], index[:, 1:] >= 0
     residual = np.where(index >= 0, rows.residual[np.maximum(index, 0)], 0.0)
     left = residual[:, 1:] + gaps[:, 1:, 0] * residual[:, :1]  # the normal row's share of the gap taken off
     seen, main = np.linalg.eigh(gaps[:, 1:, 1:])
     main = np.where(there[:, :, None], main, 0.0)
-    give = np.einsum("kai,kab,kbi->ki", main, own[:, 1:, 1:], main)
+    give = np.einsum("kai,kab,kbi->ki", main, tractions[:, 1:, 1:], main)
     along = (seen > -STRAIGHT) & (give < 0.0)
     by = np.where(along, give, -1.0)
     known = np.where(along, -np.einsum("kai,ka->ki", main, left) / by, 0.0)
-    drag = np.where(along, -np.einsum("kai,ka->ki", main, own[:, 1:, 0]) / by, 0.0)
+    drag = np.where(along, -np.einsum("kai,ka->ki", main, tractions[:, 1:, 0]) / by, 0.0)
     row, i = np.nonzero((seen <= -STRAIGHT) & (np.abs(main).max(axis=1) > 0.0))
     yields = -seen[row, i]
     turned = np.einsum("ka,ka->k", main[row, :, i], left[row]) / yields
@@ -161,9 +161,9 @@ def _joined(parts: Sequence[_Slips]) -> _Slips:
         drag=stack(part.drag for part in parts),
         known=stack(part.known for part in parts),
         across=_Across(
-            row=stack(own.row + start for own, start in zip(across, starts)),
-            direction=stack(own.direction for own in across),
-            residual=stack(own.residual for own in across),
-            soft=stack(own.soft for own in across),
+            row=stack(each.row + start for each, start in zip(across, starts)),
+            direction=stack(each.direction for each in across),
+            residual=stack(each.residual for each in across),
+            soft=stack(each.soft for each in across),
         ),
     )

@@ -181,8 +181,11 @@ class Flexibility:
         law = rows.by_displacement[free]
         size = self.weight @ (np.abs(pressure) + np.abs(dp)) + force
         motions = self._resisted(free, law, push, size)
-        opened, held = let_go(np.asarray(law @ motions), self.weight[free])
-        opened, motions = motions @ opened, motions @ held  # where smooth laws are open, which take no notice of gaps
+        opened, resisted = let_go(np.asarray(law @ motions), self.weight[free])
+        opened, motions = (
+            motions @ opened,
+            motions @ resisted,
+        )  # where smooth laws are open, which take no notice of gaps
         n, m = len(free), motions.shape[1]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = law @ self.response[:, free] + rows.by_pressure[np.ix_(free, free)]
@@ -202,9 +205,9 @@ class Flexibility:
         if not self.motions.shape[1]:
             return self.motions
         rows = np.concatenate([np.asarray(law @ self.motions), self.operator[free] @ self.motions])
-        loose, held = let_go(rows, np.concatenate([self.weight[free]] * 2))
-        _balance(self.motions @ loose, push, force)
-        return self.motions @ held if loose.shape[1] else self.motions
+        unconstrained, resisted = let_go(rows, np.concatenate([self.weight[free]] * 2))
+        _balance(self.motions @ unconstrained, push, force)
+        return self.motions @ resisted if unconstrained.shape[1] else self.motions
 
     def factorise(self, rows: Rows, force: float) -> Solve:
         """The same for rows that are minus the operator's and none of them decoupled: the compliance with what the rows
@@ -270,10 +273,10 @@ def condense(problem: ContactProblem) -> CondensedProblem | None:
 def _kept(pairs: Sequence[Pair], motions: NDArray[np.float64]) -> NDArray[np.int64]:
     """Numbers of the displacements that stay."""
     m = motions.shape[1]
-    held = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][:m] if m else np.zeros(0, dtype=int)
+    fixed = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][:m] if m else np.zeros(0, dtype=int)
     points = [p.points.operator for p in pairs if p.points is not None]
     looked_at = np.flatnonzero(np.diff(sp.vstack(points).tocsc().indptr)) if points else np.zeros(0, dtype=int)
-    return np.union1d(held, looked_at).astype(np.int64)
+    return np.union1d(fixed, looked_at).astype(np.int64)
 
 
 def _flexibility(system: Linearised) -> Flexibility:
@@ -308,10 +311,10 @@ def let_go(rows: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[NDAr
     return basis[none].T, basis[~none].T
 
 
-def _balance(loose: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
+def _balance(unconstrained: NDArray[np.float64], push: NDArray[np.float64], force: float) -> None:
     """Raises SingularModelError where forces (n,) do work on motions (n, k) that nothing resists. force: sum of all others,
     beside which what is left of forces in balance is rounding."""
-    work = np.abs(loose.T @ push).max(initial=0.0)
+    work = np.abs(unconstrained.T @ push).max(initial=0.0)
     if work > UNBALANCED * (np.abs(push).sum() + force):
         raise SingularModelError(UNBALANCED_LOADS)
 
@@ -353,12 +356,12 @@ def _equilibrate(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
     First of all diagonal entries become one, and rows and columns without (motions) follow: else entries of one block
     (gaps by motions) may be even by themselves and leave another (gaps by pressures) as far below as the units put it."""
     size = np.abs(matrix)
-    own = np.diagonal(size) > 0.0
-    rows = np.where(own, 1.0 / np.sqrt(np.where(own, np.diagonal(size), 1.0)), 1.0)
+    used = np.diagonal(size) > 0.0
+    rows = np.where(used, 1.0 / np.sqrt(np.where(used, np.diagonal(size), 1.0)), 1.0)
     columns = rows.copy()
-    if own.any() and not own.all():
-        rows[~own] = 1.0 / _positive((size[~own] * columns)[:, own].max(axis=1))
-        columns[~own] = 1.0 / _positive((size[:, ~own] * rows[:, None])[own].max(axis=0))
+    if used.any() and not used.all():
+        rows[~used] = 1.0 / _positive((size[~used] * columns)[:, used].max(axis=1))
+        columns[~used] = 1.0 / _positive((size[:, ~used] * rows[:, None])[used].max(axis=0))
     size *= rows[:, None]
     size *= columns
     for _ in range(PASSES):

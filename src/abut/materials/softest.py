@@ -35,5 +35,5 @@ def softest(mesh: Mesh, materials: Mapping[str, Material], cells: NDArray[np.int
     """The material of the most compliant of the bodies that have some of the cells; None where all of them are rigid.
 
     materials: by body; a body without one is rigid. cells: (n,) cell numbers of a surface's facets."""
-    own = [materials[body] for body in bodies_at(mesh, cells) if body in materials]
-    return min(own, key=contact_modulus, default=None)
+    known = [materials[body] for body in bodies_at(mesh, cells) if body in materials]
+    return min(known, key=contact_modulus, default=None)

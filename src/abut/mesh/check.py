@@ -92,10 +92,10 @@ def _check_surfaces(mesh: Mesh) -> None:
     (facet,) = number_keys(keys)
     shared = np.bincount(facet)[facet] > 1
     for name, rows in mesh.surfaces.items():
-        own = np.isin(_code(owners), _code(rows)) & shared
-        if own.any():
-            sides = bodies_at(mesh, owners[np.isin(facet, facet[own]), 0])
-            raise InputError(f"mesh: {inside(name, np.unique(facet[own]).size, sides)}")
+        owned = np.isin(_code(owners), _code(rows)) & shared
+        if owned.any():
+            sides = bodies_at(mesh, owners[np.isin(facet, facet[owned]), 0])
+            raise InputError(f"mesh: {inside(name, np.unique(facet[owned]).size, sides)}")
 
 
 def _code(rows: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -144,8 +144,8 @@ def _check_doubles(mesh: Mesh) -> None:
     # Cells with the same points have the same sum of their marks: only those few, if any, need their points sorted.
     mark = np.random.default_rng(0).integers(np.iinfo(np.int64).max, size=len(mesh.points))
     for kind in sorted({block.kind for block in mesh.blocks}):  # a cell read in two groups stands in two blocks
-        own = [(b.nodes, f + np.arange(len(b.nodes))) for b, f in zip(mesh.blocks, starts) if b.kind == kind]
-        nodes, cells = (np.concatenate(part) for part in zip(*own))
+        of_kind = [(b.nodes, f + np.arange(len(b.nodes))) for b, f in zip(mesh.blocks, starts) if b.kind == kind]
+        nodes, cells = (np.concatenate(part) for part in zip(*of_kind))
         suspect = np.ones(len(cells), dtype=bool)
         suspect[single(mark[nodes].sum(axis=1))] = False
         nodes, cells = nodes[suspect], cells[suspect]

@@ -36,11 +36,11 @@ def facets_of(cells: Cells) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     corners, rows = [np.empty((0, 4), np.int32)], [np.empty((0, 2), np.int64)]
     for kind, nodes, numbers in cells:
         facets = CELLS[kind].facets
-        own = np.full((len(nodes), len(facets), 4), -1, dtype=np.int32)
+        corner_nodes = np.full((len(nodes), len(facets), 4), -1, dtype=np.int32)
         for local, (facet, of_cell) in enumerate(facets):
             used = list(of_cell[: CELLS[facet].corners])
-            own[:, local, : len(used)] = nodes[:, used]
-        corners.append(own.reshape(-1, 4))
+            corner_nodes[:, local, : len(used)] = nodes[:, used]
+        corners.append(corner_nodes.reshape(-1, 4))
         rows.append(np.stack([np.repeat(numbers, len(facets)), np.tile(np.arange(len(facets)), len(nodes))], axis=1))
     return np.concatenate(corners), np.concatenate(rows)
 

@@ -69,4 +69,4 @@ def number_keys(*keys: NDArray[np.int64]) -> list[NDArray[np.int64]]:
 
 def bodies_at(mesh: Mesh, cells: NDArray[np.int64]) -> list[str]:
     """Names of the bodies that hold any of the cells."""
-    return [name for name, own in mesh.bodies.items() if np.isin(cells, own).any()]
+    return [name for name, of_body in mesh.bodies.items() if np.isin(cells, of_body).any()]

@@ -80,9 +80,9 @@ class Mesh:
         cells, starts = self.bodies[body], self.starts
         result = []
         for block, first, last in zip(self.blocks, starts, starts[1:]):
-            own = cells[(cells >= first) & (cells < last)]
-            if len(own):
-                result.append((block.kind, block.nodes[own - first], own))
+            here = cells[(cells >= first) & (cells < last)]
+            if len(here):
+                result.append((block.kind, block.nodes[here - first], here))
         return result
 
     def surface(self, name: str) -> Surface:
@@ -99,10 +99,10 @@ class Mesh:
         starts = self.starts
         for block, first, last in zip(self.blocks, starts, starts[1:]):
             inside = (cells >= first) & (cells < last)
-            for number, (kind, own) in enumerate(CELLS[block.kind].facets):
+            for number, (kind, local_nodes) in enumerate(CELLS[block.kind].facets):
                 pick = np.flatnonzero(inside & (local == number))
                 kinds[pick] = CELLS[kind].code
-                nodes[pick, : len(own)] = block.nodes[cells[pick] - first][:, own]
+                nodes[pick, : len(local_nodes)] = block.nodes[cells[pick] - first][:, local_nodes]
         return Surface(self.points, kinds, nodes, cells.copy(), local.copy(), name, self.axisymmetric)
 
     def nodes_of(self, name: str) -> NDArray[np.int64]:

@@ -37,8 +37,8 @@ def middles(points: NDArray[np.float64], nodes: NDArray[np.int32], kind: str, fi
         return
     free = np.ones(len(points), dtype=bool)
     free[fixed] = False
-    for _, own in CELLS["hex27"].facets:
-        face = nodes[:, own][free[nodes[:, own[8]]]]
+    for _, facet_nodes in CELLS["hex27"].facets:
+        face = nodes[:, facet_nodes][free[nodes[:, facet_nodes[8]]]]
         points[face[:, 8]] = _coons(points, face[:, :4], face[:, 4:8])
     corners, edges, faces = (points[nodes[:, a:b]].sum(axis=1) for a, b in ((0, 8), (8, 20), (20, 26)))
     points[nodes[:, 26]] = faces / 2 - edges / 4 + corners / 8

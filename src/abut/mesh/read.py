@@ -47,15 +47,15 @@ def read_mesh(kind: type[Mesh], path: Path) -> Mesh:
 def build(kind: type[Mesh], raw: RawMesh, where: str = "mesh") -> Mesh:
     """Make bodies, surfaces and node sets of the groups of a file; points that no cell uses are dropped, and
     plane bodies of clockwise cells turned round."""
-    dims = {own: CELLS[own].dim for parts in raw.groups.values() for own in parts if own != "point"}
+    dims = {key: CELLS[key].dim for parts in raw.groups.values() for key in parts if key != "point"}
     top = max(dims.values(), default=0)
     if top < 2:
         raise InputError(f"{where}: no triangles, quadrilaterals or solid cells in the file")
     for parts in raw.groups.values():
-        for own, nodes in parts.items():
+        for key, nodes in parts.items():
             if nodes.size and (nodes.min() < 0 or nodes.max() >= len(raw.points)):
-                raise InputError(f"{where}: {own} cells use points that the file does not have; write the mesh again")
-    bodies, notes = _bodies(raw, {own for own, dim in dims.items() if dim == top}, where)
+                raise InputError(f"{where}: {key} cells use points that the file does not have; write the mesh again")
+    bodies, notes = _bodies(raw, {key for key, dim in dims.items() if dim == top}, where)
     blocks, members = _blocks(bodies)
     used = np.unique(np.concatenate([b.nodes.ravel() for b in blocks]))
     number = np.full(len(raw.points), -1)
@@ -145,23 +145,25 @@ def _components(parts: Parts, n_points: int) -> dict[str, Parts]:
     _, label = connected_components(csr_matrix((np.ones(len(a)), (a, b)), shape=(n_points, n_points)), directed=False)
     labels = np.unique(np.concatenate([label[v[:, 0]] for v in parts.values()]))
     return {
-        f"body_{i}": {k: v[label[v[:, 0]] == own] for k, v in parts.items() if (label[v[:, 0]] == own).any()}
-        for i, own in enumerate(labels, start=1)
+        f"body_{i}": {
+            k: v[label[v[:, 0]] == component] for k, v in parts.items() if (label[v[:, 0]] == component).any()
+        }
+        for i, component in enumerate(labels, start=1)
     }
 
 
 def _match(name: str, wanted: NDArray[np.int64], mesh: Mesh, where: str) -> NDArray[np.int64]:
     """Rows (cell, local facet) of the cells to which the facets with corner keys ``wanted`` belong."""
     keys, rows = facet_keys(mesh, wanted[wanted >= 0])
-    own, every = number_keys(wanted, keys)
-    count = np.bincount(every, minlength=own.max() + 1)[own]
+    keys_here, every = number_keys(wanted, keys)
+    count = np.bincount(every, minlength=keys_here.max() + 1)[keys_here]
     if (count == 0).any():
         raise InputError(
             f"{where}: surface '{name}' has {int((count == 0).sum())} facets that belong to no cell of a body; give the "
             "volume next to it a physical group, or take the surface out"
         )
-    hit = np.isin(every, own)
+    hit = np.isin(every, keys_here)
     if (count > 1).any():
-        cells = rows[np.isin(every, own[count > 1]), 0]
+        cells = rows[np.isin(every, keys_here[count > 1]), 0]
         raise InputError(f"{where}: {inside(name, int((count > 1).sum()), bodies_at(mesh, cells))}")
     return rows[hit]

@@ -29,7 +29,7 @@ def ratios(mesh: Mesh) -> NDArray[np.float64]:
 
 def cell_shapes(kind: str, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest scaled Jacobian over the corners and ratio of edges of cells with corners x (n, corners, dim)."""
-    name = next(own for own, _ in CORNERS if kind.startswith(own))
+    name = next(shape for shape, _ in CORNERS if kind.startswith(shape))
     smallest = np.full(len(x), np.inf)
     short, long = np.full(len(x), np.inf), np.zeros(len(x))
     for corner, ends in enumerate(CORNERS[name, x.shape[1]]):

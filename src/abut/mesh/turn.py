@@ -48,10 +48,10 @@ def turn_bodies(mesh: Mesh) -> Mesh:
         turned[mesh.bodies[name]] = True
     blocks, corners = [], np.zeros(mesh.n_cells, dtype=np.int64)
     for block, first in zip(mesh.blocks, mesh.starts):
-        own = turned[first : first + len(block.nodes)]
-        corners[first : first + len(own)] = CELLS[block.kind].corners
+        here = turned[first : first + len(block.nodes)]
+        corners[first : first + len(here)] = CELLS[block.kind].corners
         nodes = block.nodes.copy()
-        nodes[own] = nodes[own][:, order(block.kind)]
+        nodes[here] = nodes[here][:, order(block.kind)]
         blocks.append(replace(block, nodes=nodes))
     surfaces = {name: _mapped(rows, turned, corners) for name, rows in mesh.surfaces.items()}
     notes = [f"body '{name}': its cells were numbered clockwise; their numbering was reversed" for name in bodies]

@@ -36,9 +36,9 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
         surface = mesh.surface(name)
         for code in np.unique(surface.kinds):
             kind = BY_CODE[int(code)]
-            own = surface.nodes[surface.kinds == code, : kind.nodes]
-            parts.append((kind.name, own))
-            region.append(np.full(len(own), names.index(name), np.int32))
+            of_kind = surface.nodes[surface.kinds == code, : kind.nodes]
+            parts.append((kind.name, of_kind))
+            region.append(np.full(len(of_kind), names.index(name), np.int32))
     for name, nodes in mesh.node_sets.items():
         parts.append(("point", nodes[:, None]))
         region.append(np.full(len(nodes), names.index(name), np.int32))

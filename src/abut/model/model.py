@@ -131,8 +131,8 @@ class Model:
         """The largest displacement that is prescribed as a number."""
         given: list[Support | Rigid] = [*self.supports, *self.rigid]
         values = [
-            (getattr(own, name, None), 1.0 if own.amplitude is None else own.amplitude.largest)
-            for own in given
+            (getattr(each, name, None), 1.0 if each.amplitude is None else each.amplitude.largest)
+            for each in given
             for name in (*COMPONENTS, "normal")
         ]
         return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
@@ -200,10 +200,10 @@ class Model:
 
     def _check_sides(self) -> None:
         every = [self.sides(contact) for contact in self.contacts]
-        for i, (contact, own) in enumerate(zip(self.contacts, every)):
+        for i, (contact, surfaces) in enumerate(zip(self.contacts, every)):
             if not self.finite or contact.kind == "tied":
-                check_own(own, contact.contactor, contact.target, f"contacts[{i}]")
-            common = np.intersect1d(own[0].node_ids, own[1].node_ids)
+                check_own(surfaces, contact.contactor, contact.target, f"contacts[{i}]")
+            common = np.intersect1d(surfaces[0].node_ids, surfaces[1].node_ids)
             if self.finite and self.dim == 3 and contact.frictional and len(common):
                 raise InputError(
                     f"contacts[{i}].friction: a body in contact with itself has no friction in 3D; leave it out, or name "

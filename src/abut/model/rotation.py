@@ -64,8 +64,8 @@ def check_rotations(
     for support in supports if rotations else ():
         taken |= dict.fromkeys(mesh.nodes_of(support.on).tolist(), f"a support on '{support.on}'")
     for body in rigid if rotations else ():
-        own = [cells.ravel() for _, cells, _ in mesh.cells_of(body.body)]
-        taken |= dict.fromkeys(np.concatenate(own).tolist(), f"rigid body '{body.body}'")
+        of_body = [cells.ravel() for _, cells, _ in mesh.cells_of(body.body)]
+        taken |= dict.fromkeys(np.concatenate(of_body).tolist(), f"rigid body '{body.body}'")
     for i, rotation in enumerate(rotations):
         where = f"rotations[{i}]"
         checks.known(

@@ -66,7 +66,11 @@ def quotient(x: Array, r: Array) -> Array:
 
 def longest(x: Array, step: Array) -> float:
     """How many steps it takes from inside until the first of the vectors leaves its cone."""
-    square, linear, constant = depth(step), x[:, 0] * step[:, 0] - np.einsum("nd,nd->n", x[:, 1:], step[:, 1:]), depth(x)
+    square, linear, constant = (
+        depth(step),
+        x[:, 0] * step[:, 0] - np.einsum("nd,nd->n", x[:, 1:], step[:, 1:]),
+        depth(x),
+    )
     root = np.sqrt(np.maximum(linear**2 - square * constant, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         larger = -linear - np.where(linear >= 0.0, root, -root)

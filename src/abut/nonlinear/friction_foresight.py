@@ -41,8 +41,8 @@ def foreseen(solver: Prepared, state: State, wanted: NDArray[np.int8]) -> NDArra
     beside = solver.system.join([_beside(pair) for pair in pairs]).astype(bool)
     gap = solver.system.gap(state)
     closed = split(solver.foresee(gap, state.multipliers, (wanted != OPEN) | beside, beside))
-    result = solver.system.join([_with(*own) for own in zip(pairs, split(wanted), closed)])
-    few, many = (int((own != OPEN).sum()) for own in (result, wanted))
+    result = solver.system.join([_with(*part) for part in zip(pairs, split(wanted), closed)])
+    few, many = (int((part != OPEN).sum()) for part in (result, wanted))
     return wanted if few <= int(state.closed.sum()) < many else result
 
 
@@ -54,5 +54,5 @@ def _beside(pair: Pair) -> NDArray[np.bool_]:
 def _with(pair: Pair, wanted: NDArray[np.int8], closed: NDArray[np.bool_]) -> NDArray[np.int8]:
     if pair.tied:
         return wanted
-    own = np.asarray(pair.of_functions(closed[pair.normal]))
-    return np.where(own, np.where(wanted == OPEN, CLOSED, wanted), OPEN)
+    shut = np.asarray(pair.of_functions(closed[pair.normal]))
+    return np.where(shut, np.where(wanted == OPEN, CLOSED, wanted), OPEN)

@@ -66,13 +66,13 @@ class Programme:
                 along.append(beside)
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
-        own = cls(
+        programme = cls(
             solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver)
         )
-        holds = own.bound(np.ones(len(numbers)))[0] > 0.0
+        holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
         idle = tangents[~holds]
-        return replace(own, rubs=rubs, along=tangents[rubs], idle=idle[idle >= 0])
+        return replace(programme, rubs=rubs, along=tangents[rubs], idle=idle[idle >= 0])
 
     def bound(self, pressure: Vector) -> tuple[Vector, Vector]:
         """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
@@ -268,13 +268,13 @@ def _rows(at: _Near, shift: Vector, slip: Vector, soft: Vector) -> list[LawRows]
     wanted = shift.copy()
     there = programme.along >= 0
     for a in range(programme.along.shape[1]):
-        row, own = programme.along[:, a], there[:, a]
+        row, present = programme.along[:, a], there[:, a]
         by_bound = -rubbed * soft[:, 1 + a, 0] * at.slope
-        entries.append((row[own], at_rubs[own], by_bound[own]))
-        entries.append((at_rubs[own], row[own], here.dilatancy * by_bound[own]))
-        residual[row[own]] += (rubbed * slip[:, 1 + a])[own]
+        entries.append((row[present], at_rubs[present], by_bound[present]))
+        entries.append((at_rubs[present], row[present], here.dilatancy * by_bound[present]))
+        residual[row[present]] += (rubbed * slip[:, 1 + a])[present]
         for b in range(programme.along.shape[1]):
-            both = own & there[:, b]
+            both = present & there[:, b]
             entries.append((row[both], programme.along[both, b], (-rubbed * soft[:, 1 + a, 1 + b])[both]))
     entries.append((at_rubs, at_rubs, -here.dilatancy * rubbed * soft[:, 0, 0] * at.slope**2))
     wanted[programme.rubs] += here.dilatancy * at.slope * slip[:, 0]
@@ -293,15 +293,15 @@ def _by_pairs(programme: Programme, residual: Vector, by_pressure: sp.csr_matrix
     idle[programme.idle] = True
     for pair in system.pairs:
         here = slice(first, first := first + len(pair))
-        own = idle[here]
+        unused = idle[here]
         laws.append(
             LawRows(
                 residual=residual[here],
                 closed=np.ones(len(pair), dtype=bool),
-                by_gap=_diagonal(np.where(own, 0.0, -1.0)),
+                by_gap=_diagonal(np.where(unused, 0.0, -1.0)),
                 by_pressure=by_pressure[here, here],
                 at_points=False,
-                decoupled=own,
+                decoupled=unused,
                 symmetric=not pair.frictional,
             )
         )

@@ -153,24 +153,24 @@ def next_status(system: Linearised, state: State, increment: Increment) -> Statu
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
     reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
     small = FLAT * max(reference, NO_PRESSURE)
-    gaps, multipliers, before = (system.split(own) for own in (system.gap(state), state.multipliers, state.status))
+    gaps, multipliers, before = (system.split(part) for part in (system.gap(state), state.multipliers, state.status))
     return system.join(
         [
-            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, own, status, small)
-            for pair, gap, own, status in zip(system.pairs, gaps, multipliers, before)
+            np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, part, status, small)
+            for pair, gap, part, status in zip(system.pairs, gaps, multipliers, before)
         ]
     )
 
 
 def _contacts(system: Linearised, values: Vector) -> list[tuple[Pair, Vector]]:
-    return [(pair, own) for pair, own in zip(system.pairs, system.split(values)) if not pair.tied]
+    return [(pair, part) for pair, part in zip(system.pairs, system.split(values)) if not pair.tied]
 
 
 def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
-    normal, own = pair.normal, status[pair.normal]
+    normal, earlier = pair.normal, status[pair.normal]
     depth = -gap[normal] / pair.scale[normal]
     pushed = multipliers[normal] + depth
-    closed = np.where(own != OPEN, pushed >= -small, pushed > small)
+    closed = np.where(earlier != OPEN, pushed >= -small, pushed > small)
     result = np.where(closed, CLOSED, OPEN)
     if not pair.frictional:
         return result
@@ -183,6 +183,6 @@ def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, statu
         back = (
             np.einsum("kd,kd->k", drag, trial) < -small * size
         )  # slips the way it is pulled: it sticks before it slips back
-        slips = np.where(own == SLIPPING, (excess >= -small) & ~back, excess > small)
+        slips = np.where(earlier == SLIPPING, (excess >= -small) & ~back, excess > small)
         result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
     return np.asarray(pair.of_functions(result))

@@ -122,10 +122,10 @@ def report(
 
 def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = False) -> int:
     """How many multipliers (n,) have a flag, of a pair with friction how many points; all pairs, or those of friction."""
-    own = zip(system.pairs, system.split(flags))
+    by_pair = zip(system.pairs, system.split(flags))
     return sum(
         int((flag[pair.normal] if pair.frictional else flag).sum())
-        for pair, flag in own
+        for pair, flag in by_pair
         if pair.frictional or not of_friction
     )
 

@@ -59,8 +59,10 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
     first = 0
     for pair in problem.pairs:
         if not pair.tied:
-            own = slice(first + pair.normal.start, first + pair.normal.stop)
-            ahead[own] = np.where(before.multipliers[own] > 0.0, np.maximum(ahead[own], 0.0), before.multipliers[own])
+            here = slice(first + pair.normal.start, first + pair.normal.stop)
+            ahead[here] = np.where(
+                before.multipliers[here] > 0.0, np.maximum(ahead[here], 0.0), before.multipliers[here]
+            )
         first += len(pair)
     ahead = np.where(before.closed, ahead, before.multipliers)
     return replace(

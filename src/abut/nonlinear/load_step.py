@@ -58,9 +58,9 @@ def _searched(task: Task, time: float, prepared: Prepared) -> Attempt:
     earlier: tuple[Iteration, ...] = ()
     inner = problem.with_ordinary(begin.closed) if begin.closed.all() and not smooth else problem
     if inner is not problem:
-        found, own = newton(replace(task, problem=inner), begin, prepared, aim="this set")
+        found, solver = newton(replace(task, problem=inner), begin, prepared, aim="this set")
         if found.converged:
-            return _ended(replace(task, problem=inner), time, found, own, begin.closed)
+            return _ended(replace(task, problem=inner), time, found, solver, begin.closed)
         earlier = found.iterations
         begin = found.state.with_closed(begin.closed & ~found.cycling)
     found, prepared = newton(task, begin, prepared, earlier, "set" if search else "solution")

@@ -117,7 +117,7 @@ def laws_of(system: Linearised, state: State) -> list[LawRows]:
     if system.forgotten is None or not system.forgotten.any():
         return laws
     parts = zip(system.pairs, laws, system.split(system.forgotten), system.split(state.multipliers))
-    return [_without(law, forgotten, pair.scale, own) for pair, law, forgotten, own in parts]
+    return [_without(law, forgotten, pair.scale, slips) for pair, law, forgotten, slips in parts]
 
 
 def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:

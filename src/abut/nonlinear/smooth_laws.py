@@ -165,7 +165,7 @@ def _smooth_laws(system: Linearised, state: State, reference: float, softness: f
     laws = []
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     for pair, g, p, closed, slips in zip(system.pairs, *map(system.split, parts)):
-        at, own = pair.points, pair.contact.law
+        at, asked = pair.points, pair.contact.law
         epsilon, tension = max(pair.contact.epsilon, softness**2), max(TENSION_START, softness)
         if pair.frictional and pair.smooth:
             law = SmoothCoulomb(pair.stiffness, pair.friction(system.factors), float(np.sqrt(epsilon)), reference)
@@ -175,10 +175,10 @@ def _smooth_laws(system: Linearised, state: State, reference: float, softness: f
         elif at is not None:
             gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
             laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, reference, tension), gap, p))
-        elif pair.tied or isinstance(own, str):
+        elif pair.tied or isinstance(asked, str):
             laws.append(at_multipliers(pair, Tied() if pair.tied else Complementarity(pair.stiffness), g, p, closed))
         else:
-            laws.append(at_multipliers(pair, own, g, p, closed))
+            laws.append(at_multipliers(pair, asked, g, p, closed))
     return laws
 
 

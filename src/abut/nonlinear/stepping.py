@@ -100,25 +100,25 @@ def march(
     follows it; attempts that are parts of a step have its number; a solver that fails is replaced by another one, which
     begins the step again."""
     before, attempt = first, None
-    own, prepared = None, None
+    condensed, prepared = None, None
     time = schedule.next(attempt)
     while time is not None:
         told = False
         while True:
-            if own is None or prepared is None:
+            if condensed is None or prepared is None:
                 control.prepares(solver)
-                own = solver.condensed(problem)
-                prepared = solver.prepare(own.linearise(before, before), None)
+                condensed = solver.condensed(problem)
+                prepared = solver.prepare(condensed.linearise(before, before), None)
                 control.prepared(solver.note(prepared))
             if not told:
                 control.begins(number, time)
                 told = True
-            task = Task(own, before, solver, Increment(number, before.largest), control.limit, control.observe)
+            task = Task(condensed, before, solver, Increment(number, before.largest), control.limit, control.observe)
             try:
                 attempt = replace(load_step(task, time, prepared), whole=schedule.whole(time))
                 break
             except NotConverged as reason:
-                solver, own, prepared = control.fallback(number, reason), None, None
+                solver, condensed, prepared = control.fallback(number, reason), None, None
         time = schedule.next(attempt)
         if attempt.converged or time is None:
             yield attempt

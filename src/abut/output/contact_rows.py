@@ -60,11 +60,11 @@ def _friction(friction: FrictionResult) -> Json:
 
 def energy_summary(step: Step) -> Json:
     """Where the energy of a step with friction or finite kinematics comes from and goes to."""
-    own = step.energy
-    if own is None:
+    energy = step.energy
+    if energy is None:
         return {}
-    elastic = {} if own.elastic is None else {"elastic": number(own.elastic)}
-    return {"energy": {name: number(getattr(own, name)) for name in (*ENERGIES, "error")} | elastic}
+    elastic = {} if energy.elastic is None else {"elastic": number(energy.elastic)}
+    return {"energy": {name: number(getattr(energy, name)) for name in (*ENERGIES, "error")} | elastic}
 
 
 def energy_columns(finite: bool) -> list[str]:
@@ -74,11 +74,11 @@ def energy_columns(finite: bool) -> list[str]:
 
 def energy_row(step: Step) -> dict[str, float]:
     """A step's energies by these names, empty where there are none."""
-    own = step.energy
-    if own is None:
+    energy = step.energy
+    if energy is None:
         return {}
-    names = energy_columns(own.elastic is not None)
-    return {name: float(getattr(own, name.removeprefix("energy_"))) for name in names}
+    names = energy_columns(energy.elastic is not None)
+    return {name: float(getattr(energy, name.removeprefix("energy_"))) for name in names}
 
 
 def number(value: float) -> float | None:
@@ -128,9 +128,9 @@ def more_values(contact: ContactResult) -> dict[str, float]:
     values = (*s.place, s.partly_covered, s.mean, s.percentile_95, s.area, *r.centre, *r.moment)
     result = dict(zip(more_columns(contact.contactor.dim), map(float, values)))
     if contact.friction is not None:
-        own = contact.friction
-        areas, work = (own.sticking_area, own.slipping_area), (own.work, own.total_work)
-        forces = (*own.force, own.force_by_area, own.force_limit, own.largest_share)
-        largest = (own.max_traction, own.max_slip, own.max_total_slip)
+        friction = contact.friction
+        areas, work = (friction.sticking_area, friction.slipping_area), (friction.work, friction.total_work)
+        forces = (*friction.force, friction.force_by_area, friction.force_limit, friction.largest_share)
+        largest = (friction.max_traction, friction.max_slip, friction.max_total_slip)
         result |= dict(zip(friction_columns(contact.contactor.dim), map(float, (*areas, *work, *forces, *largest))))
     return result

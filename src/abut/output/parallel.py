@@ -37,11 +37,11 @@ class Pieces:
         dealt: Sequence[Piece] = self._team.store["pieces"]
         listed = folder / list_name(step.number)
         listed.unlink(missing_ok=True)  # of an earlier run: it is never there beside pieces that are not its own
-        own = [
+        arguments = [
             (folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points])
             for process, p in enumerate(dealt)
         ]
-        written = [result for result in self._team.each(write_piece, own=own) if result is not None]
+        written = [result for result in self._team.each(write_piece, per_rank=arguments) if result is not None]
         for result in written:
             if isinstance(result, InputError):
                 raise result

@@ -26,23 +26,23 @@ def table(steps: Sequence[Step], number: int) -> str:
     for step in steps:
         result = step.probes[number]
         place = _place(result)
-        own = {**place, **columns(result)}
+        entries = {**place, **columns(result)}
         if step is steps[0]:
-            rows.writerow(["step", "factor", "converged", *own])
+            rows.writerow(["step", "factor", "converged", *entries])
         head = [step.number, step.factor, int(step.converged)]
-        listed = zip(*(values.tolist() for values in own.values()))
+        listed = zip(*(values.tolist() for values in entries.values()))
         rows.writerows([*head, *("" if value != value else value for value in row)] for row in listed)
     return text.getvalue()
 
 
 def _place(result: ProbeResult) -> Json:
     """Columns that say which point it is."""
-    own: Json = {"point": np.arange(1, len(result.points) + 1)}
+    rows: Json = {"point": np.arange(1, len(result.points) + 1)}
     if result.nodes is not None:
-        own["node"] = result.nodes
+        rows["node"] = result.nodes
     if result.distance is not None:
-        own["distance"] = result.distance
-    return own | dict(zip("xyz", result.points.T))
+        rows["distance"] = result.distance
+    return rows | dict(zip("xyz", result.points.T))
 
 
 def summary(step: Step) -> list[Json]:

@@ -92,12 +92,12 @@ def plot(
         "nan_color": "#cfd4da",
     }
     for body in data["bodies"]:
-        own = _deformed(body, scale)
+        mesh = _deformed(body, scale)
         if on_contacts:
-            plotter.add_mesh(own, color="#aab6c4", opacity=0.25)
+            plotter.add_mesh(mesh, color="#aab6c4", opacity=0.25)
         else:
-            plotter.add_mesh(own, **colours)
-        plotter.add_mesh(own.extract_feature_edges(35), color="#333333", line_width=1)
+            plotter.add_mesh(mesh, **colours)
+        plotter.add_mesh(mesh.extract_feature_edges(35), color="#333333", line_width=1)
     for sides in [data["contacts"][name] for name in rubbing] if on_contacts else ():
         plotter.add_mesh(_deformed(sides["contactor"], scale), line_width=6, lighting=False, **colours)
     if solution.model.dim == 2:
@@ -174,7 +174,7 @@ def _largest(data: Foreign, what: str, step: Step) -> float:
         return largest_pressure([step])
     grids = [sides["contactor"] for sides in data["contacts"]] if what in ON_CONTACTS else list(data["bodies"])
     largest = 0.0
-    for grid in (own for own in grids if FIELDS[what] in own.point_data):
+    for grid in (each for each in grids if FIELDS[what] in each.point_data):
         values = np.asarray(grid.point_data[FIELDS[what]])
         sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
         largest = max(largest, float(np.nanmax(np.nan_to_num(sizes), initial=0.0)))

@@ -90,9 +90,9 @@ def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
 def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[State, NDArray[np.bool_]]:
     """The same from arrays by name."""
     history = {name.removeprefix(of + HISTORY): data[name] for name in names if name.startswith(of + HISTORY)}
-    own = {name: data[of + name] for name in ARRAYS}
+    arrays = {name: data[of + name] for name in ARRAYS}
     largest = Largest(*map(float, data[of + "largest"]))
-    return State(float(data[of + "time"]), **own, history=History(history), largest=largest), data[of + "inside"]
+    return State(float(data[of + "time"]), **arrays, history=History(history), largest=largest), data[of + "inside"]
 
 
 def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:

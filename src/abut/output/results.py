@@ -196,8 +196,8 @@ def _history(solution: Solution) -> str:
     table.writeheader()
     for step in solution.steps:
         common = {"step": step.number, "factor": step.factor, "converged": int(step.converged)}
-        own, energy = _step_rows(step, dim), energy_row(step)
-        for i, row in enumerate(own or ([{}] if energy else [])):
+        rows_of_step, energy = _step_rows(step, dim), energy_row(step)
+        for i, row in enumerate(rows_of_step or ([{}] if energy else [])):
             table.writerow({**common, **row, **(energy if i == 0 else {})})
     return text.getvalue()
 
@@ -207,15 +207,15 @@ def _step_rows(step: Step, dim: int) -> list[dict[str, Any]]:
     axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
 
     def named(name: str, values: NDArray[np.float64]) -> dict[str, float]:
-        own = turns if name in ("rotation", "moment") else axes
-        return {f"{name}_{axis}": value for axis, value in zip(own, values.tolist())}
+        along = turns if name in ("rotation", "moment") else axes
+        return {f"{name}_{axis}": value for axis, value in zip(along, values.tolist())}
 
     rows: list[dict[str, Any]] = []
     for c in step.contacts:
         values = {name: getattr(c, name) for name in OF_CONTACT} | more_values(c)
         rows.append({"contact": c.name, **named("force", c.force), **values})
     for name, body in step.rigid.items():
-        rows.append({"rigid": name, **{k: v for key, own in vars(body).items() for k, v in named(key, own).items()}})
+        rows.append({"rigid": name, **{k: v for key, each in vars(body).items() for k, v in named(key, each).items()}})
     return [*rows, *probes.history_rows(step)]
 
 

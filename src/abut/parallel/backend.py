@@ -18,7 +18,7 @@ from abut.parallel.interface import couple
 from abut.parallel.matrix import Distributed, reduce
 from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
 from abut.parallel.team import Team
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        own = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
-        self.team.each(part.assemble, own=own)
+        arguments = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
+        self.team.each(part.assemble, per_rank=arguments)
         return self
 
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
@@ -52,34 +52,34 @@ class DistributedBodies:
         """As in ``abut.problem.backend.Backend``."""
         dim = self.model.dim
         nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
-        own = [
+        arguments = [
             (nodal[piece.points].reshape(dim * len(piece.points), *displacement.shape[1:]),) for piece in self.pieces
         ]
         total = np.zeros_like(nodal)
-        for piece, force in zip(self.pieces, self.team.each(part.internal, own=own)):
+        for piece, force in zip(self.pieces, self.team.each(part.internal, per_rank=arguments)):
             total[piece.points] += force.reshape(-1, *nodal.shape[1:])
         return total.reshape(displacement.shape)
 
-    def reduce(self, held: Supports) -> Distributed:
+    def reduce(self, constraints: Constraints) -> Distributed:
         """As in ``Backend``, a matrix of PETSc's."""
         dim = self.model.dim
-        places = layout(held.free, self.points, dim, self.team.size, held.coupled)
-        own = []
+        places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled)
+        arguments = []
         for piece in self.pieces:
-            rows = held.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
+            rows = constraints.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
             used = np.flatnonzero(np.diff(rows.indptr))
             used = used[np.argsort(places.slot[used])]
-            own.append((places.slot[used], rows[:, used].tocsr()))
-        self.team.each(reduce, places.starts, places.block, own=own)
+            arguments.append((places.slot[used], rows[:, used].tocsr()))
+        self.team.each(reduce, places.starts, places.block, per_rank=arguments)
         return Distributed(self.team, places)
 
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """As in ``Backend``."""
-        own = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
+        arguments = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
         total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
-        sums = self.team.each(part.stresses, self.model.temperatures(time), own=own)
+        sums = self.team.each(part.stresses, self.model.temperatures(time), per_rank=arguments)
         for piece, (stress, cells) in zip(self.pieces, sums):
             total[piece.points] += stress
             count[piece.points] += cells

@@ -30,8 +30,8 @@ def couple(
         reach=default_reach(contactor, target) if options.reach is None else options.reach,
         adjust=no_gap(contactor, target, options.adjust),  # rounding of all coordinates counts
     )
-    own = [(owner == rank,) for rank in range(team.size)]
-    whole = added(team.each(_couple, *small, degree, options, own=own))
+    arguments = [(owner == rank,) for rank in range(team.size)]
+    whole = added(team.each(_couple, *small, degree, options, per_rank=arguments))
     n, at = len(contactor.points), whole.points
     width = 1 if options.componentwise else contactor.dim
     operator, contactor_part, target_part = (
@@ -58,6 +58,6 @@ def _among_all(matrix: Sparse, points: NDArray[np.int64], width: int, n_points: 
 
 
 def _couple(
-    store: Store, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, own: NDArray[np.bool_]
+    store: Store, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, chosen: NDArray[np.bool_]
 ) -> Coupling:
-    return couple_here(contactor, target, degree, options, own)
+    return couple_here(contactor, target, degree, options, chosen)

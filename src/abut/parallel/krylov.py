@@ -91,21 +91,27 @@ def multigrid(store: Store, motions: Vector) -> None:
 
 
 def iterate(
-    store: Store, accuracy: float, n: int, small: Vector, share: Vector, loose: Vector, conditions: Conditions | None
+    store: Store,
+    accuracy: float,
+    n: int,
+    small: Vector,
+    share: Vector,
+    unconstrained: Vector,
+    conditions: Conditions | None,
 ) -> Answer:
     """Solve by Krylov iterations until the residual is ``accuracy`` times the right-hand side.
 
-    n: how many pressures; share: of the right-hand side; loose: (n_own, m) share of rigid motions that multigrid does not
-    see, small: (m, m) inverse of their resistance."""
+    n: how many pressures; share: of the right-hand side; unconstrained: (n_own, m) share of rigid motions that multigrid
+    does not see, small: (m, m) inverse of their resistance."""
     from petsc4py import PETSc
 
     matrix = store["matrix"]
-    own = conditions or NONE
-    pulls, lower = _rows(matrix, n, own.coupled), _rows(matrix, n, own.lower)
+    given = conditions or NONE
+    pulls, lower = _rows(matrix, n, given.coupled), _rows(matrix, n, given.lower)
     pulls.scale(-1.0)
     operator = matrix
     if n:
-        upper, corner = PETSc.Mat().createTranspose(pulls), _square(matrix.comm, n, own.corner)
+        upper, corner = PETSc.Mat().createTranspose(pulls), _square(matrix.comm, n, given.corner)
         operator = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
@@ -114,10 +120,10 @@ def iterate(
     solver.setGMRESRestart(RESTART)
     solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
     solver.setFromOptions()
-    blocks = Blocks(store["stiffness solver"], pulls, loose, small, own.inverse, solver.getType() == "minres")
+    blocks = Blocks(store["stiffness solver"], pulls, unconstrained, small, given.inverse, solver.getType() == "minres")
     solver.getPC().setType("python")
     solver.getPC().setPythonContext(blocks)
-    answer = _solve(solver, operator, share, own.rhs)
+    answer = _solve(solver, operator, share, given.rhs)
     solver.destroy()  # now, not when Python finds the time: it holds many vectors
     return answer
 
@@ -148,16 +154,16 @@ def drop_factors(store: Store) -> None:
         store.pop("factors")[0].destroy()
 
 
-def _factors(matrix: Foreign, n: int, symmetric: bool, own: Conditions) -> tuple[Foreign, Foreign]:
+def _factors(matrix: Foreign, n: int, symmetric: bool, given: Conditions) -> tuple[Foreign, Foreign]:
     """PETSc's solver, and the matrix that it factorises."""
     from petsc4py import PETSc
 
     operator = matrix
     if n:
-        coupled, lower = _rows(matrix, n, own.coupled), _rows(matrix, n, own.lower)
+        coupled, lower = _rows(matrix, n, given.coupled), _rows(matrix, n, given.lower)
         upper = coupled.transpose(PETSc.Mat())
         upper.scale(-1.0)
-        corner = _square(matrix.comm, n, own.corner)
+        corner = _square(matrix.comm, n, given.corner)
         nest = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
         nest.assemble()
         operator = nest.convert("aij", PETSc.Mat())
@@ -203,9 +209,9 @@ class Blocks:
     displacements; for MINRES, which wants it symmetric, each by itself."""
 
     def __init__(
-        self, stiffness: Foreign, pulls: Foreign, loose: Vector, small: Vector, inverse: Foreign, apart: bool
+        self, stiffness: Foreign, pulls: Foreign, unconstrained: Vector, small: Vector, inverse: Foreign, apart: bool
     ) -> None:
-        self.stiffness, self.pulls, self.loose, self.small = stiffness, pulls, loose, small
+        self.stiffness, self.pulls, self.unconstrained, self.small = stiffness, pulls, unconstrained, small
         self.inverse, self.apart = inverse, apart
         self.residual, self.answer = stiffness.getOperators()[0].createVecs()
         self.pressure = pulls.createVecLeft()
@@ -225,8 +231,8 @@ class Blocks:
         self.stiffness.solve(self.residual, self.answer)
         out[:n] = self.answer.array_r
         if self.small.size:
-            shares = self.residual.comm.tompi4py().allreduce(self.loose.T @ self.residual.array_r)
-            out[:n] += self.loose @ (self.small @ shares)
+            shares = self.residual.comm.tompi4py().allreduce(self.unconstrained.T @ self.residual.array_r)
+            out[:n] += self.unconstrained @ (self.small @ shares)
         y.array[:] = out
 
 
@@ -275,8 +281,8 @@ def _square(comm: Foreign, n: int, rows: Sparse | None) -> Foreign:
     """A matrix (n, n) that is all on process 0."""
     from petsc4py import PETSc
 
-    own = _own(comm, n)
-    return PETSc.Mat().createAIJ(((own, n), (own, n)), csr=_csr(rows), comm=comm)
+    local = _own(comm, n)
+    return PETSc.Mat().createAIJ(((local, n), (local, n)), csr=_csr(rows), comm=comm)
 
 
 def _own(comm: Foreign, n: int) -> int:

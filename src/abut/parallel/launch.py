@@ -40,9 +40,9 @@ def rank() -> int:
 
 def _told() -> tuple[int, int]:
     for names in LAUNCHERS:
-        size, own = (os.environ.get(name, "") for name in names)
-        if size.isdecimal() and own.isdecimal():
-            return max(int(size), 1), int(own)
+        size, rank = (os.environ.get(name, "") for name in names)
+        if size.isdecimal() and rank.isdecimal():
+            return max(int(size), 1), int(rank)
     return 1, 0
 
 

@@ -77,30 +77,30 @@ class Iterative:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        own = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
-        motions, layout, inverse = self.system.motions, self.matrix.layout, own.inverse
+        interface = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
+        motions, layout, inverse = self.system.motions, self.matrix.layout, interface.inverse
         small = np.zeros((0, 0))
         if motions.shape[1]:
-            small = compliance(own.forces @ motions, inverse, -np.asarray(own.lower @ motions))
-            left = residual - self.system.operator.T @ own.fixed
+            small = compliance(interface.forces @ motions, inverse, -np.asarray(interface.lower @ motions))
+            left = residual - self.system.operator.T @ interface.fixed
             require_held(motions, small, left, float(np.abs(self.system.forces).sum()))
-        by_column, by_row = sp.diags(own.columns), sp.diags(own.rows)
+        by_column, by_row = sp.diags(interface.columns), sp.diags(interface.rows)
         beside = Conditions(
-            spread(by_column @ own.forces, layout), spread(by_row @ own.lower, layout),
-            (by_row @ own.corner @ by_column).tocsr(), -own.rows * own.residual,
-            lambda gap: inverse(gap / own.rows) / own.columns if len(gap) else gap,
+            spread(by_column @ interface.forces, layout), spread(by_row @ interface.lower, layout),
+            (by_row @ interface.corner @ by_column).tocsr(), -interface.rows * interface.residual,
+            lambda gap: inverse(gap / interface.rows) / interface.columns if len(gap) else gap,
         )  # fmt: skip
-        answers = self._solve(accuracy, -residual + self.system.operator.T @ own.fixed, small, beside)
+        answers = self._solve(accuracy, -residual + self.system.operator.T @ interface.fixed, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
-        return solution, own.multipliers(own.columns * answers[0].pressure)
+        return solution, interface.multipliers(interface.columns * answers[0].pressure)
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As ``abut.linear.iterative.Iterative.respond``."""
         motions = self.system.motions
         small = np.asarray(np.linalg.pinv(motions.T @ (springs[:, None] * motions)))
-        with self.matrix.held(springs):
+        with self.matrix.with_springs(springs):
             return displacement(self._solve(RESPONSE, force, small, None), self.matrix.layout)
 
     def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
@@ -108,7 +108,7 @@ class Iterative:
         shares = self.matrix.layout.shares(np.column_stack([rhs, self.system.motions]))
         answers: list[Answer] = self.matrix.team.each(
             iterate, accuracy, n, small,
-            own=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
+            per_rank=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
         )  # fmt: skip
         self.count.iterations += answers[0].iterations
         return answers
@@ -149,26 +149,26 @@ class Direct:
         s = saddle(self.system.unit, self.system.operator, rows, np.zeros(self.matrix.shape[0]))
         beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
         team = self.matrix.team
-        team.each(keep_factors, n, s.symmetric, own=[(None if rank else beside,) for rank in range(team.size)])
+        team.each(keep_factors, n, s.symmetric, per_rank=[(None if rank else beside,) for rank in range(team.size)])
 
         def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
             s = saddle(self.system.unit, self.system.operator, replace(rows, residual=of_law), residual)
             shares = layout.shares(s.rhs_u)
-            own = [(share, np.zeros(0) if rank else s.rhs_p) for rank, (share,) in enumerate(shares)]
-            solution, q = self._checked(team.each(by_factors, own=own))
+            arguments = [(share, np.zeros(0) if rank else s.rhs_p) for rank, (share,) in enumerate(shares)]
+            solution, q = self._checked(team.each(by_factors, per_rank=arguments))
             return solution, s.pressure(q)
 
         return solve
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """Displacements by forces where ``springs`` (n_free,) hold what supports do not."""
-        with self.matrix.held(springs):
+        with self.matrix.with_springs(springs):
             return self._solve(0, True, force, None)[0]
 
     def _solve(self, n: int, symmetric: bool, rhs: Vector, beside: Conditions | None) -> tuple[Vector, Vector]:
         shares = self.matrix.layout.shares(rhs)
-        own = [(share, None if rank else beside) for rank, (share,) in enumerate(shares)]
-        return self._checked(self.matrix.team.each(factorise, n, symmetric, own=own))
+        arguments = [(share, None if rank else beside) for rank, (share,) in enumerate(shares)]
+        return self._checked(self.matrix.team.each(factorise, n, symmetric, per_rank=arguments))
 
     def _checked(self, answers: list[Answer]) -> tuple[Vector, Vector]:
         if answers[0].memory:
@@ -216,7 +216,7 @@ class PetscIterations:
                 f"'{rubs[0]}'): leave the option out"
             )
         if previous is None or previous.system.stiffness is not matrix:
-            matrix.team.each(multigrid, own=matrix.layout.shares(np.linalg.qr(self.motions)[0]))
+            matrix.team.each(multigrid, per_rank=matrix.layout.shares(np.linalg.qr(self.motions)[0]))
         pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
         predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
         return Iterative(system, pressures, predict, self.count)
@@ -263,7 +263,7 @@ class PetscDirect:
 
 def choose(problem: ContactProblem) -> str:
     """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
-    coupled = problem.held.coupled
+    coupled = problem.constraints.coupled
     if wants_factors():
         return "direct"
     if wants_iterations() and coupled:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut._core import padded_blocks
 from abut.parallel.partition import Layout
 from abut.parallel.team import Store, Team
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.types import Foreign, Sparse
 
 
@@ -35,17 +35,17 @@ class Distributed:
         return self.layout.values(self.team.each(_diagonal))
 
     def __matmul__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.layout.values(self.team.each(_product, own=self.layout.shares(values)))
+        return self.layout.values(self.team.each(_product, per_rank=self.layout.shares(values)))
 
     def __add__(self, springs: Sparse) -> Distributed:
         """With a diagonal matrix added; the matrix itself changes."""
-        self.team.each(_stiffen, own=self.layout.shares(springs.diagonal()))
+        self.team.each(_stiffen, per_rank=self.layout.shares(springs.diagonal()))
         return self
 
     @contextmanager
-    def held(self, springs: NDArray[np.float64]) -> Iterator[None]:
+    def with_springs(self, springs: NDArray[np.float64]) -> Iterator[None]:
         """With springs (n_free,) to the ground for a while."""
-        self.team.each(_hold, own=self.layout.shares(springs))
+        self.team.each(_hold, per_rank=self.layout.shares(springs))
         try:
             yield
         finally:
@@ -78,7 +78,7 @@ def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np
 def _blocks(stiffness: Sparse, slot: NDArray[np.int64], free: Sparse, block: int) -> tuple[NDArray[np.int64], Sparse]:
     """Numbers of the blocks that the places belong to, and the stiffness in whole blocks, BSR, ones on the diagonal where
     there is no free displacement."""
-    reduced = Supports(free, np.zeros((0, 0))).reduce(stiffness)
+    reduced = Constraints(free, np.zeros((0, 0))).reduce(stiffness)
     reduced.sort_indices()
     new = np.diff(slot // block, prepend=-1) != 0
     blocks = (slot // block)[new]
@@ -104,9 +104,9 @@ def _own_rows(
     others = [rank if rank != comm.rank and (owner == rank).any() else None for rank in range(comm.size)]
     away = [None if rank is None else _rows_of(rank, matrix, blocks, starts) for rank in others]
     received = [rows for rows in comm.alltoall(away) if rows is not None]
-    own = _rows_of(comm.rank, matrix, blocks, starts)
+    local = _rows_of(comm.rank, matrix, blocks, starts)
     del away, matrix  # as large as the stiffness
-    return own + sum(received[1:], received[0]) if received else own
+    return local + sum(received[1:], received[0]) if received else local
 
 
 def _with_diagonal(rows: Sparse, first: int) -> Sparse:

@@ -27,8 +27,8 @@ def internal(store: Store, displacement: NDArray[np.float64]) -> NDArray[np.floa
     part: Solids = store["part"]
     force = np.empty_like(displacement)
     for column in np.ndindex(displacement.shape[1:]):
-        own = (slice(None), *column)
-        force[own] = internal_force(part, displacement[own].reshape(part.mesh.points.shape))
+        place = (slice(None), *column)
+        force[place] = internal_force(part, displacement[place].reshape(part.mesh.points.shape))
     return force
 
 

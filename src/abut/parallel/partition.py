@@ -65,7 +65,7 @@ def owners(mesh: Mesh, team: Team) -> NDArray[np.int64]:
         (graph.indptr[a : b + 1] - graph.indptr[a], graph.indices[graph.indptr[a] : graph.indptr[b]])
         for a, b in pairwise(bounds)
     ]
-    return np.concatenate(team.each(_partition, mesh.n_cells, own=rows)).astype(np.int64)
+    return np.concatenate(team.each(_partition, mesh.n_cells, per_rank=rows)).astype(np.int64)
 
 
 def cell_graph(mesh: Mesh) -> Sparse:
@@ -103,9 +103,9 @@ def point_owners(mesh: Mesh, owner: NDArray[np.int64]) -> NDArray[np.int64]:
     """The process of each point, the first that has a cell there: (n_points,)."""
     result = np.full(len(mesh.points), owner.max(initial=0))
     for block, first in zip(mesh.blocks, mesh.starts.tolist()):
-        own = owner[first : first + len(block.nodes)]
+        here = owner[first : first + len(block.nodes)]
         for node in block.nodes.T:
-            np.minimum.at(result, node, own)
+            np.minimum.at(result, node, here)
     return result
 
 
@@ -118,12 +118,12 @@ def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int, points: NDArray[np.i
     for rank in range(size):
         cells = np.flatnonzero(owner == rank)
         number[cells] = np.arange(len(cells))
-        own = [
+        members = [
             (block.kind, block.nodes[cells[(cells >= first) & (cells < first + len(block.nodes))] - first])
             for block, first in zip(mesh.blocks, mesh.starts.tolist())
         ]
         used = np.zeros(len(mesh.points), dtype=bool)
-        for _, nodes in own:
+        for _, nodes in members:
             used[nodes] = True
         kept = np.flatnonzero(used)
         if points is not None:
@@ -132,8 +132,8 @@ def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int, points: NDArray[np.i
         piece = replace(
             mesh,
             points=mesh.points[kept],
-            blocks=tuple(CellBlock(kind, place[nodes]) for kind, nodes in own),
-            bodies={name: number[held[owner[held] == rank]] for name, held in mesh.bodies.items()},
+            blocks=tuple(CellBlock(kind, place[nodes]) for kind, nodes in members),
+            bodies={name: number[numbers[owner[numbers] == rank]] for name, numbers in mesh.bodies.items()},
             surfaces={},
             node_sets={},
         )

@@ -30,13 +30,13 @@ class Team:
         return int(self.comm.size)
 
     def each(
-        self, function: Callable[..., Any], *shared: Any, own: Sequence[tuple[Any, ...]] | None = None
+        self, function: Callable[..., Any], *shared: Any, per_rank: Sequence[tuple[Any, ...]] | None = None
     ) -> list[Any]:
         """Call function(store, *shared, *own[rank]) on every process and return the results by rank; for process 0.
 
         function: of a module, as it travels by its name; store: a dict that each process keeps for itself."""
         self.comm.bcast((function, shared))
-        arguments = own or [()] * self.size
+        arguments = per_rank or [()] * self.size
         self.comm.scatter([None, *arguments[1:]])  # its own share does not travel, and may be what cannot be pickled
         mine = self._done(function, (*shared, *arguments[0]))
         return [mine, *self.comm.gather(None)[1:]]

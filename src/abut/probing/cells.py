@@ -33,7 +33,7 @@ class Inside:
     @property
     def outside(self) -> NDArray[np.int64]:
         """Numbers of the points that lie in no cell."""
-        return np.array([i for i, own in enumerate(self.bodies) if not own], dtype=np.int64)
+        return np.array([i for i, found in enumerate(self.bodies) if not found], dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ def locate(mesh: Mesh, around: Sequence[Boxes], points: NDArray[np.float64], bod
     for number in reversed(range(len(names))):
         owner[mesh.bodies[names[number]]] = number
     found = [
-        _in_block(mesh, block, own, owner[first : first + len(block.nodes)], points)
-        for block, own, first in zip(mesh.blocks, around, mesh.starts)
+        _in_block(mesh, block, candidates, owner[first : first + len(block.nodes)], points)
+        for block, candidates, first in zip(mesh.blocks, around, mesh.starts)
     ]
     which = np.concatenate([f.point for f in found])
     away = np.concatenate([f.away for f in found])
@@ -82,10 +82,13 @@ def locate(mesh: Mesh, around: Sequence[Boxes], points: NDArray[np.float64], bod
         bodies[int(which[k])] = tuple(names[number] for number in (int(who[k]), *also))
     parts, first = [], 0
     for block, f in zip(mesh.blocks, found):
-        own = best[(best >= first) & (best < first + len(f.point))] - first
+        candidates = best[(best >= first) & (best < first + len(f.point))] - first
         first += len(f.point)
-        shapes, _ = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(f.xi[own]))
-        entries = shapes.ravel(), (np.repeat(f.point[own], shapes.shape[1]), block.nodes[f.cell[own]].ravel())
+        shapes, _ = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(f.xi[candidates]))
+        entries = (
+            shapes.ravel(),
+            (np.repeat(f.point[candidates], shapes.shape[1]), block.nodes[f.cell[candidates]].ravel()),
+        )
         parts.append(csr_matrix(entries, shape=(len(points), len(mesh.points))))
     return Inside(sum(parts[1:], parts[0]), tuple(bodies))
 
@@ -123,16 +126,16 @@ def pairs(
     inside: list[NDArray[np.int64]] = [np.empty(0, np.int64)]
     waiting = [(np.arange(len(low)), np.arange(len(points)))]
     while waiting:
-        near, own = waiting.pop()
-        x = points[own]
+        near, bodies = waiting.pop()
+        x = points[bodies]
         near = near[((low[near] <= x.max(axis=0)) & (high[near] >= x.min(axis=0))).all(axis=1)]
         if not len(near):
             continue
-        if len(own) <= FEW:
+        if len(bodies) <= FEW:
             hit, point = np.nonzero(((low[near, None] <= x) & (x <= high[near, None])).all(axis=2))
             box.append(near[hit])
-            inside.append(own[point])
+            inside.append(bodies[point])
         else:
-            order = own[np.argsort(x[:, np.argmax(np.ptp(x, axis=0))], kind="stable")]
+            order = bodies[np.argsort(x[:, np.argmax(np.ptp(x, axis=0))], kind="stable")]
             waiting += [(near, half) for half in np.array_split(order, 2)]
     return np.concatenate(box), np.concatenate(inside)

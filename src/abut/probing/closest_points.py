@@ -60,13 +60,13 @@ def feet(surface: Surface, points: NDArray[np.float64]) -> Feet:
     rim = _rim(surface)
     for kind, _ in by_kind(surface):
         cell = CELLS[kind]
-        own = np.flatnonzero(surface.kinds[facet] == cell.code)
-        x = surface.points[surface.nodes[facet[own], : cell.nodes]]
-        xi, way = nearest(kind, x, points[point[own]])
+        here = np.flatnonzero(surface.kinds[facet] == cell.code)
+        x = surface.points[surface.nodes[facet[here], : cell.nodes]]
+        xi, way = nearest(kind, x, points[point[here]])
         shapes, slopes = shape_functions(cell.code, np.ascontiguousarray(xi))
-        weights[own, : cell.nodes], miss[own] = shapes, way
+        weights[here, : cell.nodes], miss[here] = shapes, way
         tangents = np.einsum("mna,mnd->mad", slopes, x)
-        beyond[own] = _past(kind, rim[facet[own]], xi, tangents, way, size[own])
+        beyond[here] = _past(kind, rim[facet[here]], xi, tangents, way, size[here])
     away = np.linalg.norm(miss, axis=1)
     order = np.lexsort((facet, away, point))
     best = order[np.unique(point[order], return_index=True)[1]]  # of each point, in their order
@@ -89,7 +89,7 @@ def _candidates(surface: Surface, points: NDArray[np.float64]) -> tuple[NDArray[
     for point, most in zip(points, reach * (1.0 + INSIDE)):
         gap = np.maximum(np.maximum(low - point, point - high), 0.0)
         found.append(np.flatnonzero(np.einsum("fd,fd->f", gap, gap) <= most**2))
-    counts = [len(own) for own in found]
+    counts = [len(facets) for facets in found]
     return np.concatenate(found), np.repeat(np.arange(len(points)), counts)
 
 

@@ -116,12 +116,14 @@ def _in_cells(
     outside = inside.outside
     if len(outside):
         raise InputError(_outside(model, probe, points[outside], len(points)))
-    shared = Counter(own for own in inside.bodies if len(own) > 1)
+    shared = Counter(bodies for bodies in inside.bodies if len(bodies) > 1)
     notes = []
-    for own, count in shared.items():
+    for bodies, count in shared.items():
         what = "it lies" if len(points) == 1 else f"{count} of its points lie"
-        names = " and ".join(f"'{name}'" for name in own)
-        notes.append(f"probe '{probe.name}': {what} in {names}; read in '{own[0]}' (body = \"{own[1]}\" for the other)")
+        names = " and ".join(f"'{name}'" for name in bodies)
+        notes.append(
+            f"probe '{probe.name}': {what} in {names}; read in '{bodies[0]}' (body = \"{bodies[1]}\" for the other)"
+        )
     return inside.weights, notes
 
 
@@ -156,18 +158,18 @@ def _on_surface(
         weights = np.zeros((len(facet), surface.nodes.shape[1]))
         weights[np.arange(len(facet)), local] = 1.0
         return OnSurface(side.contact, side.role, point, facet, weights), []
-    own = feet(surface, points)
-    if own.beside.all():
+    found = feet(surface, points)
+    if found.beside.all():
         raise InputError(
             f"probe '{probe.name}': no point of it lies over surface '{surface.name}' of contact '{contact.name}'; move it, "
             "or take pressure and gap out of its 'of'"
         )
     notes = []
-    farthest = float(own.distance[~own.beside].max())
-    if not own.touching[~own.beside].all() and farthest > NEAR * float(
+    farthest = float(found.distance[~found.beside].max())
+    if not found.touching[~found.beside].all() and farthest > NEAR * float(
         np.ptp(surface.points[surface.node_ids], axis=0).max()
     ):
         notes.append(
             f"probe '{probe.name}': points up to {farthest:.3g} off surface '{surface.name}' are projected onto it"
         )
-    return OnSurface(side.contact, side.role, own.point, own.facet, own.weights), notes
+    return OnSurface(side.contact, side.role, found.point, found.facet, found.weights), notes

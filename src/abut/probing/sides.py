@@ -37,15 +37,15 @@ def choose(model: Model, probe: Probe, points: NDArray[np.float64]) -> Side | No
     if not model.contacts or (probe.of is not None and not asked):
         return None
     sides = [_better(model, probe, number, points) for number in range(len(model.contacts))]
-    own = [s for s in sides if s is not None and probe.contact in (None, model.contacts[s.contact].name)]
-    if asked and not own:
+    chosen = [s for s in sides if s is not None and probe.contact in (None, model.contacts[s.contact].name)]
+    if asked and not chosen:
         raise InputError(
             f"{where}: body '{probe.body}' has no surface of a contact; leave body out, or pressure and gap"
         )
-    most = max((side.on for side in own), default=NOWHERE)
+    most = max((side.on for side in chosen), default=NOWHERE)
     if not asked and most < LIES:
         return None
-    left = [side for side in own if side.on == most]
+    left = [side for side in chosen if side.on == most]
     if probe.on is not None and most == NOWHERE:
         raise InputError(f"{where}: no node of '{probe.on}' is on a surface of {_names(model, left)}; name another set")
     if len(left) > 1:

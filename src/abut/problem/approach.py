@@ -45,11 +45,11 @@ def _ways(pair: Pair, open_by: Array, pressure: Array, closed: NDArray[np.bool_]
     share = np.where(carries[place], pressure, 1.0) * closed * weight
     roots = np.flatnonzero((place == np.arange(len(place))) & ~closed)
     share = share + _beside(near, open_by, roots, weight)
-    held = np.where((pair.index[:, 1:] < 0)[..., None], pair.slip.tangents, 0.0)
+    constraints = np.where((pair.index[:, 1:] < 0)[..., None], pair.slip.tangents, 0.0)
     dim = pair.contactor.dim
     total, stuck = np.zeros((len(place), dim)), np.zeros((len(place), dim, dim))
     np.add.at(total, place, share[:, None] * pair.slip.normals)
-    np.add.at(stuck, place, (share > 0.0)[:, None, None] * np.einsum("kbd,kbe->kde", held, held))
+    np.add.at(stuck, place, (share > 0.0)[:, None, None] * np.einsum("kbd,kbe->kde", constraints, constraints))
     size = np.bincount(place, share, minlength=len(place))
     for root in np.flatnonzero(np.abs(stuck).max(axis=(1, 2)) > 0.0):
         values, axes = np.linalg.eigh(stuck[root])
@@ -75,8 +75,10 @@ def _closest(near: sp.csr_matrix, height: Array) -> NDArray[np.int64]:
     height, the first."""
     n = len(height)
     links = near.tocoo()
-    own = (height[links.row] < 0.0) & (height[links.col] < 0.0)
-    _, label = connected_components(sp.csr_matrix((np.ones(int(own.sum())), (links.row[own], links.col[own])), (n, n)))
+    both = (height[links.row] < 0.0) & (height[links.col] < 0.0)
+    _, label = connected_components(
+        sp.csr_matrix((np.ones(int(both.sum())), (links.row[both], links.col[both])), (n, n))
+    )
     _, first = np.unique(label, return_index=True)
     order = np.lexsort((links.col, height[links.col], links.row))
     row, col = links.row[order], links.col[order]

@@ -13,12 +13,12 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.backend import Backend
 from abut.problem.clock import Clock
-from abut.problem.constraints import Supports, supports
+from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.finite import finite_problem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.free_modes import regularise
+from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
@@ -36,14 +36,14 @@ class Assembled:
     loaded: Loads
 
 
-def prescribed(model: Model) -> tuple[Supports, Loads]:
+def prescribed(model: Model) -> tuple[Constraints, Loads]:
     """What holds and what loads a model. Raises InputError and SingularModelError for what contradicts itself."""
     return supports(model), loads(model)
 
 
 def assemble(
     model: Model,
-    held: Supports,
+    constraints: Constraints,
     loaded: Loads,
     backend: Backend,
     observe: Observer,
@@ -51,23 +51,23 @@ def assemble(
     clock: Clock,
 ) -> Assembled:
     """The problem of a model. Raises InputError and SingularModelError for one that cannot be solved."""
-    reduced = backend.reduce(held)
+    reduced = backend.reduce(constraints)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     sliding = model.finite and bool(model.contacts)
-    every = whole_pairs(model, held) if sliding else pairs(model, held, backend.couple)
+    every = whole_pairs(model, constraints) if sliding else pairs(model, constraints, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    held_by = restraint(model.mesh, held, every)
-    springs = regularise(held_by.rigid, held_by.everything, held, reduced, loaded.at_ends(model))
+    restrained = restraint(model.mesh, constraints, every)
+    springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model))
     for text in springs.notes:
         note(text)
-    held_by, reduced = held_by.helped_by(springs.gram), springs.added_to(reduced)
-    forces = [held.free.T @ force for force in loaded.at_ends(model)]
-    first = held_by.at(weights(model.histories, model.solve.ends[0]))
+    restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)
+    forces = [constraints.free.T @ force for force in loaded.at_ends(model)]
+    first = restrained.at(weights(model.histories, model.solve.ends[0]))
     require_balance(first, forces[0], " in step 1" if len(forces) > 1 else "")
-    require_unmoved(held_by, forces)
+    require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     constant = model.deformable.constant
@@ -79,13 +79,13 @@ def assemble(
     problem = ContactProblem(
         model=model,
         terms=(bodies, DeadLoads(loaded, model.histories), *([FollowerLoads(model)] if followers(model) else [])),
-        held=held,
+        constraints=constraints,
         pairs=every,
         operator=stacked(every, n_free),
-        restraint=held_by,
+        restraint=restrained,
         springs=springs,
         stiffness=reduced if constant else None,
-        motions=held.coordinates(held_by.free),
+        motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
     problem = finite_problem(problem) if sliding else problem

@@ -15,7 +15,7 @@ from abut.bodies.stress import nodal_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.mesh.surface import Surface
 from abut.model import Model
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.types import Operator, Sparse
 
 
@@ -30,7 +30,7 @@ class Backend(Protocol):
         """Nodal forces of stresses under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
         ...
 
-    def reduce(self, held: Supports) -> Operator:
+    def reduce(self, constraints: Constraints) -> Operator:
         """The stiffness on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
         ...
 
@@ -57,9 +57,9 @@ class Serial:
         """As in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, held: Supports) -> Sparse:
+    def reduce(self, constraints: Constraints) -> Sparse:
         """As in ``Backend``, CSR."""
-        return held.reduce(self.matrix)
+        return constraints.reduce(self.matrix)
 
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]

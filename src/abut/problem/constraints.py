@@ -49,7 +49,7 @@ class Links:
 
 
 @dataclass(frozen=True)
-class Supports:
+class Constraints:
     """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
     ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
     at any time; bodies: the rigid ones; links: where there are equations; turns: finite ones, None without."""
@@ -68,7 +68,7 @@ class Supports:
         linear = np.asarray(self.free @ free + self.prescribed @ factors)
         return linear if self.turns is None else linear + self.turns.displacement(free, factors)
 
-    def near(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> Supports:
+    def near(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> Constraints:
         """The same as a linear change of variables near a state: its columns are the derivatives there."""
         if self.turns is None:
             return self
@@ -90,9 +90,9 @@ class Supports:
         single = np.flatnonzero(np.diff(self.free.indptr) == 1)
         followed[single] = alone[self.free.indices[self.free.indptr[single]]]
         rows = np.flatnonzero(~followed)
-        free, own = self.free[rows], vectors[rows]
+        free, here = self.free[rows], vectors[rows]
         near = replace(self, free=free[:, np.unique(free.indices)])
-        return np.asarray(own - near.free @ near.coordinates(own))
+        return np.asarray(here - near.free @ near.coordinates(here))
 
     def reduce(self, matrix: Sparse) -> Sparse:
         """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
@@ -114,8 +114,10 @@ class Supports:
         """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
         dim = directions.shape[1]
         rows = (dim * points[:, None] + np.arange(dim)).ravel()
-        own = [self.free[rows[a::dim]] for a in range(dim)]
-        gram = np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in own] for p in own]).transpose(2, 0, 1)
+        free_columns = [self.free[rows[a::dim]] for a in range(dim)]
+        gram = np.array(
+            [[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in free_columns] for p in free_columns]
+        ).transpose(2, 0, 1)
         if self.orthonormal:
             return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
@@ -124,7 +126,7 @@ class Supports:
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
 
 
-def supports(model: Model) -> Supports:
+def supports(model: Model) -> Constraints:
     """Collect all supports, equations and rigid bodies. Raises SingularModelError where they contradict each other,
     InputError for functions that do not return a finite number for each node."""
     conditions, bodies = _conditions(model), rigid_bodies(model)
@@ -144,7 +146,9 @@ def supports(model: Model) -> Supports:
     largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
     turning += _turned(model, free.shape[1])
     turns = Turns(turning, model.dim, len(model.mesh.points)) if model.finite and turning else None
-    return Supports(free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None, turns)
+    return Constraints(
+        free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None, turns
+    )
 
 
 def _together(
@@ -163,20 +167,20 @@ def _together(
     first = n_own
     for body in bodies:
         given, value = body.prescribed()
-        own = sp.csr_matrix(given)
+        given_rows = sp.csr_matrix(given)
         shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
                               shape=(given.shape[1], free.shape[1]))  # fmt: skip
-        rows.append(own @ shift)
+        rows.append(given_rows @ shift)
         values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(body.rigid.amplitude)]))
         names += [f"rigid body '{body.rigid.body}'"] * len(value)
         first += given.shape[1]
     node, direction, value, origin = conditions
     dim = model.dim
     entries = (np.repeat(np.arange(len(node)), dim), (dim * node[:, None] + np.arange(dim)).ravel())
-    held = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
+    rows_of = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
     linear, constants = equations(model)
     names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
-    points = sp.vstack([held, linear], format="csr")
+    points = sp.vstack([rows_of, linear], format="csr")
     rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
     values.append(np.concatenate([value, constants]) - points @ prescribed)
     every = sp.vstack(rows, format="csr")
@@ -187,10 +191,10 @@ def _together(
     turning, first = list[Turn](), n_own
     for body in bodies:
         count = len(body.components)
-        own = slice(first + model.dim, first + count)
+        given_rows = slice(first + model.dim, first + count)
         first += count
         if count > 1:
-            by_free, given = done.free[own] * (1.0 / body.size), done.prescribed[own] / body.size
+            by_free, given = done.free[given_rows] * (1.0 / body.size), done.prescribed[given_rows] / body.size
             turning.append(about(body.nodes, body.points, body.centre, by_free, given, small=True))
     return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links, turning
 
@@ -230,8 +234,8 @@ def _turned(model: Model, n_free: int) -> list[Turn]:
 
 
 def _name(model: Model, origin: int) -> str:
-    own = [*(support.on for support in model.supports), *(rotation.on for rotation in model.rotations)]
-    return "the axis" if origin == AXIS else f"support on '{own[origin]}'"
+    named = [*(support.on for support in model.supports), *(rotation.on for rotation in model.rotations)]
+    return "the axis" if origin == AXIS else f"support on '{named[origin]}'"
 
 
 def _node_by_node(
@@ -254,8 +258,8 @@ def _node_by_node(
     rows = np.flatnonzero(picked)
     free_rows, free_columns, free_values = [rows], [np.arange(len(rows))], [np.ones(len(rows))]
     column = len(rows)
-    held, start = np.unique(node, return_index=True)
-    for k, first, last in zip(held, start, np.append(start[1:], len(node))):
+    nodes_of, start = np.unique(node, return_index=True)
+    for k, first, last in zip(nodes_of, start, np.append(start[1:], len(node))):
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):

@@ -10,39 +10,39 @@ from abut.contact.coupling import Couple
 from abut.contact.geometry import nodal_normals, turning_within
 from abut.errors import InputError
 from abut.mesh.surface import Surface
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 
 Array = NDArray[np.float64]
 LEAN = 3.0  # of a normal out of a plane of symmetry, over the angle by which its facet turns: no more on round surfaces
 
 
 def contact_normals(
-    contactor: Surface, target: Surface, share: float, reach: float, couple: Couple, held: Supports
+    contactor: Surface, target: Surface, share: float, reach: float, couple: Couple, constraints: Constraints
 ) -> Array:
     """As ``common_normals``; at nodes that supports hold beside them, as at a plane of symmetry, they lie in the directions
     that are left."""
-    own = _upright(contactor, nodal_normals(contactor), held)
+    outward = _upright(contactor, nodal_normals(contactor), constraints)
     try:
-        other = _upright(target, nodal_normals(target), held)
+        other = _upright(target, nodal_normals(target), constraints)
     except InputError:  # a facet without a normal at a node: the contactor may still see the others
-        return own
+        return outward
     if share == 0.0:
-        return own
-    return _upright(contactor, common_normals(contactor, target, own, other, share, reach, couple), held)
+        return outward
+    return _upright(contactor, common_normals(contactor, target, outward, other, share, reach, couple), constraints)
 
 
-def _upright(surface: Surface, normals: Array, held: Supports) -> Array:
+def _upright(surface: Surface, normals: Array, constraints: Constraints) -> Array:
     """Normals (n_facets, 9, dim) of facets that lie on one side of a plane of symmetry alone lean out of it: by as much as
     a round surface turns, and no more."""
     used = surface.nodes >= 0
-    node, own = surface.nodes[used].astype(np.int64), normals[used]
-    moves = held.can_move(node, own)
+    node, vectors = surface.nodes[used].astype(np.int64), normals[used]
+    moves = constraints.can_move(node, vectors)
     length = np.linalg.norm(moves, axis=1)
-    lean = np.linalg.norm(own - moves, axis=1)
+    lean = np.linalg.norm(vectors - moves, axis=1)
     turn = np.zeros(len(surface.points))
     np.maximum.at(turn, node, turning_within(surface, normals)[np.nonzero(used)[0]])
     leans = (lean > 0.0) & (lean <= LEAN * turn[node]) & (length > 0.5)
-    own[leans] = moves[leans] / length[leans, None]
+    vectors[leans] = moves[leans] / length[leans, None]
     result = normals.copy()
-    result[used] = own
+    result[used] = vectors
     return result

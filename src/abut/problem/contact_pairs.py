@@ -35,7 +35,7 @@ from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import contact_normals
 from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
@@ -162,14 +162,16 @@ class Pair:
     def transfer(self) -> Sparse:
         """(9 n_facets, n) sparse, multipliers -> facet-wise nodal values of whichever component each one is."""
         return (
-            self.space.transfer if len(self.components) == 1 else sp.hstack([own.transfer for own in self.components])
+            self.space.transfer
+            if len(self.components) == 1
+            else sp.hstack([space.transfer for space in self.components])
         )
 
     def traction(self, multipliers: NDArray[np.float64]) -> NDArray[np.float64]:
         """Facet-wise coefficients (9 n_facets, c) by component."""
-        ends = np.cumsum([len(own) for own in self.components])[:-1]
+        ends = np.cumsum([len(space) for space in self.components])[:-1]
         parts = np.split(multipliers, ends)
-        return np.column_stack([own.transfer @ part for own, part in zip(self.components, parts)])
+        return np.column_stack([space.transfer @ part for space, part in zip(self.components, parts)])
 
     @property
     def redundant(self) -> bool:
@@ -185,7 +187,7 @@ class Pair:
         return int(self.operator.shape[0])
 
 
-def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
+def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> list[Pair]:
     """All contact pairs of a model. Two-pass node-to-segment makes two of one contact, each side as contactor once.
     couple: cuts and integrates, as ``abut.contact.coupling.couple``.
 
@@ -193,88 +195,97 @@ def pairs(model: Model, held: Supports, couple: Couple = couple) -> list[Pair]:
     result = []
     for contact in model.contacts:
         sides = model.sides(contact)
-        result.append(pair(model, contact, held, couple, sides))
+        result.append(pair(model, contact, constraints, couple, sides))
         if contact.method == "node-to-segment-two-pass":
             back = replace(
                 contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
             )
-            result.append(pair(model, back, held, couple, (sides[1], sides[0])))
-    if len(result) > 1 or any(own.contactor.parts is not None for own in result):
-        kept = one_each([_shared(own) for own in result])
+            result.append(pair(model, back, constraints, couple, (sides[1], sides[0])))
+    if len(result) > 1 or any(each.contactor.parts is not None for each in result):
+        kept = one_each([_shared(each) for each in result])
         result = [
-            own if keep is None else _in_space(model, own, reduce(own.space, own.coupling, keep), held)
-            for own, keep in zip(result, kept)
+            each if keep is None else _in_space(model, each, reduce(each.space, each.coupling, keep), constraints)
+            for each, keep in zip(result, kept)
         ]
     tied_together = bool(model.equations or model.rigid)
     return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 
-def _shared(own: Pair) -> Functions | None:
+def _shared(contact_pair: Pair) -> Functions | None:
     """What others at the same points need to know of a pair's multipliers; nothing of ties and methods for comparison."""
-    if own.tied or own.contact.method != METHODS[0] or not own.space.continuous:
+    if contact_pair.tied or contact_pair.contact.method != METHODS[0] or not contact_pair.space.continuous:
         return None
-    return functions(own.space, own.contactor, own.coupling)
+    return functions(contact_pair.space, contact_pair.contactor, contact_pair.coupling)
 
 
-def pair(model: Model, contact: Contact, held: Supports, couple: Couple = couple, sides: Sides | None = None) -> Pair:
+def pair(
+    model: Model, contact: Contact, constraints: Constraints, couple: Couple = couple, sides: Sides | None = None
+) -> Pair:
     """Cut, integrate and reduce one contact pair; sides: the model's own where left out. Raises InputError where the
     surfaces do not face each other."""
     contactor, target = model.sides(contact) if sides is None else sides
     tied = contact.kind == "tied"
-    reach = reach_of(held, contactor, target)
+    reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
-    normals = contact_normals(contactor, target, both.share, reach, couple, held) if contact.frictional else None
+    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if contact.frictional else None
     contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
-        own = tied_rows(contactor, coupling, space, held)
+        tie = tied_rows(contactor, coupling, space, constraints)
         return Pair(
-            contact, contactor, target, coupling, space, own.rows, own.free,
-            prescribed=own.rows @ held.prescribed, gap=np.zeros(len(own.weight)), scale=own.weight / stiffness, size=size,
-            stiffness=stiffness, index=own.index, components=own.components, compliance=both.compliance,
+            contact, contactor, target, coupling, space, tie.rows, tie.free,
+            prescribed=tie.rows @ constraints.prescribed, gap=np.zeros(len(tie.weight)), scale=tie.weight / stiffness,
+            size=size, stiffness=stiffness, index=tie.index, components=tie.components, compliance=both.compliance,
         )  # fmt: skip
-    space = without_held(space, contactor, coupling, held)
+    space = without_held(space, contactor, coupling, constraints)
     rows = (space.transfer.T @ coupling.operator).tocsr()
-    free = (rows @ held.free).tocsr()
+    free = (rows @ constraints.free).tocsr()
     moved = row_norms(free) > NO_EFFECT * space.weight
     if not moved.all():
         space = reduce(space, coupling, moved)
         rows = (space.transfer.T @ coupling.operator).tocsr()
-        free = (rows @ held.free).tocsr()
+        free = (rows @ constraints.free).tocsr()
     constant, varying = offsets(model, contact)
     border = rim(contactor)
     beyond = goes_on(contactor, border, target, reach)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
-        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
+        prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
         components=(space,), compliance=both.compliance,
-        points=None if contact.frictional else _points(coupling, space, held, both.young / sizes, constant, varying),
+        points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=_planes(contactor, border, beyond, held),
+        planes=_planes(contactor, border, beyond, constraints),
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
     assert coupling.points is not None
     assert normals is not None
     slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, held)
+    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, constraints)
 
 
-def _with_friction(model: Model, own: Pair, operators: SlipOperators, normals: Array, held: Supports) -> Pair:
+def _with_friction(
+    model: Model, normal_pair: Pair, operators: SlipOperators, normals: Array, constraints: Constraints
+) -> Pair:
     """A pair that has pressures alone, with the multipliers of friction beside them."""
-    sides = FrictionSides(own.contactor, own.target, normals, reach_of(held, own.contactor, own.target))
-    made = friction_rows(sides, own.space, own.rows, operators, held)
-    more = made.rows.shape[0] - len(own.space)
-    prescribed = np.vstack([own.prescribed, (made.rows @ held.prescribed)[len(own.space) :]])
+    sides = FrictionSides(
+        normal_pair.contactor,
+        normal_pair.target,
+        normals,
+        reach_of(constraints, normal_pair.contactor, normal_pair.target),
+    )
+    made = friction_rows(sides, normal_pair.space, normal_pair.rows, operators, constraints)
+    more = made.rows.shape[0] - len(normal_pair.space)
+    prescribed = np.vstack([normal_pair.prescribed, (made.rows @ constraints.prescribed)[len(normal_pair.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
     return replace(
-        own, rows=made.rows, operator=(made.rows @ held.free).tocsr(), prescribed=prescribed,
-        gap=np.concatenate([own.gap, np.zeros(more)]), scale=weight / own.stiffness, index=made.index,
+        normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(), prescribed=prescribed,
+        gap=np.concatenate([normal_pair.gap, np.zeros(more)]), scale=weight / normal_pair.stiffness, index=made.index,
         components=made.components, slip=made.slip, points=None,
-        values=friction_values(model, own.contact, made.slip.points),
+        values=friction_values(model, normal_pair.contact, made.slip.points),
     )  # fmt: skip
 
 
@@ -286,47 +297,49 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
 
 
-def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], held: Supports) -> Planes | None:
+def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes | None:
     """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
     target ends there too. None in 2D."""
     if contactor.dim == 2:
         return None
     mirrored = ~beyond
     out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
-    for own in border.ends.T:
-        mirrored &= held.held_share(own, out) > SQUARE
-        mirrored &= held.held_share(own, border.normal) < HELD
+    for end in border.ends.T:
+        mirrored &= constraints.held_share(end, out) > SQUARE
+        mirrored &= constraints.held_share(end, border.normal) < HELD
     return planes(contactor, border, mirrored)
 
 
-def with_plain_functions(model: Model, own: Pair, held: Supports, active: NDArray[np.bool_]) -> Pair:
+def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, active: NDArray[np.bool_]) -> Pair:
     """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
 
     active: (n,) bool, the multipliers in contact."""
-    if own.interior is None:
-        return own
-    inner = inner_facets(own.space, own.contactor, own.interior, active)
+    if earlier.interior is None:
+        return earlier
+    inner = inner_facets(earlier.space, earlier.contactor, earlier.interior, active)
     if not inner.any():
-        return own
-    return _in_space(model, own, with_plain_facets(own.space, own.contactor, own.coupling, inner), held)
+        return earlier
+    return _in_space(
+        model, earlier, with_plain_facets(earlier.space, earlier.contactor, earlier.coupling, inner), constraints
+    )
 
 
-def _in_space(model: Model, own: Pair, space: PressureSpace, held: Supports) -> Pair:
+def _in_space(model: Model, earlier: Pair, space: PressureSpace, constraints: Constraints) -> Pair:
     """A pair, not tied, with another space."""
-    rows = (space.transfer.T @ own.coupling.operator).tocsr()
-    constant, varying = offsets(model, own.contact)
-    points, at = own.points, own.coupling.points
+    rows = (space.transfer.T @ earlier.coupling.operator).tocsr()
+    constant, varying = offsets(model, earlier.contact)
+    points, at = earlier.points, earlier.coupling.points
     if points is not None and at is not None:
         points = replace(points, test=(at.pressure @ space.transfer).tocsr())
     changed = replace(
-        own, space=space, components=(space,), index=np.arange(len(space))[:, None], rows=rows,
-        operator=(rows @ held.free).tocsr(), points=points,
-        prescribed=rows @ held.prescribed + np.multiply.outer(space.weight, varying),
-        gap=space.transfer.T @ own.coupling.gap + constant * space.weight, scale=space.weight / own.stiffness,
+        earlier, space=space, components=(space,), index=np.arange(len(space))[:, None], rows=rows,
+        operator=(rows @ constraints.free).tocsr(), points=points,
+        prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
+        gap=space.transfer.T @ earlier.coupling.gap + constant * space.weight, scale=space.weight / earlier.stiffness,
     )  # fmt: skip
-    if own.slip is None or own.slip.at_facets is None:
+    if earlier.slip is None or earlier.slip.at_facets is None:
         return changed
-    return _with_friction(model, changed, own.slip.operators, own.slip.at_facets, held)
+    return _with_friction(model, changed, earlier.slip.operators, earlier.slip.at_facets, constraints)
 
 
 def _couple(
@@ -338,9 +351,9 @@ def _couple(
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
         seen = couple(
-            contactor, target, 0, CouplingOptions(points=1, reach=reach, keep_sights=True, adjust=contact.adjust)
+            contactor, target, 0, CouplingOptions(points=1, reach=reach, keep_gap_samples=True, adjust=contact.adjust)
         )
-        coupling = replace(coupling, sights=seen.sights)
+        coupling = replace(coupling, gap_samples=seen.gap_samples)
     else:
         tied = contact.kind == "tied"
         name, degree = resolve(contact.pressure, contactor, not tied and (contact.law == LAWS[0] or contact.frictional))
@@ -350,7 +363,7 @@ def _couple(
         degree = surface_degree(contactor) if of_dual else degree
         options = CouplingOptions(
             rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
-            keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_sights=not tied,
+            keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_gap_samples=not tied,
             normals=normals,
         )  # fmt: skip
         closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
@@ -368,7 +381,7 @@ def _couple(
 
 
 def _points(
-    coupling: Coupling, space: PressureSpace, held: Supports, stiffness: NDArray[np.float64],
+    coupling: Coupling, space: PressureSpace, constraints: Constraints, stiffness: NDArray[np.float64],
     constant: float, varying: NDArray[np.float64],
 ) -> PairPoints | None:  # fmt: skip
     if coupling.points is None:
@@ -379,11 +392,11 @@ def _points(
         weight=at.weight,
         stiffness=SHARPNESS * stiffness[at.facet],
         gap=at.gap + constant,
-        operator=(at.gap_operator @ held.free).tocsr(),
-        prescribed=at.gap_operator @ held.prescribed + varying,
+        operator=(at.gap_operator @ constraints.free).tocsr(),
+        prescribed=at.gap_operator @ constraints.prescribed + varying,
     )
 
 
-def reach_of(held: Supports, contactor: Surface, target: Surface) -> float:
+def reach_of(constraints: Constraints, contactor: Surface, target: Surface) -> float:
     """How far apart the surfaces may lie at the outset and still be paired, a length."""
-    return default_reach(contactor, target) + 2.0 * held.largest
+    return default_reach(contactor, target) + 2.0 * constraints.largest

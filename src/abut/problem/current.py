@@ -88,7 +88,7 @@ class Current:
 
     def shown(self, displacement: Array) -> Coupling:
         """With what results ask for beside it."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_sights=True)
+        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True)
         return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
 
     def _options(self, moved: Array) -> CouplingOptions:
@@ -121,46 +121,48 @@ class Current:
 
     def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
         """The same with slips, and forces of the tractions, theory (G4), (G6)."""
-        pair, own = self.pair, now.pair
+        pair, now_pair = self.pair, now.pair
         assert place.points is not None
-        slip = slip_now(place.points, own.contactor, own.target, self._across)
-        rubbed = self._in_plane if own.contactor.dim == 2 else self._in_space
-        made = rubbed(own, slip, options, multipliers)
-        covered = pair.space.plain.T @ place.points.moments(len(own.contactor))
+        slip = slip_now(place.points, now_pair.contactor, now_pair.target, self._across)
+        rubbed = self._in_plane if now_pair.contactor.dim == 2 else self._in_space
+        made = rubbed(now_pair, slip, options, multipliers)
+        covered = pair.space.plain.T @ place.points.moments(len(now_pair.contactor))
         assert pair.slip is not None
         moved = replace(pair.slip, operators=made.operators, tangents=made.tangents)
         return ContactNow(
-            replace(own, rows=sp.vstack([own.rows, made.rows]).tocsr(), slip=moved),
+            replace(now_pair, rows=sp.vstack([now_pair.rows, made.rows]).tocsr(), slip=moved),
             np.concatenate([now.gap, made.slip]),
             sp.vstack([now.by_position, made.by_position]).tocsr(),
             (now.bending + made.bending).tocsr(),
             covered < KNOWN * pair.weight[pair.normal],
         )  # fmt: skip
 
-    def _in_plane(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+    def _in_plane(self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
         """2D: forces of a traction are those of a pressure, turned by a right angle at every point."""
         part = self.pair.components[1].transfer
-        turn = quarter(len(own.contactor.points))
+        turn = quarter(len(now_pair.contactor.points))
         along = part @ multipliers[self.pair.tangential]
-        by = coupling_tangent(own.contactor, own.target, own.coupling.degree, options, along, across=self._across)
-        turned_rows = (own.coupling.operator @ turn).tocsr()
+        by = coupling_tangent(
+            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, along, across=self._across
+        )
+        turned_rows = (now_pair.coupling.operator @ turn).tocsr()
         return Rubbing(
             rows=part.T @ turned_rows, slip=np.asarray(part.T @ slip.value[:, 0]), by_position=part.T @ slip.by_position[0],
-            bending=turn.T @ by.force_tangent, tangents=tangents_2d(own.contactor, self._across, *self._anchors),
-            operators=SlipOperators((turned_rows,), own.coupling.gap[:, None]),
+            bending=turn.T @ by.force_tangent, tangents=tangents_2d(now_pair.contactor, self._across, *self._anchors),
+            operators=SlipOperators((turned_rows,), now_pair.coupling.gap[:, None]),
         )  # fmt: skip
 
-    def _in_space(self, own: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
+    def _in_space(self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
         """3D: two components along tangents that turn with the surface."""
-        pair, x = self.pair, own.contactor.points
+        pair, x = self.pair, now_pair.contactor.points
         kept = replace(options, keep_points=True)
-        at = couple(own.contactor, own.target, own.coupling.degree, kept, across=self._across).points
+        at = couple(now_pair.contactor, now_pair.target, now_pair.coupling.degree, kept, across=self._across).points
         assert at is not None
         operators = slip_operators(at, x)
         fields = [pair.space.transfer.T @ along for along in operators.along]
         value = pair.space.transfer.T @ slip.value
         change = [pair.space.transfer.T @ by for by in slip.by_position]
-        tangents, by_tangent = self._frames.at(own.contactor, self._across)
+        tangents, by_tangent = self._frames.at(now_pair.contactor, self._across)
         rows, slips, slopes, bending = [], [], [], sp.csr_matrix((x.size, x.size))
         traction = np.zeros((len(pair.space), 3))
         for b, by in enumerate(by_tangent):
@@ -177,7 +179,7 @@ class Current:
             )
             bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
         by_force = coupling_tangent(
-            own.contactor, own.target, own.coupling.degree, options, np.zeros(len(own.coupling.gap)),
+            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, np.zeros(len(now_pair.coupling.gap)),
             pair.space.transfer @ traction, across=self._across,
         )  # fmt: skip
         return Rubbing(

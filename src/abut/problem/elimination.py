@@ -52,8 +52,8 @@ def eliminate(rows: Sparse, values: NDArray[np.float64], names: Sequence[str]) -
     slack = max(1e-12 * np.abs(values).max(initial=0.0), 1e-39)
     solved: dict[int, Expression] = {}
     for i in range(rows.shape[0]):
-        own = slice(rows.indptr[i], rows.indptr[i + 1])
-        given = dict(zip(rows.indices[own].tolist(), rows.data[own].tolist()))
+        entries = slice(rows.indptr[i], rows.indptr[i + 1])
+        given = dict(zip(rows.indices[entries].tolist(), rows.data[entries].tolist()))
         row, value, through, size = _substitute(given, values[i], solved)
         scale = max(map(abs, given.values()), default=0.0)
         largest = max(map(abs, row.values()), default=0.0)

@@ -80,29 +80,31 @@ class FiniteProblem(ContactProblem):
         time."""
         factors = weights(self.model.histories, now.time)
         there = weights(self.model.histories, before.time) if change.any() else factors
-        held = self.held.near(now.unknowns, there)
+        constraints = self.constraints.near(now.unknowns, there)
         shares, contacts = self._forces(before, now.time, here), self._contacts(before, now, here, now)
         stiff = [share.tangent for share in shares if share.tangent is not None]
         bending = sum((contact.bending for contact in contacts), sp.csr_matrix((len(here),) * 2))
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
             whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
-        stiffness = self.springs.added_to(sum(tangent.reduce(held) for tangent in stiff) - held.reduce(bending))
-        rows = [own.pair.rows for own in contacts]
-        if self.held.turns is not None:
-            pushed = sum(own.T @ p for own, p in zip(rows, self._split(now.multipliers)))
-            stiffness = stiffness + self.held.turns.bending(now.unknowns, there, whole - pushed)
-        force = held.free.T @ whole
+        stiffness = self.springs.added_to(
+            sum(tangent.reduce(constraints) for tangent in stiff) - constraints.reduce(bending)
+        )
+        rows = [pair_now.pair.rows for pair_now in contacts]
+        if self.constraints.turns is not None:
+            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self._split(now.multipliers)))
+            stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
+        force = constraints.free.T @ whole
         about = self._expansion(shares, now.unknowns, force, stiffness)
         assert about is not None
-        operators = [(own.by_position @ held.free).tocsr() for own in contacts]
-        pairs = [replace(own.pair, operator=by, gap=own.gap) for own, by in zip(contacts, operators)]
-        gap = np.concatenate([own.gap + own.by_position @ change for own in contacts])
+        operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
+        pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
+        gap = np.concatenate([pair_now.gap + pair_now.by_position @ change for pair_now in contacts])
         load = -about.unbalanced
         return Linearised(
             now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
             unit_of(stiffness), about=replace(about, symmetric=False),
-            pushing=sp.vstack([own @ held.free for own in rows]).tocsr(), forgotten=self._idle(contacts),
+            pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
         )  # fmt: skip
 
     def _split(self, values: Array) -> list[Array]:
@@ -111,10 +113,14 @@ class FiniteProblem(ContactProblem):
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
         """(n,) multipliers of friction whose slip does not count in this step."""
         parts = [np.zeros(0, bool)]
-        for own in contacts:
-            mask = own.pair.of_functions(own.without_history) if own.pair.frictional else np.zeros(len(own.gap), bool)
-            if not own.pair.tied:
-                mask[own.pair.normal] = False
+        for contact in contacts:
+            mask = (
+                contact.pair.of_functions(contact.without_history)
+                if contact.pair.frictional
+                else np.zeros(len(contact.gap), bool)
+            )
+            if not contact.pair.tied:
+                mask[contact.pair.normal] = False
             parts.append(mask)
         return np.concatenate(parts)
 
@@ -122,7 +128,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, result = before.history.of(POINTS), []
-        for pair, kind, own in zip(self.pairs, self.moving, self._split(at.multipliers)):
+        for pair, kind, part in zip(self.pairs, self.moving, self._split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
                 continue
@@ -131,7 +137,7 @@ class FiniteProblem(ContactProblem):
             points = None
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
-            result.append(kind.at(Place(here, there, points, constant + float(varying @ factors)), own))
+            result.append(kind.at(Place(here, there, points, constant + float(varying @ factors)), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
@@ -139,8 +145,8 @@ class FiniteProblem(ContactProblem):
         there = self.displacement(before)
         parts = [before.history.of(term.name) for term in self.terms]
         return [
-            term.evaluate(Motion(before.time, there, own), Motion(time, here, own))
-            for term, own in zip(self.terms, parts)
+            term.evaluate(Motion(before.time, there, share), Motion(time, here, share))
+            for term, share in zip(self.terms, parts)
         ]
 
 
@@ -157,6 +163,6 @@ def _tie(pair: Pair, displacement: Array) -> ContactNow:
 
 def finite_problem(problem: ContactProblem) -> FiniteProblem:
     """A problem with pairs as from ``whole_pairs`` at large displacements."""
-    own = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
+    values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
     moving = [None if pair.tied else Current(pair) for pair in problem.pairs]
-    return FiniteProblem(**{**own, "stiffness": None}, moving=moving)
+    return FiniteProblem(**{**values, "stiffness": None}, moving=moving)

@@ -30,6 +30,6 @@ class FollowerLoads:
         force, slope = np.zeros(points.size), sp.csr_matrix((points.size, points.size))
         for load in followers(self.model):
             pressure = load.value * factors[self.model.histories.index(load.amplitude)]
-            own, by = follower_pressure(replace(mesh.surface(load.on), points=points), pressure)
-            force, slope = force + own, slope + by
+            pushed, by = follower_pressure(replace(mesh.surface(load.on), points=points), pressure)
+            force, slope = force + pushed, slope + by
         return Share(-force, Serial(self.model, -slope), symmetric=not slope.nnz)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.errors import SingularModelError
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.types import Array, Sparse
 
@@ -22,7 +22,7 @@ CURE = "add a support, or a symmetry plane (normal = 0)"
 
 
 @dataclass(frozen=True)
-class Regularisation:
+class FreeModeSprings:
     """Springs to the ground on as many free displacements as there are motions: by equilibrium they carry nothing.
 
     motions: (dim n_points, m) orthonormal; columns: (m,) free displacements with a spring, stiffness: (m,) of the springs;
@@ -60,54 +60,54 @@ class Regularisation:
         return np.asarray(displacement - self.motions @ (self.motions.T @ displacement))
 
 
-def regularise(
+def free_mode_springs(
     rigid: RigidModes,
     resistances: Sequence[NDArray[np.float64]],
-    held: Supports,
+    constraints: Constraints,
     stiffness: Sparse,
     loads: Sequence[NDArray[np.float64]],
-) -> Regularisation:
+) -> FreeModeSprings:
     """Hold the rigid motions that nothing resists, where that takes no force.
 
-    resistances: Gram matrices of supports and all contact, closed; held: the change of variables;
+    resistances: Gram matrices of supports and all contact, closed; constraints: the change of variables;
     stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step.
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
     motions = free_motions(resistances)
     notes: list[str] = []
-    for groups, own in _independent(rigid, motions):
-        size, worst = _work(rigid, groups, own, loads)
+    for groups, modes in _independent(rigid, motions):
+        size, worst = _work(rigid, groups, modes, loads)
         if worst is not None:
             raise SingularModelError(
-                f"{describe(rigid, worst, one_way=True)}{_others(own)}: neither a support nor contact constrains it, "
+                f"{describe(rigid, worst, one_way=True)}{_others(modes)}: neither a support nor contact constrains it, "
                 f"and the loads act in that direction; {CURE}"
             )
-        if size == 0.0 and len(groups) == 1 and own.shape[1] == rigid.per_group:
+        if size == 0.0 and len(groups) == 1 and modes.shape[1] == rigid.per_group:
             raise SingularModelError(
-                f"{describe(rigid, own)}{_others(own)}: neither a support nor contact constrains it, and no load acts "
+                f"{describe(rigid, modes)}{_others(modes)}: neither a support nor contact constrains it, and no load acts "
                 f"on it; {CURE}"
             )
         notes += [
             f"{text}: unconstrained, and the loads do no work on it; its mean rigid-body motion is set to zero; no reaction "
             "arises"
-            for text, _ in each_motion(rigid, own)
+            for text, _ in each_motion(rigid, modes)
         ]
-    return _springs(rigid, motions, held, stiffness, tuple(notes))
+    return _springs(rigid, motions, constraints, stiffness, tuple(notes))
 
 
 def _springs(
-    rigid: RigidModes, motions: NDArray[np.float64], held: Supports, stiffness: Sparse, notes: tuple[str, ...]
-) -> Regularisation:
+    rigid: RigidModes, motions: NDArray[np.float64], constraints: Constraints, stiffness: Sparse, notes: tuple[str, ...]
+) -> FreeModeSprings:
     m = motions.shape[1]
     if not m:
         none = np.zeros(0)
         gram = np.zeros((rigid.modes.shape[1],) * 2)
-        return Regularisation(np.zeros((len(rigid.modes), 0)), none.astype(np.int64), none, gram)
+        return FreeModeSprings(np.zeros((len(rigid.modes), 0)), none.astype(np.int64), none, gram)
     whole = rigid.modes @ motions
-    moved = held.coordinates(whole)
+    moved = constraints.coordinates(whole)
     columns = np.sort(scipy.linalg.qr(moved.T, mode="r", pivoting=True)[1][:m]).astype(np.int64)
-    resisted = held.coordinates(rigid.modes)[columns]
-    return Regularisation(
+    resisted = constraints.coordinates(rigid.modes)[columns]
+    return FreeModeSprings(
         motions=np.asarray(scipy.linalg.qr(whole, mode="economic")[0], dtype=np.float64),
         columns=columns,
         stiffness=np.asarray(stiffness.diagonal()[columns]),
@@ -127,9 +127,9 @@ def _independent(rigid: RigidModes, motions: NDArray[np.float64]) -> list[tuple[
         groups = np.flatnonzero(label == number)
         inside = np.repeat(label == number, rigid.per_group)
         basis, size, _ = np.linalg.svd(np.where(inside[:, None], motions, 0.0), full_matrices=False)
-        own = basis[:, size > 0.5]  # projections of an orthonormal basis: ones and zeros
-        if own.shape[1]:
-            result.append((groups, own))
+        modes = basis[:, size > 0.5]  # projections of an orthonormal basis: ones and zeros
+        if modes.shape[1]:
+            result.append((groups, modes))
     return result
 
 

@@ -15,7 +15,7 @@ from abut.contact.node_to_segment import feet
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
 from abut.types import Sparse
 
@@ -62,27 +62,27 @@ class FrictionRows:
 
 
 def friction_rows(
-    pair: Sides, space: PressureSpace, normal: Sparse, operators: SlipOperators, held: Supports
+    pair: Sides, space: PressureSpace, normal: Sparse, operators: SlipOperators, constraints: Constraints
 ) -> FrictionRows:
     """Rows of the gap (``normal``) and of the slip, theory (R1). Where supports hold both sides along a tangent, as at a
     plane of symmetry, there is no traction along it; where they hold the contactor's node alone, the target carries it."""
     dim, n = pair.contactor.dim, len(space)
     points, outward = places(pair.contactor, space, pair.at_facets)
     normals = -outward
-    axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
+    axes = [constraints.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
     moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
     tangents, free = frames(normals, moves)
-    fields = [(space.transfer.T @ own).tocsr() for own in operators.along]
+    fields = [(space.transfer.T @ part).tocsr() for part in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
     rows, components = [normal], [space]
     for b in range(dim - 1):
         parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
-        own = sum(parts[1:], parts[0]).tocsr()
-        reduced = (own @ held.free).tocsr()
+        part = sum(parts[1:], parts[0]).tocsr()
+        reduced = (part @ constraints.free).tocsr()
         keep = free[:, b] & (row_norms(reduced) > NO_EFFECT * space.weight)
-        keep |= carried_by_target(pair, space, normals, tangents[:, b], keep, reduced, held)
-        rows.append(own[keep])
+        keep |= carried_by_target(pair, space, normals, tangents[:, b], keep, reduced, constraints)
+        rows.append(part[keep])
         components.append(only(space, keep))
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
@@ -92,14 +92,16 @@ def friction_rows(
 
 def carried_by_target(
     pair: Sides, space: PressureSpace, normals: NDArray[np.float64], along: NDArray[np.float64],
-    keep: NDArray[np.bool_], rows: Sparse, held: Supports,
+    keep: NDArray[np.bool_], rows: Sparse, constraints: Constraints,
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Functions (n,) other than ``keep`` whose contactor's node is held along a tangent, (n, dim), while the target opposite
     can move, as at a clamped edge; beside others that are kept, and as many as do not repeat each other: the contactor has
     no displacement of its own there, which would tell them apart. rows: (n, n_free) of the slip."""
     result = np.zeros(len(space), dtype=bool)
     uses = abs(space.plain)
-    of_facets = [(uses @ own.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for own in (keep, ~keep)]
+    of_facets = [
+        (uses @ chosen.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for chosen in (keep, ~keep)
+    ]
     alone = uses.T @ np.repeat(of_facets[1] & ~of_facets[0], MAX_FACET_NODES).astype(float) > 0.0
     asked = np.flatnonzero(~keep & ~alone & (space.node >= 0) & (row_norms(rows) > NO_EFFECT * space.weight))
     if not 0 < len(asked) <= FEW:
@@ -109,12 +111,12 @@ def carried_by_target(
     nodes = pair.target.nodes[facet]
     dim = pair.contactor.dim
     function, local = np.nonzero((nodes >= 0) & (facet >= 0)[:, None])
-    moved = sp.csr_matrix((len(asked), held.free.shape[0]))
+    moved = sp.csr_matrix((len(asked), constraints.free.shape[0]))
     for a in range(dim):
         value = weights[function, local] * along[asked[function], a]
         column = dim * nodes[function, local].astype(np.int64) + a
         moved = moved + sp.csr_matrix((value, (function, column)), shape=moved.shape)
-    asked = asked[row_norms(moved @ held.free) > MOVES]
+    asked = asked[row_norms(moved @ constraints.free) > MOVES]
     if len(asked):
         gram = (rows[asked] @ rows[asked].T).toarray() / np.multiply.outer(space.weight[asked], space.weight[asked])
         _, left, order = qr(gram, pivoting=True)

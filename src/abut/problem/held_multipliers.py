@@ -9,7 +9,7 @@ from abut.contact.coupling import Coupling
 from abut.contact.geometry import CREASE, side_normals
 from abut.contact.pressure_space import PressureSpace, reduce
 from abut.mesh.surface import Surface
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.types import Sparse
 
 HELD = 1.0 - 1e-9  # share of the normal direction held by supports above which a contactor node cannot move along it
@@ -17,7 +17,9 @@ SAME_DIRECTION = 0.3  # sine of the angle between normals at a crease below whic
 NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative to its weight, that counts as zero
 
 
-def without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, held: Supports) -> PressureSpace:
+def without_held(
+    space: PressureSpace, contactor: Surface, coupling: Coupling, constraints: Constraints
+) -> PressureSpace:
     """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
     theory (P7) falls from 0.8 to 0.03. Those of the sides of a crease whose normals supports leave one direction for become
     one."""
@@ -27,15 +29,15 @@ def without_held(space: PressureSpace, contactor: Surface, coupling: Coupling, h
     _, at = side_normals(contactor)
     normals = at[space.side[sits]]
     keep = np.ones(len(space), dtype=bool)
-    keep[sits] = held.held_share(space.node[sits], normals) < HELD
+    keep[sits] = constraints.held_share(space.node[sits], normals) < HELD
     if not keep.any():
         return space
     nodes, count = np.unique(space.node[sits[keep[sits]]], return_counts=True)
     several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
     onto = np.full(len(space), -1)
     if len(several):
-        own = at[space.side[several]]
-        first = _repeated(space.node[several], own, held.can_move(space.node[several], own))
+        at_node = at[space.side[several]]
+        first = _repeated(space.node[several], at_node, constraints.can_move(space.node[several], at_node))
         onto[several[first >= 0]] = several[first[first >= 0]]
     return reduce(space, coupling, keep & (onto < 0), onto=onto)
 

@@ -38,8 +38,8 @@ class Rows:
     @property
     def fixed(self) -> Vector:
         """Change of the pressures that decoupled rows give at once; zero for all others."""
-        own = np.where(self.decoupled, self.by_pressure.diagonal(), 1.0)
-        return np.where(self.decoupled, -self.residual / own, 0.0)
+        diagonal = np.where(self.decoupled, self.by_pressure.diagonal(), 1.0)
+        return np.where(self.decoupled, -self.residual / diagonal, 0.0)
 
 
 @dataclass(frozen=True)
@@ -153,8 +153,8 @@ class Linearised:
         for pair, law in zip(self.pairs, laws):
             here = slice(first, first + len(pair))
             first += len(pair)
-            own = pair.points.operator if law.at_points and pair.points is not None else self.operator[here]
-            by_displacement.append(sp.csr_matrix(law.by_gap @ own))
+            gaps = pair.points.operator if law.at_points and pair.points is not None else self.operator[here]
+            by_displacement.append(sp.csr_matrix(law.by_gap @ gaps))
             if self.compliance is not None:
                 empty = law.at_points  # all displacements of such pairs have been kept
                 by_compliance.append(

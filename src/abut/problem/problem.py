@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.approach import approach_slip
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, with_plain_functions
-from abut.problem.free_modes import Regularisation
+from abut.problem.free_modes import FreeModeSprings
 from abut.problem.kinematics import Kinematics
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Expansion, Linearised
@@ -75,11 +75,11 @@ class ContactProblem:
 
     model: Model
     terms: Sequence[Term]
-    held: Supports
+    constraints: Constraints
     pairs: Sequence[Pair]
     operator: Operator
     restraint: Restraint
-    springs: Regularisation
+    springs: FreeModeSprings
     stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
@@ -92,11 +92,11 @@ class ContactProblem:
 
     @property
     def _frozen(self) -> bool:
-        return all(own.constant for own in self.kinematics)
+        return all(kinematics.constant for kinematics in self.kinematics)
 
     @property
     def n_free(self) -> int:
-        return int(self.held.free.shape[1])
+        return int(self.constraints.free.shape[1])
 
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
@@ -104,9 +104,9 @@ class ContactProblem:
         _, offset, _ = self._contact(rest, np.zeros(len(self.model.histories)))
         first, closed = 0, np.zeros(len(offset), dtype=bool)
         for pair in self.pairs:
-            own = slice(first, first := first + len(pair))
-            touching = offset[own] <= TOUCHING * pair.size * pair.weight
-            closed[own] = pair.of_functions(touching[pair.normal]) if pair.frictional else pair.tied | touching
+            here = slice(first, first := first + len(pair))
+            touching = offset[here] <= TOUCHING * pair.size * pair.weight
+            closed[here] = pair.of_functions(touching[pair.normal]) if pair.frictional else pair.tied | touching
         return rest.with_closed(closed)
 
     def linearise(self, before: State, now: State) -> Linearised:
@@ -132,15 +132,15 @@ class ContactProblem:
             whole = whole + sum(s.tangent.internal(prescribed) for s in shares if s.tangent is not None)
         factors = weights(self.model.histories, now.time)
         there = factors if prescribed is None else weights(self.model.histories, before.time)
-        held = self.held.near(at, there)
-        force = held.free.T @ whole
+        constraints = self.constraints.near(at, there)
+        force = constraints.free.T @ whole
         operator, offset, bending = self._contact(now, factors, slipped)
         if self.constant:
             stiffness, load = self.stiffness, -force
         else:
-            stiffness = self._tangent(shares, held)
-            if self.held.turns is not None:
-                stiffness = stiffness + self.held.turns.bending(at, there, whole)
+            stiffness = self._tangent(shares, constraints)
+            if self.constraints.turns is not None:
+                stiffness = stiffness + self.constraints.turns.bending(at, there, whole)
             stiffness = stiffness if bending is None else stiffness - bending
             load = stiffness @ at - force - self.springs.forces(at)
         return Linearised(
@@ -183,8 +183,10 @@ class ContactProblem:
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> ContactProblem:
         """As in ``Problem``."""
-        own = np.split(closed, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
-        pairs = [with_plain_functions(self.model, pair, self.held, part) for pair, part in zip(self.pairs, own)]
+        parts = np.split(closed, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
+        pairs = [
+            with_plain_functions(self.model, pair, self.constraints, part) for pair, part in zip(self.pairs, parts)
+        ]
         if all(new is old for new, old in zip(pairs, self.pairs)):
             return self
         kinematics = [kind.of(pair) for kind, pair in zip(self.kinematics, pairs)]
@@ -192,16 +194,16 @@ class ContactProblem:
 
     def displacement(self, state: State) -> NDArray[np.float64]:
         """Of all points, (dim n_points,)."""
-        return self.held.displacement(state.unknowns, weights(self.model.histories, state.time))
+        return self.constraints.displacement(state.unknowns, weights(self.model.histories, state.time))
 
     def _offset(self, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()) -> NDArray[np.float64]:
         """Weighted gaps (n,) without free displacements, theory (F9), with the histories at ``factors``; slipped: what to
         leave out of the slip, as from ``_slipped``."""
-        own = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
-        for pair, gap, before in zip(self.pairs, own, slipped):
+        gaps = [pair.gap + pair.prescribed @ factors for pair in self.pairs]
+        for pair, gap, before in zip(self.pairs, gaps, slipped):
             if pair.frictional:
                 gap[pair.tangential] -= before
-        return np.concatenate(own) if own else np.zeros(0)
+        return np.concatenate(gaps) if gaps else np.zeros(0)
 
     def _contact(
         self, now: State, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()
@@ -211,17 +213,17 @@ class ContactProblem:
         if self._frozen:
             return self.operator, self._offset(factors, slipped), None
         multipliers = np.split(now.multipliers, np.cumsum([len(pair) for pair in self.pairs])[:-1])
-        jumps = [kind.at(now.unknowns, factors, own) for kind, own in zip(self.kinematics, multipliers)]
+        jumps = [kind.at(now.unknowns, factors, part) for kind, part in zip(self.kinematics, multipliers)]
         operator = sp.vstack([jump.operator for jump in jumps]).tocsr()
         value = np.concatenate([jump.value for jump in jumps])
         bending = [jump.bending for jump in jumps if jump.bending is not None]
         return operator, value - operator @ now.unknowns, sum(bending[1:], bending[0]) if bending else None
 
-    def _tangent(self, shares: Sequence[Share], held: Supports) -> Operator:
-        """The stiffness on the free displacements. held: near the state."""
+    def _tangent(self, shares: Sequence[Share], constraints: Constraints) -> Operator:
+        """The stiffness on the free displacements. constraints: near the state."""
         if self.stiffness is not None:
             return self.stiffness
-        tangents = [share.tangent.reduce(held) for share in shares if share.tangent is not None]
+        tangents = [share.tangent.reduce(constraints) for share in shares if share.tangent is not None]
         return self.springs.added_to(sum(tangents[1:], tangents[0]))
 
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:

@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 
 from abut.errors import SingularModelError
 from abut.mesh.mesh import Mesh
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.rigid_modes import (
     RigidModes,
@@ -34,7 +34,7 @@ class Restraint:
     """Resistance against rigid motions: of the supports (with what holds loose motions), of each pair's rows."""
 
     rigid: RigidModes
-    held: Supports
+    constraints: Constraints
     supports: NDArray[np.float64]
     pairs: Sequence[Pair]
     bare: NDArray[np.float64]  # of the supports, without what holds loose motions
@@ -48,7 +48,11 @@ class Restraint:
 
     def helped_by(self, gram: NDArray[np.float64]) -> Restraint:
         """The same with something else that resists."""
-        return _restraint(self.rigid, self.held, self.supports + gram, self.pairs, self.bare) if gram.any() else self
+        return (
+            _restraint(self.rigid, self.constraints, self.supports + gram, self.pairs, self.bare)
+            if gram.any()
+            else self
+        )
 
     def at(self, factors: NDArray[np.float64]) -> Restraint:
         """With the friction of a moment, where the model's histories are at ``factors``, (n_histories,)."""
@@ -66,11 +70,11 @@ class Restraint:
             return active
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
-        for p, g, own in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
+        for p, g, chosen in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
             if p.tied or not len(p):
                 continue
             clearance = (g / (p.scale * p.stiffness * p.size))[p.normal]  # over the facet size
-            own |= p.of_functions(clearance <= clearance.min() + 0.01)
+            chosen |= p.of_functions(clearance <= clearance.min() + 0.01)
         return result if self._holds(result) else np.ones_like(active)
 
     def unbalanced(self, force: NDArray[np.float64]) -> str:
@@ -83,7 +87,7 @@ class Restraint:
         """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
         is none. forces: (n_free,) of each load step, none of which is out of balance."""
         free = free_motions([self.supports])
-        moves = self.held.coordinates(self.rigid.modes @ free)
+        moves = self.constraints.coordinates(self.rigid.modes @ free)
         works = [(moves.T @ force, float(np.abs(force).sum())) for force in forces]
         motion = unheld(self.pairs, moves, works)
         return "" if motion is None else self._in_words(free @ motion, forces, driven=False)
@@ -92,7 +96,7 @@ class Restraint:
         """The motion (n_modes,), or a plain shift or turn that does as well: one that closes no contact, and on which forces
         (n_free,) do work if ``driven``, else none that turns it back."""
         plain = simple_motions(self.rigid, motion)
-        moves = self.held.coordinates(self.rigid.modes @ plain)
+        moves = self.constraints.coordinates(self.rigid.modes @ plain)
         free = free_motions([self.bare])
         stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
         opens = np.zeros(plain.shape[1])
@@ -113,13 +117,15 @@ class Restraint:
         """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
         pushes where it can; None where there is none."""
         free = free_motions([self.supports])
-        moves = self.held.coordinates(self.rigid.modes @ free)
+        moves = self.constraints.coordinates(self.rigid.modes @ free)
         motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
         return None if motion is None else free @ motion
 
     def _rows(self, active: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
-        return [resistance_of_rows(self.rigid, p.rows[own]) for p, own in zip(self.pairs, np.split(active, splits))]
+        return [
+            resistance_of_rows(self.rigid, p.rows[chosen]) for p, chosen in zip(self.pairs, np.split(active, splits))
+        ]
 
     def _holds(self, active: NDArray[np.bool_]) -> bool:
         return free_motions([self.supports, *self._rows(active)]).shape[1] == 0
@@ -140,7 +146,7 @@ def unbalanced(
     if not _drives(work, size):
         return None
     chosen = [None] * len(pairs) if active is None else np.split(active, np.cumsum([len(p) for p in pairs])[:-1])
-    forces = np.concatenate([np.zeros((0, len(work))), *(_pushes(p, moves, own) for p, own in zip(pairs, chosen))])
+    forces = np.concatenate([np.zeros((0, len(work))), *(_pushes(p, moves, part) for p, part in zip(pairs, chosen))])
     if not len(forces):
         return work
     pressure, missing = nnls(forces.T, -work)
@@ -154,16 +160,16 @@ def unheld(
     none, as where each contact can be under pressure while pressures balance one another or the loads.
 
     works: (m,) of each load step and the sum of its forces, as for ``unbalanced``."""
-    own = [_pushes(pair, moves) for pair in pairs]
-    forces = np.concatenate([np.zeros((0, moves.shape[1])), *own])
+    pushes = [_pushes(pair, moves) for pair in pairs]
+    forces = np.concatenate([np.zeros((0, moves.shape[1])), *pushes])
     loads = [work / np.linalg.norm(work) for work, size in works if _drives(work, size)]
     columns = np.concatenate([forces, *(load[None] for load in loads)])
     even = forces.sum(axis=0)  # all pressures may be one, and more: then each contact is under pressure
     if not len(forces) or nnls(columns.T, -even)[1] <= UNBALANCED * len(forces):
         return None
-    pair_of = np.repeat(np.arange(len(pairs)), [len(push) for push in own])
+    pair_of = np.repeat(np.arange(len(pairs)), [len(push) for push in pushes])
     for i, pair in enumerate(pairs):
-        if pair.tied or not len(own[i]):
+        if pair.tied or not len(pushes[i]):
             continue
         carried = np.zeros(len(columns))
         carried[: len(forces)] = pair_of == i
@@ -221,7 +227,7 @@ def require_held(
     """Raises SingularModelError where the loads of a step pull a body off its contact, and where one can leave its contact
     without any load that turns it back, at no step. loads: (dim n_points,) nodal forces at the end of each load step;
     factors: (n_histories,) of the histories there."""
-    forces = [restraint.held.free.T @ load for load in loads]
+    forces = [restraint.constraints.free.T @ load for load in loads]
     for number, (force, at) in enumerate(zip(forces, factors), start=1):
         require_balance(restraint.at(at), force, f" in step {number}" if len(forces) > 1 else "")
     require_unmoved(restraint, forces)
@@ -252,16 +258,20 @@ def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]])
         )
 
 
-def restraint(mesh: Mesh, held: Supports, pairs: Sequence[Pair]) -> Restraint:
+def restraint(mesh: Mesh, constraints: Constraints, pairs: Sequence[Pair]) -> Restraint:
     """Work out what holds the bodies of a mesh."""
     rigid = rigid_modes(mesh)
-    support = resistance_of_supports(rigid, held)
-    return _restraint(rigid, held, support, pairs, support)
+    support = resistance_of_supports(rigid, constraints)
+    return _restraint(rigid, constraints, support, pairs, support)
 
 
 def _restraint(
-    rigid: RigidModes, held: Supports, support: NDArray[np.float64], pairs: Sequence[Pair], bare: NDArray[np.float64]
+    rigid: RigidModes,
+    constraints: Constraints,
+    support: NDArray[np.float64],
+    pairs: Sequence[Pair],
+    bare: NDArray[np.float64],
 ) -> Restraint:
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
     by_supports = free_motions([support, *ties]).shape[1] == 0
-    return Restraint(rigid, held, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))
+    return Restraint(rigid, constraints, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))

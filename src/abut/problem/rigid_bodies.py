@@ -95,14 +95,14 @@ class RigidBody:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Force (dim,) and moment about the reference (1,) or (3,) of forces at all points (n_points, dim); displacement:
         (n_points, dim) under finite deformation, None for arms in the undeformed body."""
-        own, arm = forces[self.nodes], self.points - self.reference
+        at_nodes, arm = forces[self.nodes], self.points - self.reference
         if displacement is not None:
             arm = arm + displacement[self.nodes] - self.turned(displacement)[0]
         if self.axisymmetric:
-            return own.sum(axis=0), np.zeros(1)
-        if own.shape[1] == 2:
-            return own.sum(axis=0), np.array([(arm[:, 0] * own[:, 1] - arm[:, 1] * own[:, 0]).sum()])
-        return own.sum(axis=0), np.cross(arm, own).sum(axis=0)
+            return at_nodes.sum(axis=0), np.zeros(1)
+        if at_nodes.shape[1] == 2:
+            return at_nodes.sum(axis=0), np.array([(arm[:, 0] * at_nodes[:, 1] - arm[:, 1] * at_nodes[:, 0]).sum()])
+        return at_nodes.sum(axis=0), np.cross(arm, at_nodes).sum(axis=0)
 
 
 def rigid_bodies(model: Model) -> list[RigidBody]:

@@ -15,7 +15,7 @@ from abut.mesh.mesh import Mesh
 from abut.types import Sparse
 
 if TYPE_CHECKING:
-    from abut.problem.constraints import Supports
+    from abut.problem.constraints import Constraints
 
 FREE = 1e-7  # resistance, relative to the strongest, below which a motion counts as free
 
@@ -82,10 +82,10 @@ def near_null(mesh: Mesh, rigid: RigidModes) -> NDArray[np.float64]:
     return (rigid_modes(replace(mesh, axisymmetric=False)) if mesh.axisymmetric else rigid).together
 
 
-def resistance_of_supports(rigid: RigidModes, held: Supports) -> NDArray[np.float64]:
+def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
     """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
-    taken = held.taken(rigid.modes)
-    return np.asarray(taken.T @ taken / max(1.0, float(held.free.shape[0] - held.free.shape[1])))
+    taken = constraints.taken(rigid.modes)
+    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
 
 
 def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:
@@ -152,15 +152,15 @@ def _in_words(rigid: RigidModes, motion: NDArray[np.float64], one_way: bool = Fa
     """The bodies that move, whether they are several, whether the motion is a rotation, and its axis."""
     parts = motion.reshape(-1, rigid.per_group)
     group = int(np.abs(parts).max(axis=1).argmax())
-    own = parts[group]
-    alike = [g for g, part in enumerate(parts) if np.abs(part - own).max() < 1e-9 * np.abs(own).max()]
+    members = parts[group]
+    alike = [g for g, part in enumerate(parts) if np.abs(part - members).max() < 1e-9 * np.abs(members).max()]
     names = [" + ".join(f"'{name}'" for name in rigid.groups[g]) for g in alike]
     several = len(names) > 1
     bodies = f"bodies {', '.join(names)} together" if several else f"body {names[0]}"
     if rigid.per_group == 1:
-        return bodies, several, False, f"along the axis {'-' if one_way and own[0] < 0.0 else ''}y"
+        return bodies, several, False, f"along the axis {'-' if one_way and members[0] < 0.0 else ''}y"
     dim = 2 if rigid.per_group == 3 else 3
-    shift, turn = own[:dim], own[dim:]
+    shift, turn = members[:dim], members[dim:]
     if np.abs(shift).max() >= np.abs(turn).max():
         return bodies, several, False, f"along {_axis(shift, one_way)}"
     return bodies, several, True, f"about {'z' if dim == 2 else _axis(turn)}"

@@ -21,7 +21,7 @@ class Scales:
 
 def scales(model: Model, contactor: Surface, target: Surface) -> Scales:
     """Of the contact of two surfaces. The model has refused two rigid sides."""
-    both = [softest(model.mesh, model.materials, own.cells) for own in (contactor, target)]
+    both = [softest(model.mesh, model.materials, surface.cells) for surface in (contactor, target)]
     young = min(material.modulus for material in both if material is not None)
     yields = [0.0 if material is None else 2.0 / contact_modulus(material) for material in both]
     return Scales(young, sum(yields), yields[1] / sum(yields))

@@ -37,8 +37,8 @@ class Frames:
         """tangents: (n, 2, 3) at the outset."""
         facet, local = anchors(contactor, space)
         both = np.zeros((len(facet), MAX_FACET_NODES, 2))
-        for kind, own in by_kind(contactor):
-            here = np.flatnonzero(np.isin(facet, own))
+        for kind, facets in by_kind(contactor):
+            here = np.flatnonzero(np.isin(facet, facets))
             _, slopes = shape_functions(CELLS[kind].code, np.ascontiguousarray(node_coordinates(kind)))
             both[here, : CELLS[kind].nodes] = slopes[local[here]]
         x = contactor.points[np.maximum(contactor.nodes[facet], 0)]

@@ -76,8 +76,8 @@ class Turns:
         nodal[:, : self.dim] = force.reshape(-1, self.dim)
         for turn in self.turns:
             if turn.by_free.nnz:
-                own = _second(turn.vector(free, factors), nodal[turn.nodes].T @ turn.arms)
-                total = total + turn.by_free.T @ sp.csr_matrix(own) @ turn.by_free
+                second = _second(turn.vector(free, factors), nodal[turn.nodes].T @ turn.arms)
+                total = total + turn.by_free.T @ sp.csr_matrix(second) @ turn.by_free
         return total.tocsr()
 
 

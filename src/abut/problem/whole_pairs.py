@@ -15,58 +15,59 @@ from abut.contact.tangential import frames, slip_operators
 from abut.errors import InputError
 from abut.model import Contact, Model
 from abut.model.friction import friction_values
-from abut.problem.constraints import Supports
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, pair, reach_of
 from abut.problem.friction_rows import Slip
 from abut.problem.held_multipliers import without_held
 from abut.problem.scales import scales
 
 
-def whole_pairs(model: Model, held: Supports) -> list[Pair]:
+def whole_pairs(model: Model, constraints: Constraints) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
 
     Raises InputError for what goes with small displacements only."""
     return [
-        pair(model, contact, held) if contact.kind == "tied" else whole_pair(model, contact, held)
+        pair(model, contact, constraints) if contact.kind == "tied" else whole_pair(model, contact, constraints)
         for contact in model.contacts
     ]
 
 
-def whole_pair(model: Model, contact: Contact, held: Supports) -> Pair:
+def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)
     name = _pressure(contact, surface_degree(contactor))
     degree = int(name[1])
-    rule, reach = contact.integration, reach_of(held, contactor, target)
+    rule, reach = contact.integration, reach_of(constraints, contactor, target)
     options = CouplingOptions(rule.rule, rule.points, reach, keep_points=contact.frictional)
     coupling = couple(contactor, target, degree, options)
     whole = replace(coupling, weight=full_moments(contactor, degree).ravel())
-    space = without_held(pressure_space(name, contactor, whole), contactor, whole, held)
+    space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
     rows = (space.transfer.T @ coupling.operator).tocsr()
-    own = Pair(
-        contact, contactor, target, coupling, space, rows, (rows @ held.free).tocsr(), prescribed=rows @ held.prescribed,
-        gap=space.transfer.T @ coupling.gap, scale=space.weight * size / both.young, size=size,
-        stiffness=both.young / size, index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
+    made = Pair(
+        contact, contactor, target, coupling, space, rows, (rows @ constraints.free).tocsr(),
+        prescribed=rows @ constraints.prescribed, gap=space.transfer.T @ coupling.gap,
+        scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
+        index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
     )  # fmt: skip
-    return own if not contact.frictional else _with_tangents(model, own, held)
+    return made if not contact.frictional else _with_tangents(model, made, constraints)
 
 
-def _with_tangents(model: Model, own: Pair, held: Supports) -> Pair:
+def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
     """The same with tractions beside the pressures, where supports let the contactor's node move along them."""
-    dim, n, space = own.contactor.dim, len(own.space), own.space
-    at = own.coupling.points
+    dim, n, space = whole.contactor.dim, len(whole.space), whole.space
+    at = whole.coupling.points
     assert at is not None
-    points, outward = places(own.contactor, space)
-    axes = [held.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
+    points, outward = places(whole.contactor, space)
+    axes = [constraints.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
     tangents, free = frames(-outward, np.stack(axes, axis=1))
-    operators = slip_operators(at, own.contactor.points)
+    operators = slip_operators(at, whole.contactor.points)
     fields = [(space.transfer.T @ along).tocsr() for along in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
-    components, rows = [space], [own.rows]
+    components, rows = [space], [whole.rows]
     for b in range(dim - 1):
         keep = free[:, b]
         components.append(only(space, keep))
@@ -77,10 +78,10 @@ def _with_tangents(model: Model, own: Pair, held: Supports) -> Pair:
     weight = np.concatenate([part.weight for part in components])
     every = sp.vstack(rows).tocsr()
     return replace(
-        own, gap=np.concatenate([own.gap, np.zeros(first - n)]), scale=weight / own.stiffness, index=index, rows=every,
-        operator=(every @ held.free).tocsr(), prescribed=every @ held.prescribed, components=tuple(components),
-        coupling=replace(own.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
-        values=friction_values(model, own.contact, points),
+        whole, gap=np.concatenate([whole.gap, np.zeros(first - n)]), scale=weight / whole.stiffness, index=index, rows=every,
+        operator=(every @ constraints.free).tocsr(), prescribed=every @ constraints.prescribed, components=tuple(components),
+        coupling=replace(whole.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
+        values=friction_values(model, whole.contact, points),
     )  # fmt: skip
 
 

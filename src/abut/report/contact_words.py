@@ -70,12 +70,12 @@ def lines(contact: ContactResult) -> list[str]:
     return result
 
 
-def friction_line(own: FrictionResult) -> str:
+def friction_line(friction: FrictionResult) -> str:
     """What friction does, in a sentence."""
-    limit = f" of at most {number(own.force_limit)}" if math.isfinite(own.force_limit) else ""
+    limit = f" of at most {number(friction.force_limit)}" if math.isfinite(friction.force_limit) else ""
     return (
-        f"sticks on {number(own.sticking_area)} and slips on {number(own.slipping_area)} of the area, carries "
-        f"{number(own.force_by_area)}{limit} by area, takes {number(own.work)} of work in the step"
+        f"sticks on {number(friction.sticking_area)} and slips on {number(friction.slipping_area)} of the area, carries "
+        f"{number(friction.force_by_area)}{limit} by area, takes {number(friction.work)} of work in the step"
     )
 
 

@@ -38,7 +38,7 @@ def _bodies(model: Model) -> Table:
     solids = {solid.body: solid for solid in model.solids}
     rows = []
     for name, cells in model.mesh.bodies.items():
-        kinds = ", ".join(f"{len(own)} {kind}" for kind, _, own in model.mesh.cells_of(name))
+        kinds = ", ".join(f"{len(of_kind)} {kind}" for kind, _, of_kind in model.mesh.cells_of(name))
         solid = solids.get(name)
         words = (
             "rigid" if solid is None else ", ".join(filter(None, (_value(solid.material), _details(solid, "material"))))
@@ -56,11 +56,11 @@ def _details(record: Any, *without: str) -> str:
     """Every value that was given: name and value of fields that differ from their defaults."""
     subject = next((name for name in _SUBJECT if hasattr(record, name)), "")
     parts = []
-    for own in fields(record):
-        value = getattr(record, own.name)
-        default = own.default if own.default_factory is MISSING else own.default_factory()
-        if own.name != subject and own.name not in without and value is not None and not _same(value, default):
-            parts.append(f"{own.name} {_value(value)}")
+    for entry in fields(record):
+        value = getattr(record, entry.name)
+        default = entry.default if entry.default_factory is MISSING else entry.default_factory()
+        if entry.name != subject and entry.name not in without and value is not None and not _same(value, default):
+            parts.append(f"{entry.name} {_value(value)}")
     return ", ".join(parts)
 
 

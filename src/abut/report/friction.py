@@ -27,12 +27,18 @@ def friction_rows(solution: Solution) -> list[list[str]]:
     """Rows of text below ``HEAD`` for the contacts with friction at the end of the last step."""
     rows = []
     for contact in solution.contacts:
-        own = contact.friction
-        if own is not None:
-            numbers = [own.force_by_area, own.force_limit, own.largest_share, own.max_traction, own.max_slip]
-            numbers += [own.max_total_slip, own.work, own.total_work]
-            areas = [number(own.sticking_area), number(own.slipping_area)]
-            rows.append([contact.name, *areas, vector(own.force, own.force_by_area), *map(_bounded, numbers)])
+        friction = contact.friction
+        if friction is not None:
+            numbers = [
+                friction.force_by_area,
+                friction.force_limit,
+                friction.largest_share,
+                friction.max_traction,
+                friction.max_slip,
+            ]
+            numbers += [friction.max_total_slip, friction.work, friction.total_work]
+            areas = [number(friction.sticking_area), number(friction.slipping_area)]
+            rows.append([contact.name, *areas, vector(friction.force, friction.force_by_area), *map(_bounded, numbers)])
     return rows
 
 
@@ -42,27 +48,27 @@ def _bounded(value: float) -> str:
 
 def friction_history(steps: Sequence[FrictionResult | None]) -> dict[str, list[float]] | None:
     """What is drawn over the steps for one contact, by name; None without friction."""
-    own = [step for step in steps if step is not None]
-    if not own:
+    known = [step for step in steps if step is not None]
+    if not known:
         return None
     return {
-        "force": [step.force_by_area for step in own],
-        "limit": [step.force_limit for step in own],
-        "work": [step.total_work for step in own],
-        "sticking": [step.sticking_area for step in own],
-        "slipping": [step.slipping_area for step in own],
+        "force": [step.force_by_area for step in known],
+        "limit": [step.force_limit for step in known],
+        "work": [step.total_work for step in known],
+        "sticking": [step.sticking_area for step in known],
+        "slipping": [step.slipping_area for step in known],
     }
 
 
-def friction_fields(own: FrictionResult, at: Patch) -> dict[str, Vector]:
+def friction_fields(friction: FrictionResult, at: Patch) -> dict[str, Vector]:
     """Fields for the colours of a contactor at the points of its patch: sizes of traction and slips, status and work."""
-    moved = np.where((own.status > 0)[..., None], own.slip, 0.0)
+    moved = np.where((friction.status > 0)[..., None], friction.slip, 0.0)
     return {
-        "traction": np.linalg.norm(at.nodal(own.traction), axis=1),
-        "slip": np.linalg.norm(at.nodal(own.total_slip), axis=1),
+        "traction": np.linalg.norm(at.nodal(friction.traction), axis=1),
+        "slip": np.linalg.norm(at.nodal(friction.total_slip), axis=1),
         "slip in the step": np.linalg.norm(at.nodal(moved), axis=1),
-        "friction work": at.nodal(own.total_work_per_area),
-        "status": at.nodal(SHOWN[own.status]),
+        "friction work": at.nodal(friction.total_work_per_area),
+        "status": at.nodal(SHOWN[friction.status]),
     }
 
 
@@ -77,11 +83,11 @@ def arrow_nodes(contact: ContactResult) -> NDArray[np.int64]:
 def at_arrows(contact: ContactResult, nodes: NDArray[np.int64], values: Vector) -> Vector:
     """Vectors at the facets' own nodes (n_facets, 9, dim) as means at some nodes, (n, 3)."""
     corners = _corners(contact)
-    ids, own = contact.contactor.nodes[corners], values[corners]
+    ids, at_nodes = contact.contactor.nodes[corners], values[corners]
     place = np.searchsorted(nodes, ids).clip(max=len(nodes) - 1)
     there = nodes[place] == ids
     total = np.zeros((len(nodes), values.shape[-1]))
-    np.add.at(total, place[there], own[there])
+    np.add.at(total, place[there], at_nodes[there])
     return vectors(total / np.bincount(place[there], minlength=len(nodes))[:, None])
 
 

@@ -52,23 +52,23 @@ def pressure_lines(contact: ContactResult) -> tuple[Line, ...]:
     """Lines on the contactor: one in 2D, in 3D those along and across the longest extent of the pressed part.
 
     None where nothing is pressed."""
-    own = patch(contact.contactor, 8 if contact.contactor.dim == 2 else 4)
+    grid = patch(contact.contactor, 8 if contact.contactor.dim == 2 else 4)
     nodal = [contact.pressure, contact.gap]
     if contact.friction is not None:
         limit = contact.friction.traction_limit
         nodal += [np.linalg.norm(contact.friction.traction, axis=2), np.where(np.isfinite(limit), limit, np.nan)]
-    values = np.column_stack([own.nodal(field) for field in nodal])
+    values = np.column_stack([grid.nodal(field) for field in nodal])
     pressure = values[:, 0]
-    if not len(own) or not np.isfinite(contact.statistics.place).all():
+    if not len(grid) or not np.isfinite(contact.statistics.place).all():
         return ()
-    x, size = own.points, float(np.ptp(own.points, axis=0).max())
+    x, size = grid.points, float(np.ptp(grid.points, axis=0).max())
     away = np.linalg.norm(x - contact.statistics.place, axis=1)
     here = np.flatnonzero(away <= away.min() + 1e-9 * size)
     top = int(here[np.argmax(pressure[here])])
     if x.shape[1] == 2:
-        cuts = [("along the contactor", own.cells, np.stack([np.arange(len(x))] * 2, axis=1), np.zeros(len(x)))]
+        cuts = [("along the contactor", grid.cells, np.stack([np.arange(len(x))] * 2, axis=1), np.zeros(len(x)))]
     else:
-        cuts = [(label, *_cut(own, x, normal, size)) for label, normal in _planes(own, x, pressure, top)]
+        cuts = [(label, *_cut(grid, x, normal, size)) for label, normal in _planes(grid, x, pressure, top)]
     lines = []
     for label, segments, ends, share in cuts:
         at, along = (_between(field, ends, share) for field in (x, values))
@@ -80,14 +80,14 @@ def pressure_lines(contact: ContactResult) -> tuple[Line, ...]:
 
 
 def _planes(
-    own: Patch, x: NDArray[np.float64], pressure: NDArray[np.float64], top: int
+    grid: Patch, x: NDArray[np.float64], pressure: NDArray[np.float64], top: int
 ) -> list[tuple[str, NDArray[np.float64]]]:
     """Planes (unit normal, constant) of the two cuts through the largest pressure: their directions are the principal ones
     of the pressed part, in the tangent plane."""
-    normal = own.normals[top]
-    triangle = x[own.cells]
+    normal = grid.normals[top]
+    triangle = x[grid.cells]
     area = 0.5 * np.linalg.norm(np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0]), axis=1)
-    weight = area * np.maximum(pressure[own.cells].mean(axis=1), 0.0)
+    weight = area * np.maximum(pressure[grid.cells].mean(axis=1), 0.0)
     way = triangle.mean(axis=1) - x[top]
     flat = way - weight @ way / weight.sum()
     flat -= (flat @ normal)[:, None] * normal
@@ -114,13 +114,13 @@ def _direction(way: NDArray[np.float64]) -> str:
 
 
 def _cut(
-    own: Patch, x: NDArray[np.float64], plane: NDArray[np.float64], size: float
+    grid: Patch, x: NDArray[np.float64], plane: NDArray[np.float64], size: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Triangles cut by a plane: segments (m, 2) between cut points, each on an edge (n, 2) at a share (n,) of its length."""
     height = x @ plane[:3] + plane[3]
     above = np.where(np.abs(height) < 1e-9 * size, 0.0, height) >= 0.0
-    sides = above[own.cells]
-    cut = own.cells[sides.any(axis=1) & ~sides.all(axis=1)]
+    sides = above[grid.cells]
+    cut = grid.cells[sides.any(axis=1) & ~sides.all(axis=1)]
     edges = cut[:, [[0, 1], [1, 2], [2, 0]]]
     crossed = above[edges[..., 0]] != above[edges[..., 1]]
     ends = edges[crossed]  # two of each triangle, one after the other

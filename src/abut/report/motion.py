@@ -56,9 +56,9 @@ def _rigid(solution: Solution) -> Iterator[Curve]:
                 continue
             turns = name in TURNS
             i = "xyz".index(name[-1]) if dim == 3 or not turns else 0
-            own = [step.rigid[body.body] for step in solution.steps]
-            x = np.array([0.0, *((r.rotation if turns else r.displacement)[i] for r in own)])
-            y = np.array([0.0, *((r.moment if turns else r.force)[i] for r in own)])
+            results = [step.rigid[body.body] for step in solution.steps]
+            x = np.array([0.0, *((r.rotation if turns else r.displacement)[i] for r in results)])
+            y = np.array([0.0, *((r.moment if turns else r.force)[i] for r in results)])
             times = np.array([0.0, *(step.factor for step in solution.steps)])
             what = f"moment about {name[-1]} over rotation" if turns else f"force along {name} over displacement"
             label = f"prescribed rotation {name} [radians]" if turns else f"prescribed displacement {name}"

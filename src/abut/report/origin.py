@@ -47,8 +47,8 @@ def quantities(step: Step) -> dict[str, float]:
     """What ``expected.json`` may speak of, by its names there: the first contact, and the peaks of all probes."""
     known: dict[str, float] = {}
     for result in step.probes:
-        own = peaks(result)
-        known |= {f"probe.{result.name}.{name}": value for name, value in own.items() if value is not None}
+        largest = peaks(result)
+        known |= {f"probe.{result.name}.{name}": value for name, value in largest.items() if value is not None}
     for contact in step.contacts[:1]:
         known |= {"contact.max_pressure": contact.max_pressure, "contact.area": contact.area}
         known |= {f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)}

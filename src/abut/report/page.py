@@ -278,12 +278,12 @@ def _history(solution: Solution) -> Json:
         "contacts": [
             {
                 "name": name,
-                "force": _plain(float(np.linalg.norm(c.force)) for c in own),
-                "area": _plain(c.area for c in own),
-                "pressure": _plain(c.max_pressure for c in own),
-                "friction": _friction(own),
+                "force": _plain(float(np.linalg.norm(c.force)) for c in values),
+                "area": _plain(c.area for c in values),
+                "pressure": _plain(c.max_pressure for c in values),
+                "friction": _friction(values),
             }
-            for name, own in zip(names, each)
+            for name, values in zip(names, each)
         ],
     }
 

@@ -56,14 +56,14 @@ def charts(solution: Solution) -> list[Chart]:
     """Along lines in the last step; of points and sets over time, where there are several steps."""
     result: list[Chart] = []
     for number, (probe, last) in enumerate(zip(solution.model.probes, solution.probes)):
-        own = [step.probes[number] for step in solution.steps]
+        results = [step.probes[number] for step in solution.steps]
         if last.distance is not None:
             x, label = last.distance, "distance from the start of the line [length]"
             table = {n: v for n, v in columns(last).items() if n != "gap" or len(last.values) == 1 or _opens(v, x)}
-            when = " in the last step" if len(own) > 1 else ""
-        elif len(own) > 1:
+            when = " in the last step" if len(results) > 1 else ""
+        elif len(results) > 1:
             x, label = np.array([step.factor for step in solution.steps]), OVER_TIME
-            table, when = _over_time(own), f", {PEAK}" if len(last.points) > 1 else ""
+            table, when = _over_time(results), f", {PEAK}" if len(last.points) > 1 else ""
         else:
             continue
         for title, names in CHARTS:
@@ -84,16 +84,16 @@ def _opens(gap: NDArray[np.float64], distance: NDArray[np.float64]) -> bool:
     return bool(np.nanmax(np.abs(gap), initial=0.0) > ROUNDING * np.ptp(distance))
 
 
-def _over_time(own: Sequence[ProbeResult]) -> dict[str, NDArray[np.float64]]:
-    each = [peaks(result) for result in own]
+def _over_time(results: Sequence[ProbeResult]) -> dict[str, NDArray[np.float64]]:
+    each = [peaks(result) for result in results]
     return {name: np.array([np.nan if p[name] is None else p[name] for p in each], dtype=float) for name in each[0]}
 
 
 def _cell(result: ProbeResult, name: str) -> str:
     if name not in result.values:
         return ""
-    own = [value for column, value in peaks(result).items() if column == name or column.startswith(f"{name}_")]
-    words = ["none" if value is None else f"{value:.6g}" for value in own]
+    values = [value for column, value in peaks(result).items() if column == name or column.startswith(f"{name}_")]
+    words = ["none" if value is None else f"{value:.6g}" for value in values]
     return words[0] if len(words) == 1 else "(" + ", ".join(words) + ")"
 
 

@@ -82,17 +82,17 @@ def pack(values: Array) -> dict[str, str]:
     return {"type": "f4" if real else "u4", "data": base64.b64encode(array.tobytes()).decode("ascii")}
 
 
-def _body(mesh: Mesh, name: str, own: Skin) -> Json:
+def _body(mesh: Mesh, name: str, skin: Skin) -> Json:
     return {
         "name": name,
-        "points": pack(vectors(mesh.points[own.nodes])),
-        "triangles": pack(own.triangles),
-        "edges": pack(own.edges),
-        "features": own.features,
+        "points": pack(vectors(mesh.points[skin.nodes])),
+        "triangles": pack(skin.triangles),
+        "edges": pack(skin.edges),
+        "features": skin.features,
     }
 
 
-def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
+def _side(mesh: Mesh, contact: ContactResult, role: str, grid: Patch) -> Json:
     surface: Any = getattr(contact, role)
     body = next((i for i, cells in enumerate(mesh.bodies.values()) if np.isin(surface.cells[:1], cells).any()), 0)
     arrows: Json = {}
@@ -107,10 +107,10 @@ def _side(mesh: Mesh, contact: ContactResult, role: str, own: Patch) -> Json:
         "role": role,
         "surface": surface.name,
         "body": body,
-        "points": pack(vectors(own.points)),
-        "normals": pack(vectors(own.normals)),
-        "cells": pack(own.cells),
-        "edges": pack(own.edges),
+        "points": pack(vectors(grid.points)),
+        "normals": pack(vectors(grid.normals)),
+        "cells": pack(grid.cells),
+        "edges": pack(grid.edges),
     }
 
 
@@ -120,18 +120,18 @@ def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches
     stress, moved = fields["von_mises"], fields["displacement"]
     bodies = [{"displacement": pack(moved[s.nodes]), "von Mises": pack(stress[s.nodes])} for s in skins]
     contacts = []
-    for (c, role), own in zip(sides, patches):
+    for (c, role), grid in zip(sides, patches):
         contact = step.contacts[c]
         pressure = contact.pressure if role == "contactor" else contact.target_pressure
         values: Json = {
-            "displacement": pack(own.of_points(moved)),
-            "von Mises": pack(own.of_points(stress)),
-            "pressure": pack(own.nodal(pressure)),
+            "displacement": pack(grid.of_points(moved)),
+            "von Mises": pack(grid.of_points(stress)),
+            "pressure": pack(grid.nodal(pressure)),
         }
         if role == "contactor":
-            values["gap"] = pack(own.nodal(contact.gap))
+            values["gap"] = pack(grid.nodal(contact.gap))
         if role == "contactor" and contact.friction is not None:
-            values |= {name: pack(field) for name, field in friction_fields(contact.friction, own).items()}
+            values |= {name: pack(field) for name, field in friction_fields(contact.friction, grid).items()}
             nodes = arrow_nodes(contact)
             values["arrows"] = {
                 "traction": pack(at_arrows(contact, nodes, np.nan_to_num(contact.friction.traction))),
@@ -149,9 +149,9 @@ def _kept(steps: tuple[Step, ...], most: int) -> list[Step]:
     return [steps[i] for i in picked]
 
 
-def thin(mesh: Mesh, own: Skin, most: int) -> Skin:
+def thin(mesh: Mesh, skin: Skin, most: int) -> Skin:
     """A skin with about ``most`` points: of all in a small box only the one nearest to their middle stays."""
-    x = mesh.points[own.nodes]
+    x = mesh.points[skin.nodes]
     low, size = x.min(axis=0), float(np.ptp(x, axis=0).max())
     boxes = 2.0 * max(most, 1) ** (1.0 / 2.0)
     box = np.arange(len(x))
@@ -164,12 +164,12 @@ def thin(mesh: Mesh, own: Skin, most: int) -> Skin:
     middle = np.stack([np.bincount(box, weights=column) / count for column in x.T], axis=1)
     order = np.lexsort((np.linalg.norm(x - middle[box], axis=1), box))
     keeper = order[np.concatenate([[0], np.cumsum(count)[:-1]])]
-    triangles = box[own.triangles]
+    triangles = box[skin.triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     _, once = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)
     parts = []
-    for edges in (box[own.edges[: own.features]], box[own.edges[own.features :]]):
+    for edges in (box[skin.edges[: skin.features]], box[skin.edges[skin.features :]]):
         parts.append(np.unique(np.sort(edges[edges[:, 0] != edges[:, 1]], axis=1), axis=0))
     return replace(
-        own, nodes=own.nodes[keeper], triangles=triangles[once], edges=np.concatenate(parts), features=len(parts[0])
+        skin, nodes=skin.nodes[keeper], triangles=triangles[once], edges=np.concatenate(parts), features=len(parts[0])
     )

@@ -143,10 +143,10 @@ def patch(surface: Surface, most: int = 4) -> Patch:
         cell = BY_CODE[code]
         facets = np.flatnonzero(surface.kinds == code)
         lines = 1 if cell.name in ("line2", "tri3") else most
-        xi, own, border = _lattice(cell, lines)
+        xi, triangles, border = _lattice(cell, lines)
         shapes, _ = shape_functions(cell.code, xi)
         start = first + len(xi) * np.arange(len(facets))[:, None, None]
-        cells.append((start + own).reshape(-1, surface.dim))
+        cells.append((start + triangles).reshape(-1, surface.dim))
         edges.append((start + border).reshape(-1, 2))
         samples.append((facets, np.asarray(shapes)))
         first += len(xi) * len(facets)
@@ -165,9 +165,9 @@ def _lattice(cell: CellType, n: int) -> tuple[NDArray[np.float64], NDArray[np.in
     for i, j in inside:
         here = [number.get(p) for p in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
         for corners in ((0, 1, 3), (1, 2, 3)):
-            own = [here[c] for c in corners]
-            if None not in own:
-                triangles.append(own)
+            corners_here = [here[c] for c in corners]
+            if None not in corners_here:
+                triangles.append(corners_here)
     span = range(n)
     border = [((i, 0), (i + 1, 0)) for i in span] + [((0, i), (0, i + 1)) for i in span]
     if triangle:

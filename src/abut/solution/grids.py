@@ -63,12 +63,12 @@ def contact_grid(step: Step, contact: ContactResult, sides: tuple[int, ...] = (C
     first = 0
     blocks, points, data, cells = [], [], [], []
     for side in sides:
-        for kind, x, values, own in _side(step, contact, side):
+        for kind, x, values, facets in _side(step, contact, side):
             blocks.append((kind, first + np.arange(len(x)).reshape(-1, CELLS[kind].nodes)))
             first += len(x)
             points.append(x)
             data.append(values)
-            cells.append(own)
+            cells.append(facets)
     return Grid(
         np.concatenate(points),
         tuple(blocks),
@@ -105,21 +105,21 @@ def _side(
     result = []
     for code in np.unique(surface.kinds):
         kind = BY_CODE[code]
-        own = np.flatnonzero(surface.kinds == code)
-        nodes = surface.nodes[own, : kind.nodes].ravel()
+        facets = np.flatnonzero(surface.kinds == code)
+        nodes = surface.nodes[facets, : kind.nodes].ravel()
         nothing = np.full(len(nodes), np.nan)
         values = {
-            "pressure": np.nan_to_num(pressure[own, : kind.nodes]).ravel(),
-            "multiplier": contact.multiplier[own, : kind.nodes].ravel() if side == CONTACTOR else nothing,
-            "gap": contact.gap[own, : kind.nodes].ravel() if side == CONTACTOR else nothing,
+            "pressure": np.nan_to_num(pressure[facets, : kind.nodes]).ravel(),
+            "multiplier": contact.multiplier[facets, : kind.nodes].ravel() if side == CONTACTOR else nothing,
+            "gap": contact.gap[facets, : kind.nodes].ravel() if side == CONTACTOR else nothing,
             "displacement": vectors(step.displacement[nodes]),
             "contact_force": forces[np.searchsorted(ids, nodes)],
             "node": nodes.astype(np.int32),
         }
         if contact.friction is not None:
-            values |= _friction(contact.friction, own, kind.nodes, side)
+            values |= _friction(contact.friction, facets, kind.nodes, side)
         cells = {
-            "status": status[own], "side": np.full(len(own), side, dtype=np.int32), "unsettled": unsettled[own],
+            "status": status[facets], "side": np.full(len(facets), side, dtype=np.int32), "unsettled": unsettled[facets],
         }  # fmt: skip
         result.append((kind.name, surface.points[nodes], values, cells))
     return result

@@ -21,11 +21,15 @@ class History:
 
     def of(self, term: str) -> Mapping[str, Vector]:
         """The arrays of a term, by part."""
-        return {name.partition(".")[2]: own for name, own in self.arrays.items() if name.partition(".")[0] == term}
+        return {
+            name.partition(".")[2]: values for name, values in self.arrays.items() if name.partition(".")[0] == term
+        }
 
     def with_term(self, term: str, parts: Mapping[str, Vector]) -> History:
         """The same with a term's arrays replaced."""
-        return History({**self.arrays, **{f"{term}.{part}": own for part, own in parts.items()}}) if parts else self
+        return (
+            History({**self.arrays, **{f"{term}.{part}": values for part, values in parts.items()}}) if parts else self
+        )
 
 
 @dataclass(frozen=True)

@@ -50,8 +50,8 @@ def facet_forces(contactor: Surface, target: Surface, points: int) -> NDArray[np
 def segment_forces(contactor: Surface, target: Surface) -> NDArray[np.float64]:
     """The same forces integrated on segments, as abut's contact does."""
     coupling = couple(contactor, target, 0, CouplingOptions(componentwise=True))
-    own = coupling.target_part[:, -len(target.points) :]
-    return np.asarray(own.T @ np.ones(MAX_FACET_NODES * len(contactor)))
+    on_target = coupling.target_part[:, -len(target.points) :]
+    return np.asarray(on_target.T @ np.ones(MAX_FACET_NODES * len(contactor)))
 
 
 def force_error(force: NDArray[np.float64], target: Surface) -> float:

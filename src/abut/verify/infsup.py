@@ -19,7 +19,7 @@ from abut.errors import InputError, nearest
 from abut.linear import direct
 from abut.mesh.surface import Surface
 from abut.model import LAWS, Model
-from abut.problem.constraints import Supports, supports
+from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
 from abut.types import Sparse
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
@@ -103,51 +103,52 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
     if wanted.frictional:  # the pressure alone, in the space that friction takes
         space = DUAL if wanted.pressure in ("auto", DUAL_P1) else wanted.pressure
         wanted = replace(wanted, friction=0.0, friction_amplitude=None, law=LAWS[0], pressure=space)
-    held = supports(model)
-    if held.free.shape[1] == 0:
+    constraints = supports(model)
+    if constraints.free.shape[1] == 0:
         raise InputError("inf-sup: supports hold every displacement (rigid bodies only); leave some free")
-    own = [p for p in pairs(replace(model, contacts=[wanted]), held) if len(p)]
-    if not own:
+    built = [p for p in pairs(replace(model, contacts=[wanted]), constraints) if len(p)]
+    if not built:
         raise InputError(f"inf-sup: no pressure of contact '{wanted.name}' moves anything; let its bodies deform")
-    own = [_where_closed(p, model, held, closed) for p in own]
-    length = _length(own[0].contactor)
+    built = [_where_closed(p, model, constraints, closed) for p in built]
+    length = _length(built[0].contactor)
     scalar = h1_matrix(model.mesh, length)
-    full = held.free.T @ sp.kron(scalar, sp.eye(model.dim), format="csr") @ held.free
-    operator = sp.vstack([p.operator for p in own]).tocsr()
-    mesh, trace = _pressure_norms(own, length)
+    full = constraints.free.T @ sp.kron(scalar, sp.eye(model.dim), format="csr") @ constraints.free
+    operator = sp.vstack([p.operator for p in built]).tocsr()
+    mesh, trace = _pressure_norms(built, length)
     if operator.shape[0] <= DENSE:
         by_mesh, by_trace = _all_values(full, operator, mesh, trace)
     else:
         by_mesh, by_trace = _smallest_values(full, operator, mesh, trace)
     return InfSupLevel(
         contact=wanted.name,
-        space=_measured(own[0]),
+        space=_measured(built[0]),
         multipliers=operator.shape[0],
-        size=own[0].size,
+        size=built[0].size,
         trace=_root(by_trace),
         mesh=_root(by_mesh),
         spurious=int((by_mesh < SPURIOUS**2).sum()),
     )
 
 
-def _where_closed(own: Pair, model: Model, held: Supports, closed: Closed | None) -> Pair:
-    if closed is None or own.space.name != DUAL_P1:
-        return own
-    return with_plain_functions(model, own, held, closed(own.contactor.points[own.space.node]))
+def _where_closed(built: Pair, model: Model, constraints: Constraints, closed: Closed | None) -> Pair:
+    if closed is None or built.space.name != DUAL_P1:
+        return built
+    return with_plain_functions(model, built, constraints, closed(built.contactor.points[built.space.node]))
 
 
-def _measured(own: Pair) -> str:
+def _measured(built: Pair) -> str:
     """The space in words: of "dual-P1" the facets decide which functions there are."""
-    name = own.space.name
+    name = built.space.name
     if name != DUAL_P1:
         return name
     kept = (
-        abs(own.space.transfer - own.space.plain).max(axis=1).toarray().reshape(-1, MAX_FACET_NODES).max(axis=1) == 0.0
+        abs(built.space.transfer - built.space.plain).max(axis=1).toarray().reshape(-1, MAX_FACET_NODES).max(axis=1)
+        == 0.0
     )
-    plain = int((kept & (own.coupling.segments > 0)).sum())
+    plain = int((kept & (built.coupling.segments > 0)).sum())
     if not plain:
         return f"{name}, dual functions everywhere"
-    return f"{name}, ordinary functions on {plain} of {int((own.coupling.segments > 0).sum())} facets"
+    return f"{name}, ordinary functions on {plain} of {int((built.coupling.segments > 0).sum())} facets"
 
 
 def _length(surface: Surface) -> float:
@@ -159,10 +160,10 @@ def _root(values: NDArray[np.float64]) -> float:
     return float(np.sqrt(max(values.min(), 0.0)))
 
 
-def _pressure_norms(own: Sequence[Pair], length: float) -> tuple[Sparse, Norm]:
+def _pressure_norms(built: Sequence[Pair], length: float) -> tuple[Sparse, Norm]:
     """T as h M (sparse) and as the trace norm (a function), block by block for both passes of a two-pass method."""
-    masses, norms, starts = [], [], np.cumsum([0, *(len(p) for p in own)])
-    for p in own:
+    masses, norms, starts = [], [], np.cumsum([0, *(len(p) for p in built)])
+    for p in built:
         surface, degree = p.contactor, p.coupling.degree
         areas = full_moments(surface, 0)[:, 0]
         divisions = 2 * surface_degree(surface) if len(p) <= DENSE else surface_degree(surface)

@@ -83,20 +83,20 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
         plane=model.plane,
     )
     if normal is None:
-        own = pair(bodies, contact, supports(bodies), sides=sides)
-        force, moment = balance(own, np.ones(MAX_FACET_NODES * len(own.contactor)))
+        built = pair(bodies, contact, supports(bodies), sides=sides)
+        force, moment = balance(built, np.ones(MAX_FACET_NODES * len(built.contactor)))
         return InterfacePatch(contact.name, False, None, None, force, moment)
     stress = -np.outer(normal, normal)
     exact = model.mesh.points @ _strain(stress, model.plane)
     pinned = _pinned(bodies, exact)
-    held = supports(pinned)
-    own = pair(pinned, contact, held, sides=sides)
-    load = _load(model.mesh, own.contactor, own.target, stress)
+    constraints = supports(pinned)
+    built = pair(pinned, contact, constraints, sides=sides)
+    load = _load(model.mesh, built.contactor, built.target, stress)
     full = stiffness(pinned.deformable)
-    displacement, pressure = _solve(full, load, held.free, held.prescribed[:, 0], own)
-    values = own.space.transfer @ pressure
-    nodal = facet_node_values(own.contactor, own.coupling.degree, values)[own.coupling.segments > 0]
-    force, moment = balance(own, values)
+    displacement, pressure = _solve(full, load, constraints.free, constraints.prescribed[:, 0], built)
+    values = built.space.transfer @ pressure
+    nodal = facet_node_values(built.contactor, built.coupling.degree, values)[built.coupling.segments > 0]
+    force, moment = balance(built, values)
     return InterfacePatch(
         contact.name,
         True,
@@ -114,8 +114,8 @@ def _plane_normal(axisymmetric: bool, sides: Sides) -> NDArray[np.float64] | Non
     normal /= max(float(np.linalg.norm(normal)), 1e-300)
     if axisymmetric and abs(normal[0]) > FLAT:
         return None
-    for own, sign in zip(used, (1.0, -1.0)):
-        if np.abs(own - sign * normal).max() > FLAT:
+    for cells, sign in zip(used, (1.0, -1.0)):
+        if np.abs(cells - sign * normal).max() > FLAT:
             return None
     return np.asarray(normal)
 
@@ -170,19 +170,19 @@ def _load(mesh: Mesh, contactor: Surface, target: Surface, stress: NDArray[np.fl
 
 
 def _solve(
-    full: sp.csr_matrix, load: NDArray[np.float64], free: sp.csr_matrix, prescribed: NDArray[np.float64], own: Pair
+    full: sp.csr_matrix, load: NDArray[np.float64], free: sp.csr_matrix, prescribed: NDArray[np.float64], built: Pair
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Displacement at all points, (dim n_points,), and pressure with every multiplier in contact and no initial gap."""
-    n = len(own)
+    n = len(built)
     rows = Rows(
-        residual=-own.prescribed[:, 0],
-        by_displacement=-own.operator,
+        residual=-built.prescribed[:, 0],
+        by_displacement=-built.operator,
         by_pressure=sp.csr_matrix((n, n)),
         decoupled=np.zeros(n, dtype=bool),
         symmetric=True,
     )
     residual = free.T @ (full @ prescribed - load)
-    moved, pressure = newton_step((free.T @ full @ free).tocsr(), own.operator, rows, residual, np.zeros(n))
+    moved, pressure = newton_step((free.T @ full @ free).tocsr(), built.operator, rows, residual, np.zeros(n))
     return np.asarray(free @ moved + prescribed), pressure
 
 

@@ -73,13 +73,13 @@ def trace_space(
     full: Sparse = sp.csr_matrix((n, n))
     moments: Sparse = sp.csr_matrix((n, MAX_FACET_NODES * len(surface)))
     for local, (facets, m, f, c) in zip(nodes, entries):
-        own = merged[local]
-        rows, columns = np.repeat(own, own.shape[1], axis=1).ravel(), np.tile(own, (1, own.shape[1])).ravel()
+        here = merged[local]
+        rows, columns = np.repeat(here, here.shape[1], axis=1).ravel(), np.tile(here, (1, here.shape[1])).ravel()
         mass = mass + sp.csr_matrix((m.ravel(), (rows, columns)), shape=(n, n))
         full = full + sp.csr_matrix((f.ravel(), (rows, columns)), shape=(n, n))
         functions = MAX_FACET_NODES * facets[:, None] + np.arange(c.shape[2])
-        rows = np.repeat(own, c.shape[2], axis=1).ravel()
-        columns = np.tile(functions, (1, own.shape[1])).ravel()
+        rows = np.repeat(here, c.shape[2], axis=1).ravel()
+        columns = np.tile(functions, (1, here.shape[1])).ravel()
         moments = moments + sp.csr_matrix((c.ravel(), (rows, columns)), shape=moments.shape)
     return TraceSpace(mass, full, moments, pressure_mass)
 

@@ -103,8 +103,8 @@ def key(name: str) -> str:
 
 def of(cards: Iterable[Card], name: str) -> Iterator[Card]:
     """The cards with a name."""
-    own = key(name)
-    return (card for card in cards if card.key == own)
+    wanted = key(name)
+    return (card for card in cards if card.key == wanted)
 
 
 def as_float(text: str) -> float | None:
@@ -177,13 +177,13 @@ def _parse(text: str, place: Place) -> tuple[str, str, dict[str, str | None]]:
         raise DeckError(place, "a star without the name of a card; comments begin with two stars")
     parameters: dict[str, str | None] = {}
     for part in parts[1:]:
-        own, equals, value = part.partition("=")
-        if not own.strip():
+        keyword, equals, value = part.partition("=")
+        if not keyword.strip():
             continue
         value = value.strip()
         if len(value) > 1 and value[0] == value[-1] == '"':
             value = value[1:-1]
-        parameters[key(own)] = value if equals else None
+        parameters[key(keyword)] = value if equals else None
     return key(name), "*" + " ".join(name.upper().split()), parameters
 
 
@@ -202,17 +202,17 @@ def _split(text: str) -> list[str]:
 
 def _lines(path: Path, above: tuple[Path, ...], opens: Opens, reasons: Reasons) -> Iterator[tuple[str, Place]]:
     """Lines that say something, those of included files in their place."""
-    held = card = ""  # a card to include from may go on over several lines, as any other
+    pending = card = ""  # a card to include from may go on over several lines, as any other
     for number, raw in enumerate(_text(path).splitlines(), start=1):
         text = raw.strip()
         place = Place(str(path), number)
         if not text or text.startswith("**"):
             continue
-        if held or (text.startswith("*") and key(text[1:8]) == "INCLUDE"):
-            held += text
-            if not held.endswith(","):
-                name, title, parameters = _parse(held, place)
-                held = ""
+        if pending or (text.startswith("*") and key(text[1:8]) == "INCLUDE"):
+            pending += text
+            if not pending.endswith(","):
+                name, title, parameters = _parse(pending, place)
+                pending = ""
                 if name != "INCLUDE" or not parameters.get("INPUT"):
                     raise DeckError(place, f"{title}: the file is missing; write *INCLUDE, INPUT=file")
                 yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)

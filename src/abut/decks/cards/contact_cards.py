@@ -52,7 +52,7 @@ def _contact_pairs(
     interaction, result = card.need("INTERACTION"), []
     if interaction.upper() not in interactions:
         raise card.unknown(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, interactions)}")
-    own = interactions[interaction.upper()]
+    properties = interactions[interaction.upper()]
     for line, slave, master in sides(card, mesh):
         given = clearances.pop((slave.upper(), master.upper()), None)
         clearance = None
@@ -60,9 +60,11 @@ def _contact_pairs(
             clearance = as_float(given.need("VALUE"))
             if clearance is None:
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
-        tied, name = own.overclosure == "TIED", f"{slave}-{master}"
-        rub = NO_FRICTION if tied else own.friction
-        result.append(Pair(name, slave, master, tied, own.overclosure, _adjust(card, mesh), clearance, line.place, rub))
+        tied, name = properties.overclosure == "TIED", f"{slave}-{master}"
+        rub = NO_FRICTION if tied else properties.friction
+        result.append(
+            Pair(name, slave, master, tied, properties.overclosure, _adjust(card, mesh), clearance, line.place, rub)
+        )
     return result
 
 
@@ -81,7 +83,7 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
         if not card.has("ALL EXTERIOR"):
             raise card.error("only ALL EXTERIOR is supported; name single surfaces in *CONTACT PAIR")
         found = card
-    own = Interaction()
+    properties = Interaction()
     for card in of(cards, "CONTACT PROPERTY ASSIGNMENT"):
         for line in card.lines:
             if line.text(0) or line.text(1):
@@ -89,11 +91,11 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
             name = line.text(2)
             if name.upper() not in interactions:
                 raise line.unknown(f"no *SURFACE INTERACTION named {name!r}{nearest(name, interactions)}")
-            own = interactions[name.upper()]
+            properties = interactions[name.upper()]
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
-    return None if found is None else GeneralContact(own.overclosure, found.place, own.friction)
+    return None if found is None else GeneralContact(properties.overclosure, found.place, properties.friction)
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
@@ -143,9 +145,9 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
             elif card.key == "FRICTION":
                 if not (change or current):
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                own = result[change or current]
-                rub = changed(own.friction, card, step) if change else Friction(friction(card))
-                result[change or current], change = replace(own, friction=rub), ""
+                properties = result[change or current]
+                rub = changed(properties.friction, card, step) if change else Friction(friction(card))
+                result[change or current], change = replace(properties, friction=rub), ""
     return result
 
 

@@ -29,10 +29,10 @@ def free_faces(deck: Deck) -> FreeFaces:
     """The boundary of all elements."""
     rows, nodes, corners, keys = [], [], [], []
     for block in deck.blocks:
-        for local, (kind, own) in enumerate(CELLS[block.type.kind].facets):
+        for local, (kind, local_nodes) in enumerate(CELLS[block.type.kind].facets):
             count = CELLS[kind].corners
             padded = np.full((len(block.ids), MAX_FACET_NODES), -1, np.int64)
-            padded[:, : len(own)] = block.nodes[:, own]
+            padded[:, : len(local_nodes)] = block.nodes[:, local_nodes]
             key = np.full((len(block.ids), 4), -1, np.int64)
             key[:, :count] = np.sort(padded[:, :count], axis=1)
             rows.append(np.stack([block.ids, np.full(len(block.ids), local)], axis=1))
@@ -58,10 +58,10 @@ def surface_rows(deck: Deck, surface: Faces, free: FreeFaces) -> Rows:
             parts.append(free.rows[np.isin(free.rows[:, 0], elements)])
             continue
         for block in deck.blocks:
-            own = np.intersect1d(elements, block.ids)
-            if not len(own):
+            here = np.intersect1d(elements, block.ids)
+            if not len(here):
                 continue
-            parts.append(np.stack([own, np.full(len(own), FACES[block.type.kind][face - 1])], axis=1))
+            parts.append(np.stack([here, np.full(len(here), FACES[block.type.kind][face - 1])], axis=1))
     rows = np.unique(np.concatenate(parts), axis=0)
     if not len(rows):
         raise DeckError(surface.place, f"*SURFACE: surface '{surface.name}' has no faces; check its elements")
@@ -91,8 +91,8 @@ def bound_nodes(deck: Deck, nodes: Numbers) -> Numbers:
     wanted = set(nodes.tolist())
     for equation in deck.equations:
         if len(equation.terms) == 2 and equation.terms[0][2] == -equation.terms[1][2]:
-            (a, own, _), (b, other, _) = equation.terms
-            if own == other and (a in wanted) != (b in wanted):
+            (a, node, _), (b, other, _) = equation.terms
+            if node == other and (a in wanted) != (b in wanted):
                 more.append(np.array([a, b], np.int64))
     return np.unique(np.concatenate(more))
 
@@ -101,14 +101,14 @@ def connectivity(deck: Deck, rows: Rows) -> dict[str, Numbers]:
     """Facet type -> node numbers (n, k) of the facets in ``rows``."""
     parts: dict[str, list[Numbers]] = {}
     for block in deck.blocks:
-        own = rows[np.isin(rows[:, 0], block.ids)]
-        if not len(own):
+        here = rows[np.isin(rows[:, 0], block.ids)]
+        if not len(here):
             continue
-        nodes = element_nodes(block, own[:, 0])
-        for local in np.unique(own[:, 1]).tolist():
+        nodes = element_nodes(block, here[:, 0])
+        for local in np.unique(here[:, 1]).tolist():
             kind, pick = CELLS[block.type.kind].facets[local]
-            parts.setdefault(kind, []).append(nodes[own[:, 1] == local][:, pick])
-    return {kind: np.concatenate(own) for kind, own in parts.items()}
+            parts.setdefault(kind, []).append(nodes[here[:, 1] == local][:, pick])
+    return {kind: np.concatenate(here) for kind, here in parts.items()}
 
 
 def element_nodes(block: Block, elements: Numbers) -> Numbers:

@@ -51,13 +51,13 @@ def _coefficient(line: Line) -> float:
 def changed(before: Friction, card: Card, step: int) -> Friction:
     """Friction with the coefficient of a *FRICTION card from the beginning of a step on. Raises InputError where it is more
     than a number."""
-    own = friction(card)
-    if isinstance(before.value, (str, tuple)) or isinstance(own, (str, tuple)):
+    values = friction(card)
+    if isinstance(before.value, (str, tuple)) or isinstance(values, (str, tuple)):
         raise card.error(
             "*CHANGE FRICTION from one coefficient to another is read, not from or to tables and surfaces that never slip; "
             "make a deck for each state"
         )
-    return replace(before, changes=(*before.changes, (step, own)))
+    return replace(before, changes=(*before.changes, (step, values)))
 
 
 def changes(card: Card, known: Mapping[str, object]) -> str:

@@ -59,16 +59,16 @@ def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tupl
     """Connected elements that integrate alike, in the order of their lowest numbers: (integration, types, elements)."""
     parts: dict[tuple[int, str], tuple[set[str], list[Numbers]]] = {}
     for block in deck.blocks:
-        own = np.intersect1d(elements, block.ids)
-        if not len(own):
+        each = np.intersect1d(elements, block.ids)
+        if not len(each):
             continue
-        at = part[np.searchsorted(deck.nodes, element_nodes(block, own)[:, 0])]
+        at = part[np.searchsorted(deck.nodes, element_nodes(block, each)[:, 0])]
         for number in np.unique(at).tolist():
             codes, members = parts.setdefault((number, block.type.integration), (set(), []))
             codes.add(block.code)
-            members.append(own[at == number])
+            members.append(each[at == number])
     result = [(i, tuple(sorted(codes)), np.sort(np.concatenate(m))) for (_, i), (codes, m) in parts.items()]
-    return sorted(result, key=lambda own: int(own[2][0]))
+    return sorted(result, key=lambda each: int(each[2][0]))
 
 
 class Groups:
@@ -87,10 +87,10 @@ class Groups:
     def body(self, name: str, elements: Numbers) -> str:
         parts: dict[str, list[Numbers]] = {}
         for block in self.deck.blocks:
-            own = np.intersect1d(elements, block.ids)
-            if len(own):
-                parts.setdefault(block.type.kind, []).append(element_nodes(block, own))
-        return self._add(name, {kind: np.concatenate(own) for kind, own in parts.items()})
+            here = np.intersect1d(elements, block.ids)
+            if len(here):
+                parts.setdefault(block.type.kind, []).append(element_nodes(block, here))
+        return self._add(name, {kind: np.concatenate(here) for kind, here in parts.items()})
 
     def rows(self, name: str) -> Rows:
         """Facets of a surface of the deck."""
@@ -136,7 +136,9 @@ class Groups:
     def raw(self) -> RawMesh:
         """The mesh with everything collected so far."""
         at = self.deck.nodes
-        groups = {n: {kind: np.searchsorted(at, own) for kind, own in p.items()} for n, p in self._groups.items()}
+        groups = {
+            n: {kind: np.searchsorted(at, numbers) for kind, numbers in p.items()} for n, p in self._groups.items()
+        }
         return RawMesh(self.deck.points, groups)
 
 
@@ -155,10 +157,10 @@ def read_abaqus(path: Path) -> RawMesh:
             groups.body(piece.name, piece.elements)
     else:
         every = np.concatenate([block.ids for block in deck.blocks])
-        parts = [(name, own) for name, own in deck.element_sets.items() if len(own)]
-        joined = np.concatenate([np.empty(0, np.int64), *(own for _, own in parts)])
-        for name, own in parts if np.array_equal(np.sort(joined), np.sort(every)) else [("", every)]:
-            groups.body(name, own)
+        parts = [(name, members) for name, members in deck.element_sets.items() if len(members)]
+        joined = np.concatenate([np.empty(0, np.int64), *(members for _, members in parts)])
+        for name, members in parts if np.array_equal(np.sort(joined), np.sort(every)) else [("", every)]:
+            groups.body(name, members)
     for name, surface in deck.surfaces.items():
         if surface.empty:
             continue
@@ -169,7 +171,7 @@ def read_abaqus(path: Path) -> RawMesh:
                 raise
             groups.new_node_set(np.intersect1d(surface.nodes, groups.used), name)
     for name, nodes in deck.node_sets.items():
-        own = np.intersect1d(nodes, groups.used)
-        if len(own):
-            groups.new_node_set(own, name)
+        members = np.intersect1d(nodes, groups.used)
+        if len(members):
+            groups.new_node_set(members, name)
     return replace(groups.raw(), notes=deck.notes)

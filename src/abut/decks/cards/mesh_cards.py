@@ -25,10 +25,10 @@ class Names:
     spelled: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, numbers: Numbers) -> None:
-        own = name.upper()
-        self.spelled.setdefault(own, name)
-        known = self.sets.get(own)
-        self.sets[own] = np.unique(numbers if known is None else np.concatenate([known, numbers]))
+        upper = name.upper()
+        self.spelled.setdefault(upper, name)
+        known = self.sets.get(upper)
+        self.sets[upper] = np.unique(numbers if known is None else np.concatenate([known, numbers]))
 
     def by_name(self) -> dict[str, Numbers]:
         return {self.spelled[name]: numbers for name, numbers in self.sets.items()}
@@ -80,19 +80,19 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
 
     def read(card: Card) -> None:
         if card.key == "NODE":
-            own = _nodes(card, nodes)
+            members = _nodes(card, nodes)
             if card.get("NSET"):
-                node_sets.add(card.need("NSET"), own)
+                node_sets.add(card.need("NSET"), members)
         elif card.key == "ELEMENT":
-            own = _elements(card, elements, nodes)
+            members = _elements(card, elements, nodes)
             if card.get("ELSET"):
-                element_sets.add(card.need("ELSET"), own)
+                element_sets.add(card.need("ELSET"), members)
         elif card.key == "NSET":
-            own = _set(card, "node", node_sets, element_sets, elements)
-            node_sets.add(card.need("NSET"), _present(card, "node", own, there, notes))
+            members = _set(card, "node", node_sets, element_sets, elements)
+            node_sets.add(card.need("NSET"), _present(card, "node", members, there, notes))
         elif card.key == "ELSET":
-            own = _set(card, "element", element_sets, element_sets, elements)
-            element_sets.add(card.need("ELSET"), _present(card, "element", own, elements, notes))
+            members = _set(card, "element", element_sets, element_sets, elements)
+            element_sets.add(card.need("ELSET"), _present(card, "element", members, elements, notes))
         else:
             surface = _surface(card, node_sets, element_sets, elements)
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
@@ -127,14 +127,14 @@ def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
 
 
 def _nodes(card: Card, nodes: dict[int, tuple[float, float, float]]) -> Numbers:
-    own = []
+    numbers = []
     for line in card.lines:
         number = line.integer(0, "node number")
         x = (line.number(1, "x", 0.0), line.number(2, "y", 0.0), line.number(3, "z", 0.0))
         if nodes.setdefault(number, x) != x:
             raise line.error(f"node {number} is given twice, in different places; take one of them out")
-        own.append(number)
-    return np.array(own, dtype=np.int64)
+        numbers.append(number)
+    return np.array(numbers, dtype=np.int64)
 
 
 def _elements(
@@ -144,7 +144,7 @@ def _elements(
     if code not in ELEMENTS:
         raise card.error(refusal(code))
     count = CELLS[ELEMENTS[code].kind].nodes
-    own: list[int] = []
+    listed: list[int] = []
     numbers: list[int] = []
     start = card.lines[0] if card.lines else None
     for line in card.lines:
@@ -161,11 +161,11 @@ def _elements(
         if numbers[0] in elements:
             raise start.error(f"element {numbers[0]} is given twice; give each element its own number")
         elements[numbers[0]] = (code, tuple(numbers[1:]))
-        own.append(numbers[0])
+        listed.append(numbers[0])
         numbers = []
     if numbers and start:
         raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
-    return np.array(own, dtype=np.int64)
+    return np.array(listed, dtype=np.int64)
 
 
 def _blocks(elements: dict[int, tuple[str, tuple[int, ...]]], places: Mapping[str, Place]) -> tuple[Block, ...]:
@@ -176,16 +176,16 @@ def _blocks(elements: dict[int, tuple[str, tuple[int, ...]]], places: Mapping[st
         Block(
             code,
             ELEMENTS[code],
-            np.array(own, np.int64),
-            np.array([elements[i][1] for i in own], np.int64),
+            np.array(of_type, np.int64),
+            np.array([elements[i][1] for i in of_type], np.int64),
             places[code],
         )
-        for code, own in by_code.items()
+        for code, of_type in by_code.items()
     )
 
 
 def _set(
-    card: Card, what: str, own: Names, element_sets: Names, elements: Mapping[int, tuple[str, tuple[int, ...]]]
+    card: Card, what: str, names: Names, element_sets: Names, elements: Mapping[int, tuple[str, tuple[int, ...]]]
 ) -> Numbers:
     if what == "node" and card.get("ELSET"):
         name = card.need("ELSET")
@@ -205,7 +205,7 @@ def _set(
                 raise line.error(f"{(last - first) // step} numbers in one set; check the line")
             parts.append(np.arange(first, last + 1, step, dtype=np.int64))
             continue
-        parts += [own.resolve(line, i, what) for i, text in enumerate(line.fields) if text]
+        parts += [names.resolve(line, i, what) for i, text in enumerate(line.fields) if text]
     return np.unique(np.concatenate(parts))
 
 

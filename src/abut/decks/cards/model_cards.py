@@ -41,7 +41,9 @@ def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
 def _material(card: Card, following: Sequence[Card]) -> Material:
     options = {
         option.key: option
-        for option in takewhile(lambda own: own.key in ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"), following)
+        for option in takewhile(
+            lambda following_card: following_card.key in ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"), following
+        )
     }
     name = card.need("NAME")
     if "ELASTIC" in options and "HYPERELASTIC" in options:
@@ -98,9 +100,9 @@ def sections(
     result: list[Section] = []
     for card in of(cards, "SOLID SECTION"):
         with reasons.gathered():
-            own = _section(card, mesh, known)
-            result = [replace(s, elements=np.setdiff1d(s.elements, own.elements)) for s in result]
-            result.append(own)
+            section = _section(card, mesh, known)
+            result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
+            result.append(section)
     return tuple(s for s in result if len(s.elements))
 
 
@@ -116,8 +118,8 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) 
     if not thickness > 0.0:
         raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
     elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
-    own = known[material.upper()] if known is not None else Material(material, (1.0, 0.0), 0.0, 0.0, card.place)
-    return Section(spelled, elements, own, thickness, card.place)
+    properties = known[material.upper()] if known is not None else Material(material, (1.0, 0.0), 0.0, 0.0, card.place)
+    return Section(spelled, elements, properties, thickness, card.place)
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:

@@ -49,17 +49,17 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     for point, course in given.items():
         if point[1] >= 3 and not zero(course):
             raise _nothing(deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies do")
-    held = {point: course for point, course in given.items() if point[1] < 3}
+    supported = {point: course for point, course in given.items() if point[1] < 3}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
-    named = {n for n, _ in (*held, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
+    named = {n for n, _ in (*supported, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
     local = _local_axes(deck, named)
-    supports, oblique = _supports(deck, {p: c for p, c in held.items() if p[0] in used}, local, axes)
+    supports, oblique = _supports(deck, {p: c for p, c in supported.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
     equations = [Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations]
     for symmetry in deck.cyclic:
         equations += _cyclic(deck, groups, symmetry)
     virtual = _Virtual(
-        {p: c for p, c in held.items() if p[0] not in used}, {p: c for p, c in pushed.items() if p[0] not in used}
+        {p: c for p, c in supported.items() if p[0] not in used}, {p: c for p, c in pushed.items() if p[0] not in used}
     )
     equations, more = _without_virtual(equations, virtual, used, deck)
     for point, course in more.items():
@@ -75,7 +75,7 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
 class _Virtual:
     """Supports and forces at nodes of no element."""
 
-    held: Mapping[Point, Course]
+    supported: Mapping[Point, Course]
     pushed: Mapping[Point, Course]
 
 
@@ -122,23 +122,25 @@ def _clean(rows: Vector) -> Vector:
 
 
 def _supports(
-    deck: Deck, held: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
+    deck: Deck, supported: Mapping[Point, Course], local: Mapping[int, Vector], axes: int
 ) -> tuple[dict[Point, Course], list[Bond]]:
     """Supports along the global axes, and equations for those across."""
     supports: dict[Point, Course] = {}
     oblique: list[Bond] = []
     by_node: dict[int, dict[int, Course]] = {}
-    for (node, direction), course in held.items():
+    for (node, direction), course in supported.items():
         by_node.setdefault(node, {})[direction] = course
-    for node, own in by_node.items():
+    for node, histories in by_node.items():
         if node not in local:
-            supports |= {(node, d): c for d, c in own.items() if d < axes}
+            supports |= {(node, d): c for d, c in histories.items() if d < axes}
             continue
         rows = local[node]
-        if len(own) == 3:
-            supports |= {(node, k): combine([(float(rows[d, k]), c) for d, c in own.items()]) for k in range(axes)}
+        if len(histories) == 3:
+            supports |= {
+                (node, k): combine([(float(rows[d, k]), c) for d, c in histories.items()]) for k in range(axes)
+            }
             continue
-        for d, course in own.items():
+        for d, course in histories.items():
             along = np.flatnonzero(rows[d])
             if len(along) == 1:
                 k = int(along[0])
@@ -158,7 +160,7 @@ def _spread(pushed: Mapping[Point, Course], local: Mapping[int, Vector]) -> dict
         row = local[node][direction] if node in local else np.eye(3)[direction]
         for k in np.flatnonzero(row).tolist():
             parts.setdefault((node, k), []).append((float(row[k]), course))
-    return {point: combine(own) for point, own in parts.items()}
+    return {point: combine(terms) for point, terms in parts.items()}
 
 
 def _global(terms: tuple[tuple[int, int, float], ...], local: Mapping[int, Vector]) -> dict[Point, float]:
@@ -176,10 +178,10 @@ def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     nodes = {}
     for side in (symmetry.slave, symmetry.master):
         surface = deck.surfaces[side]
-        own = surface.nodes
-        if own is None:
-            own = np.concatenate([n.ravel() for n in connectivity(deck, groups.rows(side)).values()])
-        nodes[side] = np.intersect1d(own, groups.used)
+        side_nodes = surface.nodes
+        if side_nodes is None:
+            side_nodes = np.concatenate([n.ravel() for n in connectivity(deck, groups.rows(side)).values()])
+        nodes[side] = np.intersect1d(side_nodes, groups.used)
     a, axis = np.array(symmetry.a), np.array(symmetry.b) - np.array(symmetry.a)
     x, y = (coordinates(deck, nodes[side]) for side in (symmetry.slave, symmetry.master))
     size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
@@ -220,8 +222,8 @@ def _without_virtual(
     from the others, and a force F on it pushes the other terms c_i of that equation with -F c_i / c."""
     pushed: dict[Point, Course] = {}
     bound = {point for bond in equations for point in bond.terms}
-    equations = [_reduced_by(bond, virtual.held) for bond in equations]
-    for point in sorted(p for p in bound if p[0] not in used and p not in virtual.held):
+    equations = [_reduced_by(bond, virtual.supported) for bond in equations]
+    for point in sorted(p for p in bound if p[0] not in used and p not in virtual.supported):
         having = [i for i, bond in enumerate(equations) if abs(bond.terms.get(point, 0.0)) > 0.0]
         if not having:
             continue
@@ -241,8 +243,11 @@ def _without_virtual(
                 if other != point:
                     pushed[other] = combine([(1.0, pushed.get(other, NOTHING)), (-value / c, force)])
         del equations[having[0]]
-    for kind, own, what in (("force", virtual.pushed, "carries its force"), ("boundary", virtual.held, "follows it")):
-        for point, course in own.items():
+    for kind, given, what in (
+        ("force", virtual.pushed, "carries its force"),
+        ("boundary", virtual.supported, "follows it"),
+    ):
+        for point, course in given.items():
             if point not in bound and not zero(course):
                 raise _nothing(
                     deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"

@@ -38,8 +38,8 @@ def _cut(deck: Deck, section: PreTension) -> Deck:
     at = np.searchsorted(deck.nodes, nodes)
     normal = _normal(deck, facets)
     if section.normal is not None:
-        own = np.array(section.normal) / np.linalg.norm(section.normal)
-        normal = own if own @ normal > 0.0 else -own
+        direction = np.array(section.normal) / np.linalg.norm(section.normal)
+        normal = direction if direction @ normal > 0.0 else -direction
     across = np.linalg.svd(normal[None, :])[2][1:]
     equations = []
     for old, new in zip(nodes.tolist(), double.tolist()):
@@ -86,17 +86,17 @@ def _side(deck: Deck, rows: Numbers, nodes: Numbers, section: PreTension) -> set
     wall = {(int(e), int(f)) for e, f in rows}
     neighbours: dict[int, set[int]] = {}
     beyond: set[int] = set()
-    for own in touching.values():
-        if any(face in wall for face in own):
-            if len(own) == 1:
+    for faces in touching.values():
+        if any(face in wall for face in faces):
+            if len(faces) == 1:
                 raise DeckError(
                     section.place,
-                    f"*PRE-TENSION SECTION: element {own[0][0]} of its surface has no neighbour beyond the cut",
+                    f"*PRE-TENSION SECTION: element {faces[0][0]} of its surface has no neighbour beyond the cut",
                 )
-            beyond |= {element for element, local in own if (element, local) not in wall}
+            beyond |= {element for element, local in faces if (element, local) not in wall}
             continue
-        for element, _ in own:
-            neighbours.setdefault(element, set()).update(other for other, _ in own)
+        for element, _ in faces:
+            neighbours.setdefault(element, set()).update(other for other, _ in faces)
     reached = {element for element, _ in wall}
     todo = list(reached)
     while todo:
@@ -114,8 +114,8 @@ def _side(deck: Deck, rows: Numbers, nodes: Numbers, section: PreTension) -> set
 
 def _moved(block: Block, side: set[int], nodes: Numbers, double: Numbers) -> Block:
     """The block with the doubled nodes in elements of one side."""
-    own = np.isin(block.ids, np.array(sorted(side), np.int64))
+    inside = np.isin(block.ids, np.array(sorted(side), np.int64))
     new = block.nodes.copy()
-    hit = own[:, None] & np.isin(new, nodes)
+    hit = inside[:, None] & np.isin(new, nodes)
     new[hit] = double[np.searchsorted(nodes, new[hit])]
     return replace(block, nodes=new)

@@ -84,13 +84,13 @@ def read_mesh_only(path: Path) -> Deck:
     cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
     notes: list[str] = []
     mesh = mesh_cards(cards, notes, reasons)
-    own = sections(cards, mesh, None, reasons)
+    found = sections(cards, mesh, None, reasons)
     reasons.tell()
     inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
     return Deck(
         str(path), mesh.nodes, mesh.points, mesh.blocks, mesh.node_sets.by_name(), mesh.element_sets.by_name(),
         {surface.name: surface for name, surface in mesh.surfaces.items() if name not in inside},
-        own,
+        found,
         (), None, (), (), (), (), (), (), {}, {}, (), tuple(notes), (), (),
     )  # fmt: skip
 

@@ -44,7 +44,7 @@ class Reasons:
     incomplete: bool = False
 
     def add(self, error: DeckError, defines: bool = False) -> None:
-        if str(error) not in {str(own) for own in self.found}:
+        if str(error) not in {str(earlier) for earlier in self.found}:
             self.found.append(error)
         self.incomplete |= defines
 
@@ -77,6 +77,7 @@ def _cure(errors: list[DeckError]) -> str:
     if not all(error.option for error in errors):
         return ""
     options = " ".join(
-        f'--ignore "{own}"' if " " in own else f"--ignore {own}" for own in dict.fromkeys(e.option for e in errors)
+        f'--ignore "{option}"' if " " in option else f"--ignore {option}"
+        for option in dict.fromkeys(e.option for e in errors)
     )
     return f"; to solve without {'it' if len(errors) == 1 else 'them'}: {options}"

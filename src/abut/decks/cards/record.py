@@ -36,7 +36,7 @@ class Faces:
 
     @property
     def empty(self) -> bool:
-        return not any(len(own) for own, _ in self.faces) if self.nodes is None else not len(self.nodes)
+        return not any(len(elements) for elements, _ in self.faces) if self.nodes is None else not len(self.nodes)
 
 
 @dataclass(frozen=True)

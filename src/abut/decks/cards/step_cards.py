@@ -105,9 +105,9 @@ def steps(
                         raise card.error(f"OP={operation}: expected NEW or MOD")
                     if operation == "NEW":
                         new.add(KIND[card.key])
-        own = group[0]
-        finite = own.has("NLGEOM") and key(own.get("NLGEOM") or "") != "NO"
-        result.append(Step(number, period, tuple(values), frozenset(new), own.place, increments, finite))
+        first = group[0]
+        finite = first.has("NLGEOM") and key(first.get("NLGEOM") or "") != "NO"
+        result.append(Step(number, period, tuple(values), frozenset(new), first.place, increments, finite))
     return tuple(result)
 
 

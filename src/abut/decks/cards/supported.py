@@ -213,12 +213,12 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
                 found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
                 continue
-            own = {
+            read = {
                 name: value
                 for name, value in card.parameters.items()
                 if name in _READ[card.key] and name not in asked & MAY_BE_OMITTED
             }
-            kept.append(Card(card.key, card.title, own, card.lines, card.place))
+            kept.append(Card(card.key, card.title, read, card.lines, card.place))
         elif card.key in asked:
             ignored.setdefault(card.title, []).append(str(card.place))
         else:
@@ -289,8 +289,8 @@ def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> No
     parameters = {name for card in cards if isinstance(card, Card) for name in card.parameters}
     parameters |= {parameter for _, parameter in _PARAMETERS} | MAY_BE_OMITTED
     for name in ignore:
-        own = key(name.lstrip("*"))
-        if own in _READ and own not in parameters | LEFT_OUT:
+        wanted = key(name.lstrip("*"))
+        if wanted in _READ and wanted not in parameters | LEFT_OUT:
             raise InputError(f"--ignore {name}: abut reads *{name.upper()}, which cannot be left out")
-        if own not in _REFUSED.keys() | present | parameters | _QUIET | LEFT_OUT:
+        if wanted not in _REFUSED.keys() | present | parameters | _QUIET | LEFT_OUT:
             raise InputError(f"--ignore {name}: no such card{nearest(name.upper(), [*REFUSED, *LEFT_OUT, 'NLGEOM'])}")

@@ -30,9 +30,9 @@ def times(deck: Deck) -> tuple[float, ...]:
     result, start = set(ends(deck)), 0.0
     for step in deck.steps:
         for name in {value.amplitude for value in step.values} - {""}:
-            own = deck.amplitudes[name]
-            shift = 0.0 if own.total else start
-            inside = (shift + t for t, _ in own.points)
+            amplitude = deck.amplitudes[name]
+            shift = 0.0 if amplitude.total else start
+            inside = (shift + t for t, _ in amplitude.points)
             result |= {t / total for t in inside if start + RAMP * total < t < start + step.period - RAMP * total}
         start += step.period
     return tuple(sorted(result))
@@ -48,26 +48,26 @@ def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0)
     places: dict[Key, Prescribed] = {}
     if kind == "boundary" and deck.steps:
         for value in deck.fixed:
-            for own in _keys(value):
-                state[own], places[own] = [(0.0, 0.0), (deck.steps[0].period, value.value)], value
+            for key in _keys(value):
+                state[key], places[key] = [(0.0, 0.0), (deck.steps[0].period, value.value)], value
     start = 0.0
     for step in deck.steps:
         given = _given(step, kind)
         end = start + step.period
-        for own, (value, size) in given.items():
-            before = [p for p in state.get(own, []) if p[0] <= start] or [(start, base(own))]
-            if kind == "boundary" and own not in state and step is not deck.steps[0]:
-                raise _error(value, f"node {int(own[0])} is free in the step before and held in step {step.number}")
-            state[own] = [*before, *_within(deck, value, size, before[-1][1], start, end)]
-            places[own] = value
+        for key, (value, size) in given.items():
+            before = [p for p in state.get(key, []) if p[0] <= start] or [(start, base(key))]
+            if kind == "boundary" and key not in state and step is not deck.steps[0]:
+                raise _error(value, f"node {int(key[0])} is free in the step before and held in step {step.number}")
+            state[key] = [*before, *_within(deck, value, size, before[-1][1], start, end)]
+            places[key] = value
         if _group(kind) in step.new:
-            for own in state.keys() - given.keys():
+            for key in state.keys() - given.keys():
                 if kind == "boundary":
-                    raise _error(places[own], f"OP=NEW of step {step.number} lets node {int(own[0])} go again")
-                state[own] = [*state[own], (start, state[own][-1][1]), (end, base(own))]
+                    raise _error(places[key], f"OP=NEW of step {step.number} lets node {int(key[0])} go again")
+                state[key] = [*state[key], (start, state[key][-1][1]), (end, base(key))]
         start = end
     total = start or 1.0
-    return {own: _tidy([(t / total, v) for t, v in points]) for own, points in state.items()}
+    return {key: _tidy([(t / total, v) for t, v in points]) for key, points in state.items()}
 
 
 def _error(value: Prescribed, what: str) -> DeckError:
@@ -93,18 +93,18 @@ def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
     for value in step.values:
         if value.kind != kind:
             continue
-        for own in _keys(value):
-            before = result.get(own)
+        for key in _keys(value):
+            before = result.get(key)
             if before is None or kind in ("boundary", "temperature"):
-                result[own] = (value, value.value)
+                result[key] = (value, value.value)
                 continue
             if before[0].amplitude != value.amplitude:
                 raise DeckError(
                     value.place,
-                    f"{int(own[0])} has a load with another amplitude in the same place ({before[0].place}); "
+                    f"{int(key[0])} has a load with another amplitude in the same place ({before[0].place}); "
                     "give both one amplitude, or add them up in one",
                 )
-            result[own] = (value, before[1] + value.value)
+            result[key] = (value, before[1] + value.value)
     return result
 
 
@@ -114,12 +114,12 @@ def _within(
     """Points of a course within a step, with the one at its beginning."""
     if not value.amplitude:
         return [(start, before), (end, size)]
-    own = deck.amplitudes[value.amplitude]
-    shift = 0.0 if own.total else start
-    inside = [t + shift for t, _ in own.points if start < t + shift < end]
-    first = size * at(own.points, start - shift)
+    amplitude = deck.amplitudes[value.amplitude]
+    shift = 0.0 if amplitude.total else start
+    inside = [t + shift for t, _ in amplitude.points if start < t + shift < end]
+    first = size * at(amplitude.points, start - shift)
     jump = [] if first == before else [(start + RAMP * (end - start), first)]
-    return [(start, before), *jump, *((t, size * at(own.points, t - shift)) for t in (*inside, end))]
+    return [(start, before), *jump, *((t, size * at(amplitude.points, t - shift)) for t in (*inside, end))]
 
 
 def at(points: tuple[tuple[float, float], ...], time: float) -> float:

@@ -30,12 +30,12 @@ def join(meshes: Mapping[str, Mesh]) -> Mesh:
     for name, mesh in meshes.items():
         points.append(mesh.points)
         blocks += [CellBlock(block.kind, (block.nodes + n_points).astype(np.int32)) for block in mesh.blocks]
-        for own, cells in mesh.bodies.items():
-            bodies[name if len(mesh.bodies) == 1 else f"{name}.{own}"] = cells + n_cells
-        for own, rows in mesh.surfaces.items():
-            surfaces[f"{name}.{own}"] = rows + np.array([n_cells, 0])
-        for own, nodes in mesh.node_sets.items():
-            node_sets[f"{name}.{own}"] = nodes + n_points
+        for name_of, cells in mesh.bodies.items():
+            bodies[name if len(mesh.bodies) == 1 else f"{name}.{name_of}"] = cells + n_cells
+        for name_of, rows in mesh.surfaces.items():
+            surfaces[f"{name}.{name_of}"] = rows + np.array([n_cells, 0])
+        for name_of, nodes in mesh.node_sets.items():
+            node_sets[f"{name}.{name_of}"] = nodes + n_points
         n_points += len(mesh.points)
         n_cells += mesh.n_cells
     return Mesh(np.ascontiguousarray(np.concatenate(points)), tuple(blocks), bodies, surfaces, node_sets)
