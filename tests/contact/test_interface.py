@@ -165,7 +165,7 @@ def test_sights_do_not_change_the_integrals(kc: str, kt: str) -> None:
     assert len(at.gap) >= 4 * seen.segments.sum()
     assert at.gap == pytest.approx(0.1, rel=1e-12)
     assert at.contactor_shapes.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
-    assert at.other.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
+    assert at.target_shapes.sum(axis=1) == pytest.approx(1.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("gap", [0.05, 0.6, -0.4])

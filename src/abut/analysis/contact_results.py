@@ -33,7 +33,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import METHODS
 from abut.problem.contact_pairs import Pair
-from abut.solution import ContactResult, PressureStatistics, Resultant
+from abut.solution import Check, ContactResult, PressureStatistics, Resultant
 from abut.solution.state import OPEN
 
 
@@ -145,24 +145,7 @@ def contact_result(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=certificate(
-            pair,
-            state.values,
-            nodal,
-            state.penetration,
-            residual,
-            share,
-            around,
-            friction_balance(pair, state.multipliers),
-        )
-        + friction_checks(
-            pair,
-            state.multipliers,
-            state.status,
-            state.slips,
-            state.limit,
-            max(around.reference, FAINT * around.beside),
-        ),
+        checks=_checks(state, residual, around, nodal, share),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
@@ -171,6 +154,17 @@ def contact_result(
         friction=None
         if at is None
         else friction_result(pair, at, state.multipliers, state.status, state.slips, state.limit, before),
+    )
+
+
+def _checks(
+    state: PairState, residual: float, around: Surroundings, nodal: NDArray[np.float64], share: NDArray[np.float64]
+) -> tuple[Check, ...]:
+    pair, balanced = state.pair, friction_balance(state.pair, state.multipliers)
+    largest = max(around.reference, FAINT * around.beside)
+    return (
+        *certificate(pair, state.values, nodal, state.penetration, residual, share, around, balanced),
+        *friction_checks(pair, state.multipliers, state.status, state.slips, state.limit, largest),
     )
 
 

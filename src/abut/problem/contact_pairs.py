@@ -388,13 +388,10 @@ def _points(
         return None
     at = coupling.points
     return PairPoints(
-        test=(at.pressure @ space.transfer).tocsr(),
-        weight=at.weight,
-        stiffness=SHARPNESS * stiffness[at.facet],
-        gap=at.gap + constant,
-        operator=(at.gap_operator @ constraints.free).tocsr(),
+        test=(at.pressure @ space.transfer).tocsr(), weight=at.weight, stiffness=SHARPNESS * stiffness[at.facet],
+        gap=at.gap + constant, operator=(at.gap_operator @ constraints.free).tocsr(),
         prescribed=at.gap_operator @ constraints.prescribed + varying,
-    )
+    )  # fmt: skip
 
 
 def reach_of(constraints: Constraints, contactor: Surface, target: Surface) -> float:
