@@ -92,7 +92,7 @@ def swap_target_functions(**arguments: Any) -> Raw:
 
 def flip_gap(**arguments: Any) -> Raw:
     raw = couple_surfaces(**arguments)
-    for name in ("gap", "point_gap", "sight_gap"):
+    for name in ("gap", "point_gap", "gap_sample_gap"):
         if name in raw:
             raw[name] = -raw[name]
     return raw

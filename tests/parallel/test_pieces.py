@@ -33,8 +33,10 @@ class Team:
         self.stores: list[dict[str, Any]] = [{} for _ in range(size)]
         self.store = self.stores[0]
 
-    def each(self, function: Callable[..., Any], *shared: Any, own: list[tuple[Any, ...]] | None = None) -> list[Any]:
-        sent = [pickle.dumps((function, *shared, *mine)) for mine in own or [()] * self.size]
+    def each(
+        self, function: Callable[..., Any], *shared: Any, per_rank: list[tuple[Any, ...]] | None = None
+    ) -> list[Any]:
+        sent = [pickle.dumps((function, *shared, *mine)) for mine in per_rank or [()] * self.size]
         calls = [pickle.loads(text) for text in sent]
         return [call(store, *arguments) for store, (call, *arguments) in zip(self.stores, calls)]
 
@@ -152,11 +154,11 @@ def test_the_list_is_never_there_before_its_pieces(
     team, seen = dealt(2, plane), []
     each = team.each
 
-    def killed(function: Any, *shared: Any, own: Any = None) -> Any:
+    def killed(function: Any, *shared: Any, per_rank: Any = None) -> Any:
         seen.append((tmp_path / "fields_0001.pvtu").exists())
         if function.__name__ == "write_piece":
             raise KeyboardInterrupt
-        return each(function, *shared, per_rank=own)
+        return each(function, *shared, per_rank=per_rank)
 
     monkeypatch.setattr(team, "each", killed)
     with pytest.raises(KeyboardInterrupt):

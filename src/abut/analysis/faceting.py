@@ -62,7 +62,7 @@ def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64
 
 
 def misfit(pair: Pair) -> Misfit | None:
-    """Of a pair, or None where both sides are flat or quadratic, or nothing is known of its sights."""
+    """Of a pair, or None where both sides are flat or quadratic, or nothing is known of its gap samples."""
     at = pair.coupling.gap_samples
     if at is None or not len(at.gap):
         return None
@@ -85,7 +85,7 @@ def misfit(pair: Pair) -> Misfit | None:
 
 
 def _moments(pair: Pair, at: GapSamples, value: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Integrals (9 n_facets,) of a value given at the sights with the facet-wise pressure functions; in 2D exact to
+    """Integrals (9 n_facets,) of a value given at the gap samples with the facet-wise pressure functions; in 2D exact to
     the third order (Simpson's rule), in 3D an estimate."""
     contactor, degree = pair.contactor, pair.coupling.degree
     functions = np.zeros_like(at.contactor_shapes)
@@ -107,7 +107,7 @@ def _moments(pair: Pair, at: GapSamples, value: NDArray[np.float64]) -> NDArray[
 
 
 def unseen(pair: Pair, of: Misfit) -> NDArray[np.float64]:
-    """The part of the misfit at the sights, (n_sights,), that no mean over a pressure function sees."""
+    """The part of the misfit at the gap samples, (n_samples,), that no mean over a pressure function sees."""
     at = pair.coupling.gap_samples
     assert at is not None
     nodes = np.maximum(pair.contactor.nodes[at.facet], 0)

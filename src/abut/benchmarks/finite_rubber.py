@@ -78,8 +78,8 @@ def _inflated(shape: str) -> Benchmark:
         model,
         measure,
         {
-            "inner stretch": Reference(INFLATED, 1e-2, source, SMOOTH, rate=2.0, rate_tolerance=0.2),
-            "outer stretch": Reference(_outer(power), 1e-2, source, SMOOTH, rate=2.0, rate_tolerance=0.2),
+            "inner stretch": Reference(INFLATED, 1e-2, source, SMOOTH),
+            "outer stretch": Reference(_outer(power), 1e-2, source, SMOOTH),
         },
     )  # fmt: skip
 

@@ -27,7 +27,7 @@ def partly_adjusted(
     """``closed``, in which gaps and overlaps up to ``adjust`` are none, mended on facets that have larger ones too: there
     the contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
 
-    adjust, reach: lengths; closed: with sights; without: the same coupling with nothing adjusted."""
+    adjust, reach: lengths; closed: with gap samples; without: the same coupling with nothing adjusted."""
     if not adjust or closed.gap_samples is None:
         return closed
     gap, facets = closed.gap_samples.gap, np.arange(len(contactor))

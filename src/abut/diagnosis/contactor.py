@@ -99,6 +99,7 @@ def _against(choice: Choice, side: Side, other: Side) -> str:
         "softer": "is the stiffer side",
         "covered": f"has only {side.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",
-        "kinks": f"is {other.size / side.size:.2g} times finer than its curved target, whose facets its pressure will show",
+        "kinks": f"is {other.size / side.size:.2g} times finer than its curved target, whose faceting its pressure will "
+        "show",
         "finer": f"is {side.size / other.size:.2g} times coarser than its target",
     }[choice.rule]

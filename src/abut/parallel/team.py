@@ -32,7 +32,7 @@ class Team:
     def each(
         self, function: Callable[..., Any], *shared: Any, per_rank: Sequence[tuple[Any, ...]] | None = None
     ) -> list[Any]:
-        """Call function(store, *shared, *own[rank]) on every process and return the results by rank; for process 0.
+        """Call function(store, *shared, *per_rank[rank]) on every process and return the results by rank; for process 0.
 
         function: of a module, as it travels by its name; store: a dict that each process keeps for itself."""
         self.comm.bcast((function, shared))
