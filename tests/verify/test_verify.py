@@ -201,7 +201,9 @@ def test_records_are_complete(name: str) -> None:
     assert sizes[0] > sizes[1] > sizes[2] > 0.0
 
 
-ELSEWHERE = ("smooth-", "signorini-")  # run by tests of their own, with rates
+ELSEWHERE = (  # run by tests of their own
+    *("smooth-", "signorini-", "shallow-ironing", "crushed-ring", "gears", "die-drawn", "wires"),
+)
 LONG = ("hertz-sphere", "mindlin-ball", "mindlin-cycle")
 
 
