@@ -75,9 +75,9 @@ class FrictionResult:
     sticking_area, slipping_area: as ``ContactResult.area``.
     work, total_work: that friction takes, force times length, in this step and in all; work_per_area, total_work_per_area:
     (n_contactor_facets, 9) the same at the nodes.
-    force: (dim,) resultant of the traction on the contactor; force_by_area: of its size wherever it points, the integral of
-    |t| over the area; force_limit: what that can be at most, the integral of the coefficient times the pressure, infinite
-    for "rough"; all of the full circumference in axisymmetric models, per unit thickness in 2D.
+    force: (dim,) resultant of the traction on the contactor; force_by_area: of its size wherever it points, the integral
+    of the size of the traction over the area; force_limit: what that can be at most, the integral of the coefficient times
+    the pressure, infinite for "rough"; all of the full circumference in axisymmetric models, per unit thickness in 2D.
     largest_share: the largest traction over the coefficient times the pressure at one point, 1 where anything slips; NaN
     where nothing is pressed, and for "rough".
     """
