@@ -14,6 +14,7 @@ from abut.contact.sides import Names, moving_sides
 from abut.problem.current import Current
 from abut.solution import Solution
 from models.clamps import DEPTH, clamp, tube
+from models.folding import accordion
 from models.sliding import finite
 
 WHOLE, NAMED = ("body", "body"), ("lower", "upper")
@@ -73,6 +74,15 @@ def test_extruded_by_one_cell() -> None:
 def test_quadratic_cells_in_space() -> None:
     flat, deep = closed("quad8", NAMED), closed("hex20", NAMED)
     assert deep.contacts[0].force[1] / DEPTH == pytest.approx(flat.contacts[0].force[1], rel=0.01)
+
+
+@pytest.mark.long
+def test_quadratic_folds_close() -> None:
+    """The accordion of quad8 cells goes all the way, and every line of its certificate holds."""
+    solution = abut.solve(accordion(1.1, cells=60, cell="quad8"))
+    assert solution.converged
+    assert all(check.passed for check in solution.certificate)
+    assert -solution.contacts[0].force[0] == pytest.approx(57.0, rel=0.1)  # two valleys under uniaxial strain: 49, and the bends
 
 
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])
