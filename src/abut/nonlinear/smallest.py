@@ -35,7 +35,7 @@ def smallest(system: Linearised, state: State) -> State:
     chosen = state.closed & system.join([np.full(len(pair), pair.repeated) for pair in system.pairs]).astype(bool)
     if not chosen.any():
         return state
-    size: NDArray[np.float64] = system.weight[chosen]
+    size: NDArray[np.float64] = np.sqrt(system.weight[chosen])  # of the pressure's square over the area: even if it can
     forces = (sp.diags(1.0 / size) @ system.columns[chosen]).T.tocsr()
     wanted = forces @ (size * state.multipliers[chosen])
     found = spla.lsmr(forces, wanted, atol=EXACT, btol=EXACT, conlim=1.0 / EXACT, maxiter=10 * len(size))[0]
