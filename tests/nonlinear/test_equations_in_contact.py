@@ -17,8 +17,8 @@ STEM = abut.LinearElastic(YOUNG, 0.0)
 
 
 def shortened(force: float) -> float:
-    """Length over the first one of a bar of unit section and Saint Venant and Kirchhoff's material, nu = 0, pressed together:
-    F = E A l (1 - l^2) / 2."""
+    """Length over the first one of a bar of unit section and Saint Venant and Kirchhoff's material, nu = 0, pressed
+    together: F = E A l (1 - l^2) / 2."""
     return float(brentq(lambda stretch: 0.5 * YOUNG * stretch * (1.0 - stretch**2) - force, 0.6, 1.0, xtol=1e-15))
 
 

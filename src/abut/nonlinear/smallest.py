@@ -1,5 +1,5 @@
-"""Pressures that are one of many, since equations or rigid bodies move several points of a surface together: of all that give
-the same forces on the free displacements the smallest is taken."""
+"""Pressures that are one of many, since equations or rigid bodies move several points of a surface together: of all that
+give the same forces on the free displacements the smallest is taken."""
 
 from __future__ import annotations
 
