@@ -14,11 +14,7 @@ from abut.parallel.team import Store
 from abut.types import Foreign, Sparse
 
 REFINED, REFINEMENTS = 1e-13, 5  # residual of a factorisation, and steps it may take
-WORKSPACE = (
-    50,
-    200,
-    1000,
-)  # per cent over MUMPS's estimate, tried in turn: pivots put off for later need more than it sees
+WORKSPACE = (50, 200, 1000)  # per cent over MUMPS's estimate, in turn: pivots put off for later need more than it sees
 PACKAGES = ("mumps", "superlu_dist")
 WIDE = 1.5  # entries of the pattern over those of the matrix from which on it is narrowed: contact has gone elsewhere
 
@@ -158,6 +154,7 @@ def _direct(operator: Foreign, symmetric: bool, workspace: int) -> Foreign:
     if package == "mumps":
         preconditioner.setFactorSetUpSolverType()
         preconditioner.getFactorMatrix().setMumpsIcntl(14, workspace)
+        preconditioner.getFactorMatrix().setMumpsIcntl(24, 1)  # a body that spins freely stays as it is: no failure
     if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
         solver.setFromOptions()
     solver.setUp()

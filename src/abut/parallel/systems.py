@@ -57,7 +57,7 @@ def solve(solver: Foreign, operator: Foreign, share: Vector, rhs: Vector) -> Ans
     operator.mult(x, miss)
     miss.axpy(-1.0, b)
     values = np.array(x.array_r)
-    error = miss.norm() / size if size > 0.0 else 0.0
+    error = miss.norm() / size if size > 0.0 else float(np.nan_to_num(x.norm(), nan=np.inf))
     return Answer(
         values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason(),
         ran_out(solver.getPC()),
