@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 import abut
 from abut.mesh.make import box, join, rectangle
-from models.sliding import SOFT, THEN, arched, bent, pressed_in_space
+from models.sliding import SOFT, THEN, arched, pressed_in_space
 
 RUBBER = abut.NeoHooke(100.0, 0.45)
 

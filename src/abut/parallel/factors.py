@@ -52,11 +52,11 @@ def keep_factors(
     number: of the stiffness in the store; n: how many pressures; more: (n_own, n_places) added to the stiffness."""
     rows = saddle_rows(store[number], n, more, conditions or NONE)
     comm, old = store[number].comm, store.get("factors")
-    pattern = _ones(rows)
+    pattern = _pattern(rows, store[number], conditions or NONE)
     if old is not None and (old.operator.getSize()[0], old.symmetric) == (rows.shape[1], symmetric):
         both = (old.pattern + pattern).tocsr()  # sums of ones: what is stored once stays
         grown, wide = comm.tompi4py().allreduce(
-            np.array([both.nnz > old.pattern.nnz, both.nnz > WIDE * rows.nnz], dtype=np.int64)
+            np.array([both.nnz > old.pattern.nnz, both.nnz > WIDE * pattern.nnz], dtype=np.int64)
         )
         if not (grown or wide):
             _refill(old, rows)
@@ -96,8 +96,21 @@ def saddle_rows(matrix: Foreign, n: int, more: Sparse | None, given: Conditions)
     rows = sp.hstack([own[:, :first], forces, own[:, first:]], format="csr")
     if given.lower is None:
         return rows
-    below = sp.hstack([given.lower[:, :first], given.corner, given.lower[:, first:]], format="csr")
-    return sp.vstack([rows, below], format="csr")
+    return sp.vstack([rows, _below(given.lower, given.corner, first)], format="csr")
+
+
+def _below(lower: Sparse, corner: Sparse, first: int) -> Sparse:
+    """Rows of pressures. first: how many displacements come before these."""
+    return sp.hstack([lower[:, :first], corner, lower[:, first:]], format="csr")
+
+
+def _pattern(rows: Sparse, matrix: Foreign, given: Conditions) -> Sparse:
+    """Where ``rows`` have entries, or may have with another contact status: CSR of ones."""
+    if given.possible is None:
+        return _ones(rows)
+    below = _below(*given.possible, int(matrix.getOwnershipRanges()[1]))
+    above = sp.csr_matrix((rows.shape[0] - below.shape[0], rows.shape[1]))
+    return _ones((_ones(rows) + _ones(sp.vstack([above, below], format="csr"))).tocsr())
 
 
 def _ones(rows: Sparse) -> Sparse:

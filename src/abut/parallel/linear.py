@@ -30,6 +30,7 @@ from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.systems import FACTORS, Answer, Conditions
 from abut.parallel.team import Team
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
 from abut.types import Sparse
@@ -127,7 +128,10 @@ class Direct:
         if n == 0:
             return self._solve(0, self.system.symmetric, -residual, None)[0], pressure
         s = saddle(self.system.unit, self.system.columns, rows, residual)
-        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+        beside = Conditions(
+            spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p,
+            possible=None if self.system.about is None else possible(self.system, layout),
+        )  # fmt: skip
         solution, q = self._solve(n, s.symmetric, s.rhs_u, beside)
         return solution, s.pressure(q)
 
@@ -311,6 +315,23 @@ def spread(rows: Sparse, layout: Layout) -> Sparse:
     entries = rows.tocoo()
     shape = rows.shape[0], int(layout.starts[-1])
     return sp.csr_matrix((entries.data, (entries.row, layout.slot[entries.col])), shape=shape)
+
+
+def possible(system: Linearised, layout: Layout) -> tuple[Sparse, Sparse]:
+    """Ones where rows of the laws may have entries, whatever the contact status: by displacements (n, n_places) and by
+    multipliers (n, n). A row sees all multipliers of its function, and what they see."""
+    whole = sp.block_diag([_of_functions(pair) for pair in system.pairs], format="csr")
+    return spread(whole @ abs(system.operator), layout), whole
+
+
+def _of_functions(pair: Pair) -> Sparse:
+    """(n, n) ones between multipliers of the same function."""
+    if not pair.frictional:
+        return sp.identity(len(pair), format="csr")
+    function, component = np.nonzero(pair.index >= 0)
+    shape = len(pair), len(pair.index)
+    by = sp.csr_matrix((np.ones(len(function)), (pair.index[function, component], function)), shape=shape)
+    return (by @ by.T).tocsr()
 
 
 def displacement(answers: list[Answer], layout: Layout) -> Vector:

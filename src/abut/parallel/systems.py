@@ -36,13 +36,15 @@ class Answer:
 class Conditions:
     """What stands beside the stiffness, on process 0: coupled, lower (n, n_places), corner (n, n) and right-hand side as in
     ``abut.linear.saddle_point.Saddle``; inverse: preconditioner of the pressures (n,) -> (n,), roughly of
-    -(lower K^-1 coupled^T + corner)."""
+    -(lower K^-1 coupled^T + corner); possible: lower and corner with all entries that they may have with another contact
+    status, where one analysis is to serve several."""
 
     coupled: Foreign
     lower: Foreign
     corner: Foreign
     rhs: Vector
     inverse: Callable[[Vector], Vector] | None = None
+    possible: tuple[Sparse, Sparse] | None = None
 
 
 NONE = Conditions(None, None, None, np.zeros(0))  # of every process but the first
