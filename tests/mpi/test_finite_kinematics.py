@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from test_agree import PROGRAM, compared
+from test_mpi_output import is_whole, started
 
 from abut.cli import main
 from models.steps import job, stop_in
-from test_agree import PROGRAM, compared
-from test_mpi_output import is_whole, started
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 MODELS = ["beam", "slid", "cushion", "punch", "turned"]
@@ -119,7 +119,7 @@ LOOSE = {  # nothing holds the block against a pressure from the side
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("changes, status", [(FLAT, 3), (LOOSE, 4)])
+@pytest.mark.parametrize(("changes", "status"), [(FLAT, 3), (LOOSE, 4)])
 def test_a_run_that_fails(
     mpirun: Run, changes: dict[str, str], status: int, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
