@@ -73,7 +73,7 @@ def assemble(
     constant = model.deformable.constant
     bodies: Bodies
     if model.finite:
-        bodies = FiniteBodies(model, loaded)
+        bodies = FiniteBodies(model, loaded, backend)
     else:
         bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(

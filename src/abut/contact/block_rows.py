@@ -1,0 +1,30 @@
+"""Sparse matrices of small dense blocks, as the compiled core hands them over: compressed rows (value, column, start)."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from abut.types import Array, Sparse
+
+CompressedRows = tuple[Array, Array, Array]
+
+
+def block_rows(parts: CompressedRows, columns: int) -> Sparse:
+    """Blocks (n, r, c) in ``columns`` columns of blocks."""
+    value, _, start = parts
+    return sp.bsr_matrix(parts, shape=(value.shape[1] * (len(start) - 1), value.shape[2] * columns))
+
+
+def added_up(down: Sparse, parts: CompressedRows, columns: int) -> CompressedRows:
+    """Rows of blocks (n, r, c) added up with the weights ``down`` (rows, rows of blocks), block by block."""
+    value, column, start = parts
+    r, c = value.shape[1:]
+    whole = block_rows((value.reshape(-1, 1, r * c), column, start), columns)
+    result = sp.bsr_matrix(down, blocksize=(1, 1)) @ whole
+    return result.data.reshape(-1, r, c), result.indices, result.indptr
+
+
+def row_numbers(start: Array) -> Array:
+    """Of every block."""
+    return np.repeat(np.arange(len(start) - 1), np.diff(start))
