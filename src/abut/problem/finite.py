@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.contact_pairs import Pair
@@ -193,8 +194,8 @@ def _tie(pair: Pair, displacement: Array) -> ContactNow:
     return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
 
 
-def finite_problem(problem: ContactProblem) -> FiniteProblem:
-    """A problem with pairs as from ``whole_pairs`` at large displacements."""
+def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
+    """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair) for pair in problem.pairs]
+    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
     return FiniteProblem(**{**values, "stiffness": None}, moving=moving)
