@@ -21,7 +21,7 @@ TOLD, MOST = (
     3,
 )  # of equilibrium and of closed gaps, where a state tells which set comes next; solutions until there
 STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
-SURE, FURTHER = 0.05, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
+SURE, FURTHER = 0.3, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
 # another way than the norm of the residual; and the most at once
 TRUSTED = 0.1  # error from which on a set that stands still is not taken for the last one
 ROUNDING = 1e-8  # the same that may be left to rounding

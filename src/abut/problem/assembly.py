@@ -104,8 +104,8 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         )
         if p.repeated:
             note(
-                f"contact '{p.contact.name}': equations tie displacements of its surfaces together, so that its pressure is "
-                "one of many; the smallest is taken"
+                f"contact '{p.contact.name}': equations or rigid bodies move points of its surfaces together; where its "
+                "pressure is one of many, the smallest is taken"
             )
 
 
