@@ -119,9 +119,8 @@ class FiniteProblem(ContactProblem):
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
             whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
-        stiffness = self.springs.added_to(
-            sum(tangent.reduce(constraints) for tangent in stiff) - constraints.reduce(bending)
-        )
+        by_contact = constraints.reduce(bending)
+        stiffness = self.springs.added_to(sum(tangent.reduce(constraints) for tangent in stiff) - by_contact)
         rows = [pair_now.pair.rows for pair_now in contacts]
         if self.constraints.turns is not None:
             pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self._split(now.multipliers)))
@@ -137,6 +136,7 @@ class FiniteProblem(ContactProblem):
             now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
             unit_of(stiffness), about=replace(about, symmetric=False),
             pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
+            bending=by_contact,
         )  # fmt: skip
         return system, shares
 
