@@ -26,23 +26,14 @@ from abut.problem.problem import ContactProblem, Problem
 def choose(linear: str, problem: ContactProblem) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. Raises InputError
     where "amg" cannot serve the problem."""
-    if problem.model.finite:
-        if linear == "amg":
-            raise InputError('solve.linear: "amg" is for kinematics "small"; choose "direct" or "auto"')
-        return "direct"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.constraints.coupled)
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, False)
 
 
 def chosen(
     linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool, sizes: Mapping[int, int] = LARGE
 ) -> str:
     """The same from the number of free displacements and the contact pairs; coupled: free displacements belong to several
-    points at once; sizes: from where on multigrid wins."""
-    if linear == "amg" and coupled:
-        raise InputError(
-            'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
-            'couple points; choose "direct" or "auto"'
-        )
+    points at once, which multigrid here cannot take; sizes: from where on multigrid wins."""
     smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
     if linear == "amg" and smooth:
         raise InputError(
