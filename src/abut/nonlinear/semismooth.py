@@ -15,6 +15,7 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
+from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
@@ -85,7 +86,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, advance(step.solver.prepare(here.system, None), here.state, here.laws))
+        there = _balance(step, _advanced(step, here.system, here.state, here.laws))
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -108,7 +109,12 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return advance(step.solver.prepare(system, None), state, laws_of(system, state))
+    return _advanced(step, system, state, laws_of(system, state))
+
+
+def _advanced(step: Step, system: Linearised, state: State, laws: Sequence[LawRows]) -> State:
+    """One Newton iteration."""
+    return smallest(system, advance(step.solver.prepare(system, None), state, yielding(system, laws)))
 
 
 def laws_of(system: Linearised, state: State) -> list[LawRows]:

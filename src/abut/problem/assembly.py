@@ -73,7 +73,7 @@ def assemble(
     constant = model.deformable.constant
     bodies: Bodies
     if model.finite:
-        bodies = FiniteBodies(model, loaded)
+        bodies = FiniteBodies(model, loaded, backend)
     else:
         bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
@@ -104,8 +104,8 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         )
         if p.repeated:
             note(
-                f"contact '{p.contact.name}': equations tie displacements of its surfaces together, so that its pressure is "
-                "one of many; the smallest is taken"
+                f"contact '{p.contact.name}': equations or rigid bodies move points of its surfaces together; where its "
+                "pressure is one of many, the smallest is taken"
             )
 
 

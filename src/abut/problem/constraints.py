@@ -75,6 +75,15 @@ class Constraints:
         columns = (self.free + self.turns.columns(free, factors)).tocsr()
         return replace(self, free=columns, orthonormal=False)
 
+    def together(self, points: NDArray[np.int64], dim: int) -> bool:
+        """Whether a free displacement moves one of ``points`` (n,) and others with it."""
+        if not self.coupled:
+            return False
+        columns = self.free[(dim * points[:, None] + np.arange(dim)).ravel()].indices
+        entries = self.free.tocsc()[:, np.unique(columns)].tocoo()
+        moved = np.unique(np.column_stack([entries.col, entries.row // dim]), axis=0)
+        return bool(np.bincount(moved[:, 0]).max(initial=0) > 1)
+
     def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
         moved = self.free.T @ vectors
