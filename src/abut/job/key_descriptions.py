@@ -170,6 +170,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
+        "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
+        "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
     },
     "OutputTable": {"directory": "folder of the results, beside the job file"},
 }

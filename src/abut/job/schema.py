@@ -276,6 +276,7 @@ class SolveTable(Table):
     linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None
+    seconds: Number | None = None
 
 
 class OutputTable(Table):
