@@ -141,7 +141,7 @@ CompressedBlocks compress(const Blocks &blocks, std::size_t rows, std::size_t wi
       for (std::size_t a = 0; a < width; ++a)
         sum[a] += value[a];
     }
-    out.start.push_back(std::int64_t(out.column.size()));
+    out.start.push_back(std::int32_t(out.column.size()));
   }
   return out;
 }

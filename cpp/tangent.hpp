@@ -47,7 +47,7 @@ TangentLists tangent(const Planned &contactor, const Planned &target, const Rule
 
 // Blocks as compressed rows: those in one place added up in their order.
 struct CompressedBlocks {
-  std::vector<std::int64_t> start;
+  std::vector<std::int32_t> start;
   std::vector<std::int32_t> column;
   std::vector<double> value;
 };

@@ -11,6 +11,7 @@ from abut._core._core import (
     integrate_given,
     integrate_hyperelastic,
     integrate_isotropic,
+    joined_pattern,
     node_pattern,
     padded_blocks,
     plan_facets,
@@ -21,6 +22,7 @@ from abut._core._core import (
     smallest_determinants,
     strains,
     strong_part,
+    values_in,
 )
 
 __all__ = [
@@ -32,6 +34,7 @@ __all__ = [
     "integrate_given",
     "integrate_hyperelastic",
     "integrate_isotropic",
+    "joined_pattern",
     "node_pattern",
     "padded_blocks",
     "plan_facets",
@@ -42,4 +45,5 @@ __all__ = [
     "smallest_determinants",
     "strains",
     "strong_part",
+    "values_in",
 ]

@@ -18,12 +18,18 @@ def block_rows(parts: CompressedRows, columns: int) -> Sparse:
     return sp.bsr_matrix(parts, shape=(value.shape[1] * (len(start) - 1), value.shape[2] * columns))
 
 
+def weights_of_rows(matrix: Sparse) -> Sparse:
+    """A sparse matrix as ``added_up`` takes it."""
+    return sp.bsr_matrix(matrix, blocksize=(1, 1))
+
+
 def added_up(down: Sparse, parts: CompressedRows, columns: int) -> CompressedRows:
-    """Rows of blocks (n, r, c) added up with the weights ``down`` (rows, rows of blocks), block by block."""
+    """Rows of blocks (n, r, c) added up with the weights ``down`` (rows, rows of blocks) from ``weights_of_rows``, block by
+    block."""
     value, column, start = parts
     r, c = value.shape[1:]
     whole = block_rows((value.reshape(-1, 1, r * c), column, start), columns)
-    result = sp.bsr_matrix(down, blocksize=(1, 1)) @ whole
+    result = down @ whole
     return result.data.reshape(-1, r, c), result.indices, result.indptr
 
 

@@ -202,7 +202,7 @@ def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:
         result[name][rows] = raw[name]
     for name in ("operators", "moment_by_points", "moment_by_normals"):
         value, column, start = raw[name]
-        count = np.zeros(MAX_FACET_NODES * n, dtype=np.int64)
+        count = np.zeros(MAX_FACET_NODES * n, dtype=np.int32)
         count[rows] = np.diff(start)
-        result[name] = value, column, np.concatenate([[0], np.cumsum(count)])
+        result[name] = value, column, np.concatenate([[0], np.cumsum(count)]).astype(np.int32)
     return result

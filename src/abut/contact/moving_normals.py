@@ -56,8 +56,8 @@ class NormalPattern:
     column: NDArray[np.int32]
 
     @cached_property
-    def _start(self) -> NDArray[np.int64]:
-        return np.searchsorted(self.row, np.arange(self.sums.shape[0] + 1))
+    def _start(self) -> NDArray[np.int32]:
+        return np.searchsorted(self.row, np.arange(self.sums.shape[0] + 1)).astype(np.int32)
 
     def at(self, surface: Surface) -> MovingNormals:
         """At the surface's points. Raises InputError for a facet without a normal at one of its nodes."""

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.block_rows import added_up, block_rows
+from abut.contact.block_rows import added_up, block_rows, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, smoothing
@@ -70,7 +70,7 @@ class Current:
         points, dim = len(contactor.points), contactor.dim
         along, *places = added_up(down, by.operators, points)
         weight = np.asarray(down @ by.weight_value)
-        slope = sp.bsr_matrix(down, blocksize=(1, 1)) @ by.slope(np.array([1.0, place.offset]))
+        slope = down @ by.slope(np.array([1.0, place.offset]))
         now = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
@@ -142,12 +142,12 @@ class Current:
     @cached_property
     def _down(self) -> Sparse:
         """(n_functions, 9 n_facets)."""
-        return self.pair.space.transfer.T.tocsr()
+        return weights_of_rows(self.pair.space.transfer.T)
 
     @cached_property
     def _down_along(self) -> Sparse:
         """The same for tractions in 2D."""
-        return self.pair.components[1].transfer.T.tocsr()
+        return weights_of_rows(self.pair.components[1].transfer.T)
 
     @cached_property
     def _kept(self) -> NDArray[np.int64]:
