@@ -14,7 +14,8 @@ from abut.bodies.finite import Inverted, cauchy_stress, respond_finite
 from abut.bodies.solids import Solids
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.linear.direct import Repeated, solve
+from abut.linear.direct import solve
+from abut.linear.repeated import Repeated
 from abut.materials.material import OwnMaterial
 from abut.mesh.make import box, join, rectangle
 from abut.problem.finite_bodies import FiniteBodies

@@ -15,10 +15,15 @@ from abut.contact.geometry import facet_sizes
 from abut.diagnosis.contactor import swap
 from abut.materials.elastic import LinearElastic
 from abut.model import LAWS, METHODS, SolveOptions
-from abut.solution import Solution, Step
+from abut.problem.constraints import supports
+from abut.problem.restraint import restraint
+from abut.solution import FrictionResult, Solution, Step
 
 COUNT = 3
 STATUSES = ("open", "sticking", "slipping")
+SPENT = 0.95  # share of the limit of a whole contact from which on friction can hardly carry more
+LOOSE = 1e-9  # of a rigid motion, at a point that it moves
+STRAINED = 0.1  # stress over Young's modulus from which on a linear elastic material may be what gives way
 NAMED = 4  # nodes that the message names
 MORE = 4  # times the iterations, and as many as are allowed without asking at least
 
@@ -85,6 +90,7 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
         _by_overlap(solution)
         if solution.converged
         else (
+            *_by_sliding(solution),
             *_by_deformation(solution),
             *_by_law(solution),
             *_by_limit(solution),
@@ -137,19 +143,59 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
         )
 
 
+def _by_sliding(solution: Solution) -> Iterator[Remedy]:
+    """Of bodies that supports leave free and loads push along, where friction gave all that it can in the last state that
+    converged."""
+    model, steps = solution.model, [step for step in solution.steps if step.converged]
+    spent = [c for c in steps[-1].contacts if c.friction is not None and _spent(c.friction)] if steps else []
+    if not (spent and model.loads):
+        return
+    free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)
+    loose = free.reshape(-1, model.dim).max(axis=1) > LOOSE
+    some = [
+        f"contact '{c.name}' carries {rub.force_by_area:.4g} of at most {rub.force_limit:.4g}"
+        for c in spent
+        if (rub := c.friction) is not None and (loose[c.contactor.node_ids].any() or loose[c.target.node_ids].any())
+    ]
+    if some:
+        yield Remedy(
+            "a support, a prescribed displacement in place of the load, or more friction or pressure",
+            f"friction reaches its limit, and what it alone holds slides: {', '.join(some)}, at time "
+            f"{steps[-1].factor:.4g}",
+        )
+
+
+def _spent(friction: FrictionResult) -> bool:
+    return friction.force_by_area >= SPENT * friction.force_limit > 0.0
+
+
 def _by_deformation(solution: Solution) -> Iterator[Remedy]:
     """Of finite deformation, where load steps have been halved in vain."""
-    model = solution.model
-    if not model.finite or solution.converged:
+    model, step = solution.model, solution.steps[-1]
+    if not model.finite:
         return
-    if any(isinstance(solid.material, LinearElastic) for solid in model.solids):
+    for solid in model.solids:
+        at = model.mesh.nodes_of(solid.body)
+        if (
+            isinstance(solid.material, LinearElastic)
+            and np.abs(step.stress[at]).max() > STRAINED * solid.material.young
+        ):
+            yield Remedy(
+                f"material kind = \"neo-hooke\" of body '{solid.body}'",
+                "a linear elastic one gives way when it is pressed to about half its length",
+            )
+            break
+    if model.contacts and model.loads:
         yield Remedy(
-            'material kind = "neo-hooke"', "a linear elastic one gives way when it is pressed to about half its length"
+            "prescribed displacements in place of the loads",
+            "where a load finds no state near by that balances it (buckling, snapping through, sliding off) steps become "
+            "too short, however many there are",
         )
-    yield Remedy(
-        f"solve.steps = {4 * len(model.solve.ends)}",
-        "steps are halved six times at most; a load that no deformation balances stays out of reach",
-    )
+    if not model.contacts:
+        yield Remedy(
+            f"solve.steps = {4 * len(model.solve.ends)}",
+            "steps are halved six times at most; a load that no deformation balances stays out of reach",
+        )
 
 
 def _by_limit(solution: Solution) -> Iterator[Remedy]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from abut.diagnosis.constraints import constraints
@@ -16,7 +18,7 @@ from abut.diagnosis.rigid_body_check import motions
 from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
-from abut.model import Model
+from abut.model import Contact, Model
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pair
 
@@ -45,6 +47,15 @@ def check(model: Model) -> Report:
     return Report(in_order(findings), tuple(shown))
 
 
+def _why(model: Model, contact: Contact, supported: Constraints, error: AbutError) -> Finding:
+    """Why a contact cannot be built: its friction, if it can without, else where its surfaces are."""
+    try:
+        pair(model, replace(contact, friction=0.0, friction_amplitude=None), supported)
+    except AbutError:
+        return not_facing(model, contact, error)
+    return from_error(error, f"contact '{contact.name}'")
+
+
 def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Finding]]:
     """The contact pairs that can be built, and findings on all of them."""
     built: list[Pair] = []
@@ -54,7 +65,7 @@ def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Findi
         try:
             one = pair(model, contact, supported)
         except AbutError as error:
-            findings.append(not_facing(model, contact, error))
+            findings.append(_why(model, contact, supported, error))
             continue
         built.append(one)
         findings += [*interface(model, one, outside), *sides(model, contact), *constraints(model, one, supported)]

@@ -4,7 +4,7 @@ iterations."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
 
 import numpy as np
@@ -14,6 +14,7 @@ from abut.errors import InputError
 from abut.linear.cost_model import LARGE, LARGE_FINITE
 from abut.linear.direct import solver_name
 from abut.linear.multigrid import wide
+from abut.linear.repeated import Repeated
 from abut.linear.saddle_point import SaddlePoint
 from abut.linear.schur_preconditioner import foresight, half_spaces, interfaces
 from abut.linear.solver import Prepared
@@ -57,9 +58,10 @@ def chosen(
 @dataclass(frozen=True)
 class Direct:
     """As ``abut.linear.solver.LinearSolver``: static condensation where the interface is small enough, else the saddle
-    point."""
+    point. repeated: the factors that a finite deformation keeps from one iteration to the next."""
 
     count: None = None
+    repeated: Repeated = field(default_factory=Repeated, compare=False)
 
     @property
     def name(self) -> str:
@@ -75,10 +77,12 @@ class Direct:
             return replace(previous, system=system)
         if system.compliance is not None:
             return dense(system)
+        self.repeated.begin(system.time)
         pairs = system.pairs
         moved = np.asarray(system.operator @ system.motions)
-        made = SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
-        return replace(made, repeated=previous.repeated) if isinstance(previous, SaddlePoint) else made
+        return SaddlePoint(
+            system, foresight(lambda: half_spaces(interfaces(pairs)), moved), repeated=self.repeated
+        )
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""

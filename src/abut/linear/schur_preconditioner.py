@@ -26,7 +26,6 @@ from abut.types import Sparse
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")
 ACCURACY = 1e-2
 ALONG = 1.2  # compliance along a half space's surface over that across, theory (V25), in the mean of directions
-STIFFER = 0.2  # how much stiffer elements are than half spaces under waves of their own size: measured
 SOFT_ACCURACY, SOFT_ITERATIONS = 0.1, 30
 FORESEEN, SOLVES = 1e-4, 100  # of gaps closed on the interface alone, where the edge of contact is sharp; iterations
 LOOSE = 1e-9  # resistance of rows to a motion, over the largest, below which it is none
@@ -39,8 +38,7 @@ Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 class Interface:
     """One pair's pressures, or its tractions (of a tied one those along one axis): their rows in the system, L + M / l^2 and
     M of ordinary functions, what these integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of
-    ordinary functions M itself), kappa, 1 / l^2, and the area below which elements are stiffer than half spaces, theory
-    (V13)."""
+    ordinary functions M itself), kappa, 1 / l^2."""
 
     rows: NDArray[np.int64]
     full: Sparse
@@ -48,7 +46,6 @@ class Interface:
     coupled: Sparse
     compliance: float
     lowest: float
-    stiffer: float = 0.0
 
 
 def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
@@ -80,9 +77,7 @@ def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Int
     coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
     laplacian = (plain.T @ slopes @ plain).tocsr()
-    return Interface(
-        rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest, STIFFER * pair.size**2
-    )
+    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest)
 
 
 def _tangential(pair: Pair, normal: Interface, rows: NDArray[np.int64]) -> Interface:
@@ -357,12 +352,10 @@ def _inverse(part: Interface, rows: Sparse) -> Apply:
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
     undo = spla.splu(seen(part.coupled).tocsc()).solve
     ordinary = part.coupled is part.mass
-    lumped = np.asarray(abs(mass).sum(axis=1)).ravel()
-    stiffer = np.where(lumped > 0.0, part.stiffer / np.where(lumped > 0.0, lumped, 1.0), 0.0)
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
         weighted = gap if ordinary else mass @ undo(gap)
         rooted = full @ sum(w * solve(weighted) for w, solve in zip(weights, solves))
-        return np.asarray(undo(rooted + full @ (stiffer * rooted)) / part.compliance)
+        return np.asarray(undo(rooted) / part.compliance)
 
     return apply

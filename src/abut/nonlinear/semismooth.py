@@ -16,6 +16,7 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
+from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
@@ -65,7 +66,7 @@ class Step:
     def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
         """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
         self.prepared = self.solver.prepare(system, self.prepared)
-        return advance(self.prepared, state, laws, accuracy)
+        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
