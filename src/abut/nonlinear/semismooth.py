@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.forcing import FINE, forcing
+from abut.nonlinear.apart import thrown_apart
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
@@ -78,6 +79,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     except (SingularModelError, Unsound) as reason:
         step.failed = str(reason)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
+    step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
 
 
