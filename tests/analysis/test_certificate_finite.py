@@ -83,7 +83,7 @@ def test_light_touch_counts_as_much_as_its_pressure() -> None:
 
 
 def rippled(raw: NDArray[np.float64]) -> float:
-    """The line "oscillation" of a surface of 16 facets with multipliers (17,) and the averages that are reported, theory (P10)."""
+    """The line "oscillation" of 16 facets with multipliers (17,) and the averages that are reported, theory (P10)."""
     sides = {"lower": (0, 1), "upper": (1, 2)}
     mesh = join({name: rectangle((0, 1), y, (16, 1), "quad4") for name, y in sides.items()})
     model = abut.Model(
