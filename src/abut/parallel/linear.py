@@ -198,17 +198,10 @@ class PetscIterations:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``. Raises InputError for the constraint function, whose rows the preconditioner does not
-        know."""
+        """As in ``LinearSolver``. Raises InputError for a method that friction rules out."""
         matrix: Distributed = system.stiffness
         if isinstance(previous, Iterative) and previous.system.same_matrices(system):
             return replace(previous, system=system)
-        smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-        if smooth:
-            raise InputError(
-                f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
-                '"complementarity", or leave the option -pc_type out'
-            )
         rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
         if rubs and krylov_method() in SYMMETRIC:
             raise InputError(
@@ -275,6 +268,14 @@ def choose(problem: ContactProblem) -> str:
             "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
+    smooth = [pair.contact.name for pair in problem.pairs if pair.smooth]
+    if wants_iterations() and smooth:
+        raise InputError(
+            f"PETSc's options ask for iterations, whose preconditioner does not know the constraint function of contact "
+            f"'{smooth[0]}': leave -ksp_type and -pc_type out, or choose law = \"complementarity\""
+        )
+    if smooth:
+        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
