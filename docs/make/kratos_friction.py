@@ -1,7 +1,7 @@
 """The hub of ccx_friction.py with linear cells by abut and by Kratos' mortar contact, on one mesh.
 
 KRATOS_PYTHON=/path/to/python python docs/make/kratos_friction.py [SECONDS [OPTIONS ...]] (an environment of its own with
-KratosContactStructuralMechanicsApplication). Prints torques; of Kratos, whether each step converged after how many iterations.
+KratosContactStructuralMechanicsApplication). Prints torques; of Kratos, whether each step converged and how soon.
 OPTIONS: other settings as JSON, of its solver and of its contact, such as '{"contact": {"tangent_factor": 1.0}}'.
 """
 
