@@ -56,11 +56,12 @@ def test_friction(mpirun: Run, n: int, option: str) -> None:
     assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
 
 
-def test_friction_is_not_symmetric(mpirun: Run) -> None:
+@pytest.mark.parametrize(("case", "why"), [("pushed", "friction"), ("beam", "finite kinematics")])
+def test_what_is_not_symmetric(mpirun: Run, case: str, why: str) -> None:
     """MINRES would not converge to the solution: it is refused by its name."""
-    result = mpirun(2, "pushed", "-ksp_type", "minres", program=(PROGRAM,))
+    result = mpirun(2, case, "-ksp_type", "minres", program=(PROGRAM,))
     assert result.returncode != 0
-    assert "-ksp_type minres is for symmetric matrices" in result.stderr
+    assert f"-ksp_type minres is for symmetric matrices, which {why} does not leave" in result.stderr
 
 
 def test_other_solvers(mpirun: Run) -> None:
