@@ -203,8 +203,8 @@ class PetscIterations:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for the
-        constraint function, whose rows the preconditioner does not know."""
+        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for Krylov
+        methods that do not know the laws."""
         known = previous if isinstance(previous, Iterative) else None
         if known is not None and known.system.same_matrices(system):
             return replace(known, system=system)
@@ -251,13 +251,7 @@ class PetscIterations:
 
 
 def _require_known(system: Linearised) -> None:
-    """Raises InputError for laws that iterations do not know, and for Krylov methods that do not know the laws."""
-    smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-    if smooth:
-        raise InputError(
-            f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
-            '"complementarity", or leave the option -pc_type out'
-        )
+    """Raises InputError for Krylov methods that do not know the laws."""
     if krylov_method() not in SYMMETRIC:
         return
     rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
@@ -309,6 +303,14 @@ def choose(problem: ContactProblem) -> str:
             "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
+    smooth = [pair.contact.name for pair in problem.pairs if pair.smooth]
+    if wants_iterations() and smooth:
+        raise InputError(
+            f"PETSc's options ask for iterations, whose preconditioner does not know the constraint function of contact "
+            f"'{smooth[0]}': leave -ksp_type and -pc_type out, or choose law = \"complementarity\""
+        )
+    if smooth:
+        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
