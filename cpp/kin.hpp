@@ -24,12 +24,10 @@ inline bool may_touch(const SurfaceView &contactor, std::size_t c, const Surface
          !adjacent(contactor.facet_nodes(c), target.facet_nodes(t));
 }
 
-// How deep two facets of one body may lie in each other: what is seen at a greater depth is seen through the body.
+// How deep two facets may lie in each other: what is seen at a greater depth is seen through a body.
 inline double deepest(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {
   constexpr double most = 0.75; // of the thickness
-  if (!contactor.kin || contactor.kin[KIN * c] != target.kin[KIN * t])
-    return HUGE_VAL;
-  return most * std::min(contactor.kin[KIN * c + 9], target.kin[KIN * t + 9]);
+  return contactor.kin ? most * std::min(contactor.kin[KIN * c + 9], target.kin[KIN * t + 9]) : HUGE_VAL;
 }
 
 inline Role role_of(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {

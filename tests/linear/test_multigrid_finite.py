@@ -14,8 +14,8 @@ from abut.linear.bodies_now import bodies_now
 from abut.linear.krylov import fgmres
 from abut.linear.multigrid import hierarchy
 from abut.mesh import make
-from abut.mesh.mesh import Mesh
 from abut.problem.linearised import Linearised
+from models.rigid import glued
 from models.sliding import FIRST, SOFT, THEN, arched, bent, turned
 
 TWO_STEPS = abut.SolveOptions(times=(0.4, 1.0))
@@ -80,8 +80,8 @@ def test_in_the_plane() -> None:
 
 
 def stacked() -> abut.Model:
-    """A pad glued to a rigid back that is free to sink and to tilt, pressed on a slab and pulled along it; only friction with
-    the ground holds the slab. Equations tie points of the pad, and a pressure follows its side."""
+    """A pad glued to a rigid back that is free to sink and to tilt, pressed on a slab and pulled along it; only friction
+    with the ground holds the slab. Equations tie points of the pad, and a pressure follows its side."""
     mesh = make.join(
         {
             "ground": make.box([-0.2, 1.4], [-0.2, 1.2], [-0.4, 0], cells=[3, 3, 1]),
@@ -104,17 +104,6 @@ def stacked() -> abut.Model:
             abut.Contact("pad.bottom", "slab.top", friction=0.2), abut.Contact("slab.bottom", "ground.top", friction=0.6),
         ], solve=TWO_STEPS,
     )  # fmt: skip
-
-
-def glued(mesh: Mesh, body: str, surface: str) -> Mesh:
-    """The mesh with each point of ``body`` that lies on a surface replaced by the surface's own."""
-    nodes = mesh.nodes_of(surface)
-    place = np.arange(len(mesh.points))
-    for node in mesh.nodes_of(body):
-        (same,) = np.nonzero(np.abs(mesh.points[nodes] - mesh.points[node]).max(axis=1) < 1e-12)
-        place[node] = nodes[same[0]] if len(same) else node
-    blocks = [replace(block, nodes=place[block.nodes].astype(block.nodes.dtype)) for block in mesh.blocks]
-    return replace(mesh, blocks=blocks)
 
 
 def test_rigid_body_equations_and_what_only_friction_holds() -> None:
@@ -167,8 +156,8 @@ def test_the_direct_solver_takes_a_step_that_multigrid_cannot(monkeypatch: pytes
 
 
 def test_a_body_that_turns_far() -> None:
-    """Rigid motions are those of where the body is: after a quarter turn as many Krylov iterations as before it, with those of
-    the undeformed body more."""
+    """Rigid motions are those of where the body is: after a quarter turn as many Krylov iterations as before it, with those
+    of the undeformed body more."""
     mesh = make.join({"strip": make.rectangle([0, 30], [0, 1], cells=[120, 4])})
     counts = {}
     for angle in (0.0, 0.5 * np.pi):

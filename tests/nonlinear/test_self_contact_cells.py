@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 import abut
 from abut.contact.kin import RANK
 from abut.contact.sides import Names, moving_sides
+from abut.problem.current import Current
 from abut.solution import Solution
 from models.clamps import DEPTH, clamp, tube
+from models.folding import accordion
+from models.sliding import finite
 
 WHOLE, NAMED = ("body", "body"), ("lower", "upper")
 
@@ -46,8 +49,8 @@ def closed(cell: str, sides: tuple[Names, Names] = WHOLE) -> Solution:
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "tri6", "hex8", "hex20", pytest.param("tet10", marks=pytest.mark.long)])
 def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
     """Jaws level with each other. The body named twice, whole, gives what its two arms as contactor and target give; to the
-    tolerance of a step, but with P2 on quad8 and tri6 facets, where a multiplier at the edge of contact may as well be open:
-    to 1e-3."""
+    tolerance of a step; where the edges of facets are curves in 3D the rule of integration is that of the most curved facet,
+    elsewhere on the whole body: 1e-3."""
     whole, named = closed(cell), closed(cell, NAMED)
     balanced(whole)
     tolerance = 1e-3 if cell in ("hex20", "tet10") else 1e-6
@@ -73,6 +76,15 @@ def test_quadratic_cells_in_space() -> None:
     assert deep.contacts[0].force[1] / DEPTH == pytest.approx(flat.contacts[0].force[1], rel=0.01)
 
 
+@pytest.mark.long
+def test_quadratic_folds_close() -> None:
+    """The accordion of quad8 cells goes all the way, and every line of its certificate holds."""
+    solution = abut.solve(accordion(1.1, cells=60, cell="quad8"))
+    assert solution.converged
+    assert all(check.passed for check in solution.certificate)
+    assert -solution.contacts[0].force[0] == pytest.approx(57.0, rel=0.1)  # two valleys under uniaxial strain: 49, and the bends
+
+
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])
 def test_one_arm_is_the_contactor_however_the_clamp_is_turned(cell: str) -> None:
     """Ranks go along the direction in which the arms lie apart: all of one are below all of the other, (G12)."""
@@ -95,9 +107,23 @@ def test_one_arm_is_the_contactor_however_the_clamp_is_turned(cell: str) -> None
 
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "tri6", "hex8"])
 def test_a_flattened_tube_touches_itself_inside(cell: str) -> None:
-    """Pressed together across by plates until its inside touches itself: no side of it is deeper in the other than what the
-    pressure functions leave, forces balance, and the hex8 tube is the quad4 one."""
-    solution = abut.solve(tube(cell))
-    assert solution.converged
-    balanced(solution)
-    assert solution.contacts[0].max_pressure > 1.0
+    """As between its upper and its lower half, and every line of the certificate holds."""
+    whole, named = (abut.solve(tube(cell, sides=sides)) for sides in (WHOLE, NAMED))
+    assert whole.converged
+    balanced(whole)
+    assert all(check.passed for check in whole.certificate)
+    assert np.allclose(whole.contacts[0].force, named.contacts[0].force, rtol=1e-6, atol=1e-6)
+    assert whole.contacts[0].max_pressure == pytest.approx(named.contacts[0].max_pressure, rel=1e-6)
+
+
+def test_side_faces_do_not_press_on_each_other() -> None:
+    """Where the walls of a tube one cell deep overlap between nodes, its front sees its back through the body: no contact,
+    and no contact of a front with the inside, which it sees edge-on."""
+    solution = abut.solve(tube("hex8"))
+    current = finite(solution.model).moving[0]
+    assert isinstance(current, Current)
+    samples = current.shown(solution.displacement.ravel()).gap_samples
+    assert samples is not None
+    assert (samples.gap < -1e-3).any()
+    assert samples.gap.min() > -0.5 * DEPTH
+    assert np.abs(samples.normal[:, 2]).max() < 0.1

@@ -24,12 +24,13 @@ APART = 1e3  # in extents: ranks of different bodies do not mix
 BODY, RANK, MIDDLE, NORMAL, REACH, THICKNESS, WIDTH = 0, 1, slice(2, 5), slice(5, 8), 8, 9, 10  # columns of ``Surface.kin``
 
 
-def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, Surface]:
-    """Both surfaces with what ``Surface.kin`` says, where they have a body in common; else as they are."""
+def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -> tuple[Surface, Surface]:
+    """Both surfaces with what ``Surface.kin`` says, where they have a body in common or go ``all_round`` one; else as they
+    are."""
     both = contactor.cells, target.cells
     bodies = _bodies(mesh)
     relatives, other = (bodies[cells] for cells in both)
-    if not np.isin(relatives, other).any():
+    if not all_round and not np.isin(relatives, other).any():
         return contactor, target
     codes = [8 * side.cells + side.local for side in (contactor, target)]
     _, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)

@@ -142,8 +142,8 @@ class Multigrid:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at large
-        displacements both stay for a load step."""
+        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at
+        large displacements both stay for a load step."""
         if system.about is not None:
             return self._at_state(system, previous)
         known = previous if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness else None
@@ -166,7 +166,10 @@ class Multigrid:
 
         covered = covered_shares(system.pairs)
         if isinstance(previous, Iterative) and previous.system.time == system.time:
-            levels, pressures = replace(previous.hierarchy, product=product), replace(previous.pressures, covered=covered)
+            levels, pressures = (
+                replace(previous.hierarchy, product=product),
+                replace(previous.pressures, covered=covered),
+            )
             return replace(previous, system=system, hierarchy=levels, pressures=pressures)
         bodies = bodies_now(self.problem, system)
         elastic = system.stiffness if system.bending is None else system.stiffness + system.bending

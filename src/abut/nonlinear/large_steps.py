@@ -29,16 +29,14 @@ def march_finite(
     before, cuts = done[-1], 0
     stands_in: LinearSolver | None = None
     earlier = done[-2] if len(done) > 1 else None
-    number = len(done)
+    number, limit = len(done), min(MOST, control.limit)
     control.prepared(f"{solver.name}, unsymmetric, new in every {'iteration' if solver.count is None else 'step'}")
     while (time := pace.end) is not None:
         if cuts == 0 and stands_in is None:
             control.begins(number, time)
         guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
-        step = Step(
-            problem, before, stands_in or solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
-        )
+        step = Step(problem, before, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(step, solve_finite(step, guess, time), time)
         except NotConverged as reason:
