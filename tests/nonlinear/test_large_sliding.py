@@ -10,6 +10,7 @@ import pytest
 
 import abut
 from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.moving_normals import normal_pattern
 from abut.errors import InputError, SingularModelError
 from abut.linear.choice import Direct
 from abut.mesh import make
@@ -109,14 +110,16 @@ def test_slip_of_a_rigid_motion() -> None:
     model = arched(0.3)
     contactor, target = model.sides(model.contacts[0])
     options = CouplingOptions(reach=1.0, keep_points=True)
-    points = SlipPoints.of(contactor, target, couple(contactor, target, 1, options))
+    points, normals = SlipPoints.of(contactor, target, 1, options), normal_pattern(contactor)
     assert np.abs(couple(contactor, target, 1, options).gap).max() > 1e-3
     moved = contactor.points @ turned(0.7).T + [3.0, -2.0]
-    slip = slip_now(points, replace(contactor, points=moved), replace(target, points=moved))
+    moving = replace(contactor, points=moved)
+    slip = slip_now(points, moving, replace(target, points=moved), normals.at(moving))
     assert np.abs(slip.value).max() < 1e-12
     pushed = contactor.points.copy()
     pushed[contactor.node_ids] += [0.01, 0.0]
-    slip = slip_now(points, replace(contactor, points=pushed), replace(target, points=pushed))
+    moving = replace(contactor, points=pushed)
+    slip = slip_now(points, moving, replace(target, points=pushed), normals.at(moving))
     area = points.moments(len(contactor))
     assert np.allclose(slip.value.sum(), -0.01 * area.sum(), rtol=0.02)  # tau is N turned: -x where N points up
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import abut
-from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.coupling import CouplingOptions
+from abut.contact.moving_normals import normal_pattern
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.turns import rotation
 from abut.solution.state import State
@@ -51,9 +52,8 @@ def test_slip_of_a_rigid_motion() -> None:
     """Both bodies turned by 0.8 about a skew axis and moved, with gaps between them: no slip."""
     model = pressed_in_space(0.3)
     contactor, target = model.sides(model.contacts[0])
-    points = SlipPoints.of(
-        contactor, target, couple(contactor, target, 1, CouplingOptions(reach=1.0, keep_points=True))
-    )
+    points = SlipPoints.of(contactor, target, 1, CouplingOptions(reach=1.0))
     moved = contactor.points @ rotation(np.array([0.3, -0.5, 0.55])).T + [1.0, 2.0, -3.0]
-    slip = slip_now(points, replace(contactor, points=moved), replace(target, points=moved))
+    moving = replace(contactor, points=moved)
+    slip = slip_now(points, moving, replace(target, points=moved), normal_pattern(contactor).at(moving))
     assert np.abs(slip.value).max() < 1e-12

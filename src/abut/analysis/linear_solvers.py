@@ -48,15 +48,11 @@ def solver_kind(problem: ContactProblem, team: Team | None) -> str:
 
 def linear_solver(kind: str, problem: ContactProblem, team: Team | None) -> LinearSolver:
     """kind: as from ``solver_kind``."""
-    motions = near_null(problem.model.mesh, problem.restraint.rigid)
     if team is None:
-        return (
-            Direct()
-            if kind == "direct"
-            else Multigrid(problem.constraints.free, motions, problem.model.mesh.points, Count())
-        )
+        return Direct() if kind == "direct" else Multigrid(problem, Count())
     from abut.parallel.linear import PetscDirect, PetscIterations
 
+    motions = near_null(problem.model.mesh, problem.restraint.rigid)
     return PetscDirect() if kind == "direct" else PetscIterations(problem.constraints.free.T @ motions, Count())
 
 

@@ -1,4 +1,4 @@
-"""Smoothed aggregation of the stiffness (PyAMG): one hierarchy for all iterations and load steps."""
+"""Smoothed aggregation of the stiffness (PyAMG)."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from abut.linear.strength import means, near
 from abut.types import Sparse
 
 COARSEST = 100  # aggregates whose equations are solved directly
+FEW = 8  # points up to which displacements that move several of them are a part of multigrid
 Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -32,10 +33,10 @@ class Hierarchy:
 def hierarchy(stiffness: Sparse, free: Sparse, motions: NDArray[np.float64], points: NDArray[np.float64]) -> Hierarchy:
     """Multigrid for ``stiffness`` on the free displacements.
 
-    free: (dim n_points, n_free) change of variables, every column at one point; motions: (dim n_points, m) rigid motions,
-    each body's own; points: (n_points, dim). Points with fewer than ``dim`` free directions are filled up with trivial
-    rows, so that the matrix has whole blocks, one a point: cheaper products and aggregates of whole points. Raises
-    InputError where PyAMG is not installed.
+    free: (dim n_points, n_free) change of variables; motions: (n_free, m) rigid motions, each body's own; points: (n_points,
+    dim). Points with fewer than ``dim`` free directions are filled up with trivial rows, so that the matrix has whole blocks,
+    one a point: cheaper products and aggregates of whole points. Displacements of many points at once are left out: ``cycle``
+    leaves them at zero. Raises InputError where PyAMG is not installed.
     """
     try:
         from pyamg.aggregation import fit_candidates, standard_aggregation
@@ -43,13 +44,17 @@ def hierarchy(stiffness: Sparse, free: Sparse, motions: NDArray[np.float64], poi
         raise InputError(
             'solve.linear: "amg" needs PyAMG, which is not installed: pip install pyamg; or choose "direct"'
         ) from None
-    dim = points.shape[1]
-    slot, point = slots(free, dim)
+    dim, own = points.shape[1], np.flatnonzero(~wide(free, points.shape[1]))
+    slot, point = slots(free.tocsc()[:, own], dim)
+    order = np.argsort(slot)
+    slot, own = slot[order], own[order]
+    whole = len(own) == free.shape[1] and (np.diff(own) == 1).all()
+    part = stiffness if whole else stiffness[own][:, own].tocsr()
     size, centres = dim * len(point), points[point]
-    scale = float(np.median(stiffness.diagonal()))
-    fine = level_matrix = _padded(stiffness, slot, size, dim, scale)
+    scale = float(np.median(part.diagonal()))
+    fine = level_matrix = _padded(part, slot, size, dim, scale)
     near_null = np.zeros((size, motions.shape[1]))
-    near_null[slot] = free.T @ motions
+    near_null[slot] = motions[own]
     levels: list[Level] = []
     entries, stretched = fine.nnz, True
     while level_matrix.shape[0] // level_matrix.blocksize[0] > COARSEST:
@@ -69,13 +74,21 @@ def hierarchy(stiffness: Sparse, free: Sparse, motions: NDArray[np.float64], poi
     matrix = fine.indptr, fine.indices, fine.data
 
     def place(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        whole = np.zeros(size)
-        whole[slot] = values
-        return whole
+        blocks = np.zeros(size)
+        blocks[slot] = values
+        return blocks
+
+    def cycle(residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        result = np.zeros_like(residual)
+        result[own] = ours.cycle(place(residual[own]))[slot] / scale
+        return result
+
+    def product(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(block_product(*matrix, place(values))[slot] * scale)
 
     return Hierarchy(
-        cycle=lambda residual: ours.cycle(place(residual))[slot] / scale,
-        product=lambda values: block_product(*matrix, place(values))[slot] * scale,
+        cycle=cycle,
+        product=product if whole else lambda values: np.asarray(stiffness @ values),
         summary=f"multigrid with {len(levels) + 1} levels, complexity {entries / fine.nnz:.2f}",
     )
 
@@ -90,11 +103,25 @@ def _padded(stiffness: Sparse, slot: NDArray[np.int64], size: int, dim: int, sca
     return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
 
+def wide(free: Sparse, dim: int) -> NDArray[np.bool_]:
+    """(n_free,) which free displacements move many points, as those of a rigid body do."""
+    return np.diff(free.tocsc().indptr) > dim * FEW
+
+
 def slots(free: Sparse, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Where each free displacement goes among ``dim`` places a point, in ascending order, points without any left out; and
-    those points."""
+    """Where each free displacement goes among ``dim`` places a block, in ascending order of points, and the point of each
+    block. What moves one point is in that point's block; what moves several is alone in one, at the first of them."""
     columns = free.tocsc()
-    point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
-    points, number, count = np.unique(point, return_inverse=True, return_counts=True)
-    local = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    sizes = np.diff(columns.indptr)
+    of_entries = columns.indices.astype(np.int64) // dim
+    first = np.minimum.reduceat(of_entries, columns.indptr[:-1]) if len(sizes) else of_entries
+    last = np.maximum.reduceat(of_entries, columns.indptr[:-1]) if len(sizes) else of_entries
+    alone = np.where(first == last, 0, 1 + np.arange(len(sizes)))
+    (points, _), number, count = np.unique(
+        np.stack([first, alone]), axis=1, return_inverse=True, return_counts=True
+    )
+    number = np.ravel(number)
+    order = np.argsort(number, kind="stable")
+    local = np.empty(len(number), dtype=np.int64)
+    local[order] = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
     return dim * number + local, points

@@ -24,22 +24,13 @@ from abut.linear.schur_preconditioner import (
     pressure_block,
 )
 from abut.linear.solver import Count, NotConverged, Prepared, Solve
-from abut.parallel.krylov import (
-    FACTORS,
-    MULTIGRID,
-    STIFFNESS,
-    Answer,
-    Conditions,
-    by_factors,
-    direct_solver,
-    factorise,
-    iterate,
-    keep_factors,
-    multigrid,
-)
+from abut.parallel.factors import by_factors, direct_solver, drop_factors, factorise, keep_factors
+from abut.parallel.krylov import MULTIGRID, STIFFNESS, iterate, multigrid
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
+from abut.parallel.systems import FACTORS, Answer, Conditions
 from abut.parallel.team import Team
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
 from abut.types import Sparse
@@ -51,18 +42,16 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Iterative:
-    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes."""
+    """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes. matrix: the
+    stiffness."""
 
     system: Linearised
+    matrix: Distributed
     pressures: PressureBlock
     predict: Predict
     count: Count
     exact: bool = False
     accurate: float = ACCURATE
-
-    @property
-    def matrix(self) -> Distributed:
-        return self.system.stiffness
 
     def factorise(self, rows: Rows) -> None:
         """No factors are kept."""
@@ -107,7 +96,7 @@ class Iterative:
         n = 0 if beside is None else len(beside.rhs)
         shares = self.matrix.layout.shares(np.column_stack([rhs, self.system.motions]))
         answers: list[Answer] = self.matrix.team.each(
-            iterate, accuracy, n, small,
+            iterate, self.matrix.kept.number, accuracy, n, small,
             per_rank=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
         )  # fmt: skip
         self.count.iterations += answers[0].iterations
@@ -137,9 +126,12 @@ class Direct:
         """Solve theory (V1). Raises SingularModelError."""
         layout, n = self.matrix.layout, len(pressure)
         if n == 0:
-            return self._solve(0, True, -residual, None)[0], pressure
-        s = saddle(self.system.unit, self.system.operator, rows, residual)
-        beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
+            return self._solve(0, self.system.symmetric, -residual, None)[0], pressure
+        s = saddle(self.system.unit, self.system.columns, rows, residual)
+        beside = Conditions(
+            spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p,
+            possible=None if self.system.about is None else possible(self.system, layout),
+        )  # fmt: skip
         solution, q = self._solve(n, s.symmetric, s.rhs_u, beside)
         return solution, s.pressure(q)
 
@@ -148,8 +140,11 @@ class Direct:
         layout, n = self.matrix.layout, len(rows.residual)
         s = saddle(self.system.unit, self.system.operator, rows, np.zeros(self.matrix.shape[0]))
         beside = Conditions(spread(s.coupled, layout), spread(s.lower, layout), sp.csr_matrix(s.corner), s.rhs_p)
-        team = self.matrix.team
-        team.each(keep_factors, n, s.symmetric, per_rank=[(None if rank else beside,) for rank in range(team.size)])
+        team, more = self.matrix.team, self.matrix.beside_by_process()
+        team.each(
+            keep_factors, self.matrix.kept.number, n, s.symmetric,
+            per_rank=[(own, None if rank else beside) for rank, own in enumerate(more)],
+        )  # fmt: skip
 
         def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
             s = saddle(self.system.unit, self.system.operator, replace(rows, residual=of_law), residual)
@@ -166,9 +161,14 @@ class Direct:
             return self._solve(0, True, force, None)[0]
 
     def _solve(self, n: int, symmetric: bool, rhs: Vector, beside: Conditions | None) -> tuple[Vector, Vector]:
-        shares = self.matrix.layout.shares(rhs)
-        arguments = [(share, None if rank else beside) for rank, (share,) in enumerate(shares)]
-        return self._checked(self.matrix.team.each(factorise, n, symmetric, per_rank=arguments))
+        matrix, team = self.matrix, self.matrix.team
+        both = zip(matrix.layout.shares(rhs), matrix.beside_by_process())
+        arguments = [(share, more, None if rank else beside) for rank, ((share,), more) in enumerate(both)]
+        answers = team.each(factorise, matrix.kept.number, n, symmetric, per_rank=arguments)
+        if not (answers[0].error < SINGULAR or answers[0].memory):  # perhaps for an analysis made for other values
+            team.each(drop_factors)
+            answers = team.each(factorise, matrix.kept.number, n, symmetric, per_rank=arguments)
+        return self._checked(answers)
 
     def _checked(self, answers: list[Answer]) -> tuple[Vector, Vector]:
         if answers[0].memory:
@@ -215,11 +215,15 @@ class PetscIterations:
                 f"-ksp_type {krylov_method()} is for symmetric matrices, which friction does not leave (contact "
                 f"'{rubs[0]}'): leave the option out"
             )
-        if previous is None or previous.system.stiffness is not matrix:
-            matrix.team.each(multigrid, per_rank=matrix.layout.shares(np.linalg.qr(self.motions)[0]))
-        pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
+        if isinstance(previous, Iterative) and previous.system.stiffness is matrix:
+            whole = previous.matrix
+        else:
+            whole = matrix.whole()
+            shares = whole.layout.shares(np.linalg.qr(self.motions)[0])
+            whole.team.each(multigrid, whole.kept.number, per_rank=shares)
+        pressures = pressure_block(system.pairs, system.operator, whole.diagonal())
         predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
-        return Iterative(system, pressures, predict, self.count)
+        return Iterative(system, whole, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""
@@ -311,6 +315,23 @@ def spread(rows: Sparse, layout: Layout) -> Sparse:
     entries = rows.tocoo()
     shape = rows.shape[0], int(layout.starts[-1])
     return sp.csr_matrix((entries.data, (entries.row, layout.slot[entries.col])), shape=shape)
+
+
+def possible(system: Linearised, layout: Layout) -> tuple[Sparse, Sparse]:
+    """Ones where rows of the laws may have entries, whatever the contact status: by displacements (n, n_places) and by
+    multipliers (n, n). A row sees all multipliers of its function, and what they see."""
+    whole = sp.block_diag([_of_functions(pair) for pair in system.pairs], format="csr")
+    return spread(whole @ abs(system.operator), layout), whole
+
+
+def _of_functions(pair: Pair) -> Sparse:
+    """(n, n) ones between multipliers of the same function."""
+    if not pair.frictional:
+        return sp.identity(len(pair), format="csr")
+    function, component = np.nonzero(pair.index >= 0)
+    shape = len(pair), len(pair.index)
+    by = sp.csr_matrix((np.ones(len(function)), (pair.index[function, component], function)), shape=shape)
+    return (by @ by.T).tocsr()
 
 
 def displacement(answers: list[Answer], layout: Layout) -> Vector:

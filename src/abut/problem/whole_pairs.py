@@ -26,10 +26,11 @@ def whole_pairs(model: Model, constraints: Constraints) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
 
     Raises InputError for what goes with small displacements only."""
-    return [
+    made = [
         pair(model, contact, constraints) if contact.kind == "tied" else whole_pair(model, contact, constraints)
         for contact in model.contacts
     ]
+    return [replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim)) for each in made]
 
 
 def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:

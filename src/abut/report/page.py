@@ -84,6 +84,8 @@ def _head(solution: Solution, origin: Origin) -> str:
     theory = [row for row in comparison(solution, origin.expected) if not row["passed"]]
     if not solution.converged:
         good, verdict = False, f"Not converged at step {solution.steps[-1].number}: what follows is the last state."
+    elif not solution.complete:
+        good, verdict = False, f"Stopped after step {len(solution.steps)}: there are steps left."
     elif failed:
         names = ", ".join(f"{c.contact}: {c.name}" if c.contact else c.name for c in failed)
         good, verdict = False, f"Converged, but {len(failed)} of {len(solution.certificate)} checks fail: {names}."
