@@ -11,8 +11,8 @@ from models.rolling import DOWN, LENGTH, roller
 
 @pytest.mark.parametrize("friction", [0.4, 0.1])
 def test_a_roller_goes_half_as_far_as_the_plate_that_rolls_it(friction: float) -> None:
-    """Rolling without slip; the roller must not be thrown out where for an iteration everything seems to slip. To the share
-    by which the rubber's circumference shortens under pressure, of the order of the square of b / R = 0.3, and its facets."""
+    """Rolling without slip; the roller must not be thrown out where for an iteration everything seems to slip. To the
+    share by which rubber shortens along the contact, of the order of the square of b / R = 0.3, over a tenth of a turn."""
     model = roller(10, friction)
     solution = abut.solve(model)
     assert solution.converged

@@ -1,4 +1,5 @@
-"""Bodies that contact alone holds, in Newton's method at large displacements: an iteration that lets go of one throws it away."""
+"""Bodies that contact alone holds, in Newton's method at large displacements: an iteration that lets go of one throws it
+away."""
 
 from __future__ import annotations
 
@@ -17,8 +18,8 @@ FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a
 
 
 def sticking(problem: ContactProblem, system: Linearised, state: State) -> State:
-    """The state for an iteration: where a body could slip away since all that touches it slips, all of it sticks, which tells
-    the tractions that it takes."""
+    """The state for an iteration: where a body could slip away since all that touches it slips, all of it sticks, which
+    tells the tractions that it takes. Theory (G11)."""
     if system.restraint.by_supports or not _all_slips(system, state):
         return state
     rigid, supports = _now(problem, system)

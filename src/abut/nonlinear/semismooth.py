@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.forcing import FINE, forcing
-from abut.nonlinear.holding import sticking, thrown_apart
 from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.holding import sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
