@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from abut._core import couple_tangent
 from abut.cells import MAX_FACET_NODES
-from abut.contact.block_rows import CompressedRows, block_rows
+from abut.contact.block_rows import CompressedRows, block_rows, in_place
 from abut.contact.coupling import CouplingOptions, check_pair, cutting_arguments, point_columns
 from abut.contact.geometry import Smoothing
 from abut.contact.moving_normals import MovingNormals, normal_pattern
@@ -28,7 +28,7 @@ from abut.types import Array, Json, Sparse
 @dataclass(frozen=True)
 class ContactLoad:
     """Coefficients of the facet-wise functions. pressure: (9 n_facets,); traction: (9 n_facets, dim) vectors, of which the
-    part square to the normal counts; turned: (9 n_facets,) in 2D, along the normal turned by a right angle; None for none."""
+    part square to the normal counts; turned: (9 n_facets,) in 2D, along the normal turned by a right angle; or None."""
 
     pressure: Array
     traction: Array | None = None
@@ -70,10 +70,10 @@ class CouplingTangent:
 
     def slope(self, shares: Array) -> Sparse:
         """(9 n_facets, dim n_points) in blocks, derivative of so much of int H_k g and of int H_k, (2,)."""
-        (points, *of_points), (normals, *of_normals) = self.by_points, self.by_normals
+        normals, points = ((shares @ parts[0])[:, None] for parts in (self.by_normals, self.by_points))
         dim = points.shape[2]
-        by_normals = block_rows(((shares @ normals)[:, None], *of_normals), self.turning.shape[0] // dim)
-        by_points = block_rows(((shares @ points)[:, None], *of_points), self.turning.shape[1] // dim)
+        by_normals = block_rows(in_place(normals, self.by_normals), self.turning.shape[0] // dim)
+        by_points = block_rows(in_place(points, self.by_points), self.turning.shape[1] // dim)
         return by_points + by_normals @ self.turning
 
 
@@ -141,7 +141,9 @@ def normal_derivative(contactor: Surface, across: Smoothing | None = None) -> Sp
     turning = normals.turning(len(contactor.points))
     used = np.flatnonzero(normals.numbers.ravel() >= 0)
     ones, dim = np.ones(len(used)), contactor.dim
-    place = sp.csr_matrix((ones, (used, normals.numbers.ravel()[used])), (normals.numbers.size, turning.shape[0] // dim))
+    place = sp.csr_matrix(
+        (ones, (used, normals.numbers.ravel()[used])), (normals.numbers.size, turning.shape[0] // dim)
+    )
     return (sp.kron(place, sp.identity(dim), format="csr") @ turning).tocsr()
 
 

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 class SlipPoints:
     """Integration points (n of them) of the last converged step: constants of the next one, theory (G6).
 
-    facet, target_facet: (n,) int32; weight: (n,) area; pressure, own, other: (n, 9) values of the facet-wise pressure functions
-    and of the shape functions of the contactor's and the target's facet."""
+    facet, target_facet: (n,) int32; weight: (n,) area; pressure, own, other: (n, 9) values of the facet-wise pressure
+    functions and of the shape functions of the contactor's and the target's facet."""
 
     facet: NDArray[np.int32]
     target_facet: NDArray[np.int32]
