@@ -42,7 +42,7 @@ class CouplingTangent:
 
     gap_value, weight_value: (9 n_facets,) int H_k g and int H_k.
     operators: of 9 n_facets rows, blocks (n, 1, dim) of int H_k (N_C - N_T) N and, in 3D with tractions, beside each other
-               (n, 1, dim + dim^2) with int H_k (N_C - N_T) (I - N N).
+               (n, 1, dim + dim^2) with int H_k (N_C - N_T) (I - N N): theory (T6).
     force:     (dim n_points,) sum_k int H_k (p_k N + (I - N N) t_k) (N_C - N_T) da: what the contact does to the nodes.
     force_tangent: (dim n_points, dim n_points), its derivative at constant p and t; not symmetric.
     by_points, by_normals: of 9 n_facets rows, blocks (n, 2, dim), derivatives of int H_k g and int H_k by points and by the

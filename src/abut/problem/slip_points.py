@@ -84,7 +84,7 @@ class SlipNow:
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, normals: MovingNormals) -> SlipNow:
     """Of theory (G6), at the positions of two surfaces over one array of points, normals being the contactor's: sum w H
     (x_C - x_T) . tau in 2D (c = 1), with tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square
-    to the normal."""
+    to the normal. Derivatives by theory (T7)."""
     raw = slip_tangent(
         points_c=contactor.points,
         nodes_c=contactor.nodes,
