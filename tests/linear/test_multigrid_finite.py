@@ -6,17 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import abut
 from abut.analysis.run import Run
 from abut.linear import iterative
 from abut.linear.bodies_now import bodies_now
+from abut.linear.choice import choose
 from abut.linear.krylov import fgmres
 from abut.linear.multigrid import hierarchy
+from abut.linear.schur_preconditioner import interfaces, schur_inverse, selection
 from abut.mesh import make
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
 from models.rigid import glued
-from models.sliding import FIRST, SOFT, THEN, arched, bent, turned
+from models.sliding import FIRST, SOFT, THEN, arched, bent, finite, turned
 
 TWO_STEPS = abut.SolveOptions(times=(0.4, 1.0))
 AGREE = 1e-6  # equilibrium is met to 1e-9 of the largest force, and pressures and slip are worse conditioned
@@ -181,3 +185,33 @@ def test_a_body_that_turns_far() -> None:
 def at_rest(system: Linearised) -> Linearised:
     """The same system with its state forgotten."""
     return replace(system, about=None)
+
+
+def test_large_models_choose_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By size in 3D, never in 2D."""
+    flat, solid = (finite(model) for model in (arched(0.3), cushion(0.3, "hex8", (4, 3))))
+    assert choose("auto", solid) == choose("auto", flat) == "direct"
+    monkeypatch.setattr("abut.linear.choice.LARGE_FINITE", {1: 100, 2: 100})
+    assert choose("auto", solid) == "amg"
+    assert choose("auto", flat) == "direct"
+
+
+def test_tractions_do_not_depend_on_the_tangents_they_have() -> None:
+    """Tangents turned by an angle of its own at every function: the inverse of S turns with them."""
+    pair = finite(cushion(0.3, "hex8", (4, 3))).pairs[0]
+    assert pair.slip is not None
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(0.0, 2.0 * np.pi, len(pair.space))
+    turns = np.stack([turned(angle) for angle in angles])
+    other = replace(pair, slip=replace(pair.slip, tangents=np.einsum("kab,kbd->kad", turns, pair.slip.tangents)))
+    every = selection(np.ones(len(pair), dtype=bool))
+    values = rng.standard_normal((len(pair.space), 2))
+
+    def answer(of: Pair, jumps: NDArray[np.float64]) -> NDArray[np.float64]:
+        gap = np.zeros(len(of))
+        gap[of.index[:, 1:]] = jumps
+        return schur_inverse(interfaces([of]), every)(gap)[of.index[:, 1:]]
+
+    here = np.einsum("kab,kb->ka", turns, answer(pair, values))
+    there = answer(other, np.einsum("kab,kb->ka", turns, values))
+    assert np.abs(here - there).max() < 1e-3 * np.abs(here).max()  # the root is taken to 1 %, over a spectrum that is estimated

@@ -80,9 +80,7 @@ class Direct:
         self.repeated.begin(system.time)
         pairs = system.pairs
         moved = np.asarray(system.operator @ system.motions)
-        return SaddlePoint(
-            system, foresight(lambda: half_spaces(interfaces(pairs)), moved), repeated=self.repeated
-        )
+        return SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved), repeated=self.repeated)
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""

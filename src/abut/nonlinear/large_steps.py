@@ -34,7 +34,8 @@ def march_finite(
     while (time := pace.end) is not None:
         if cuts == 0 and stands_in is None:
             control.begins(number, time)
-        guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
+        begins = cuts or pace.turned or earlier is None or let_go(problem, earlier, before)
+        guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         step = Step(problem, before, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
@@ -54,6 +55,12 @@ def march_finite(
             yield attempt
             return
         control.halves(attempt, pace.end or time)
+
+
+def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
+    """Whether a contact has ended between two states: bodies that have sprung back do not go on as they came."""
+    parts = zip(problem.pairs, problem.split(earlier.closed), problem.split(before.closed))
+    return any(was[pair.normal].any() and not now[pair.normal].any() for pair, was, now in parts if not pair.tied)
 
 
 def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:

@@ -203,12 +203,12 @@ class PetscIterations:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for the
-        constraint function, whose rows the preconditioner does not know."""
+        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for laws or
+        Krylov methods that do not go with it."""
         known = previous if isinstance(previous, Iterative) else None
         if known is not None and known.system.same_matrices(system):
             return replace(known, system=system)
-        _require_known(system)
+        _require_general(system)
         if system.about is not None:
             return self._at_state(system, known)
         if known is not None and known.system.stiffness is system.stiffness:
@@ -250,19 +250,18 @@ class PetscIterations:
         return f"{self.name}, {_processes(prepared.matrix.team)}"
 
 
-def _require_known(system: Linearised) -> None:
-    """Raises InputError for laws that iterations do not know, and for Krylov methods that do not know the laws."""
-    smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-    if smooth:
-        raise InputError(
-            f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
-            '"complementarity", or leave the option -pc_type out'
-        )
+def _require_general(system: Linearised) -> None:
+    """Raises InputError for Krylov methods of symmetric matrices where the laws do not leave such."""
     if krylov_method() not in SYMMETRIC:
         return
-    rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
-    if rubs or system.about is not None:
-        why = f"friction does not leave (contact '{rubs[0]}')" if rubs else "finite kinematics does not leave"
+    bends = [
+        f"{what} does not leave (contact '{pair.contact.name}')"
+        for pair in system.pairs
+        for what, is_so in (("friction", pair.frictional), ("the constraint function", pair.smooth))
+        if is_so
+    ]
+    if bends or system.about is not None:
+        why = bends[0] if bends else "finite kinematics does not leave"
         raise InputError(f"-ksp_type {krylov_method()} is for symmetric matrices, which {why}: leave the option out")
 
 
@@ -309,6 +308,14 @@ def choose(problem: ContactProblem) -> str:
             "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
+    smooth = [pair.contact.name for pair in problem.pairs if pair.smooth and pair.frictional]
+    if wants_iterations() and smooth:
+        raise InputError(
+            f"PETSc's iterations know friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
+            'function for it; choose law = "complementarity", or leave -ksp_type and -pc_type out'
+        )
+    if smooth:
+        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
