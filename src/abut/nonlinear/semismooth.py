@@ -12,7 +12,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
-from abut.linear.solver import LinearSolver
+from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.apart import thrown_apart
+from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
@@ -49,8 +51,8 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. done: its
-    iterations, which grow; failed: why it ended without a solution."""
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. prepared:
+    the linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
 
     problem: FiniteProblem
     before: State
@@ -59,8 +61,14 @@ class Step:
     limit: int
     observe: Callable[[Iteration], None]
     careful: bool = False
+    prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
+
+    def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
+        """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
+        self.prepared = self.solver.prepare(system, self.prepared)
+        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
@@ -72,6 +80,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     except (SingularModelError, Unsound) as reason:
         step.failed = str(reason)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
+    step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
 
 
@@ -89,7 +98,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _advanced(step, here.system, here.state, here.laws))
+        there = _balance(step, step.advanced(here.system, here.state, here.laws, forcing(here.error, before, BALANCED)))
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -112,7 +121,7 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return _advanced(step, system, state, laws_of(system, state))
+    return step.advanced(system, state, laws_of(system, state), FINE)
 
 
 def _kept(step: Step, here: Balance) -> Balance:
@@ -133,11 +142,6 @@ def _kept(step: Step, here: Balance) -> Balance:
         return here
     state = here.state.with_status(wanted)
     return replace(here, state=state, laws=laws_of(here.system, state))
-
-
-def _advanced(step: Step, system: Linearised, state: State, laws: Sequence[LawRows]) -> State:
-    """One Newton iteration."""
-    return smallest(system, advance(step.solver.prepare(system, None), state, yielding(system, laws)))
 
 
 def laws_of(system: Linearised, state: State) -> list[LawRows]:

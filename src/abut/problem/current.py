@@ -9,13 +9,15 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.contact.block_rows import added_up, block_rows, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
-from abut.contact.coupling_tangent import coupling_tangent
+from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, smoothing
-from abut.contact.tangential import SlipOperators, quarter, slip_operators
+from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
-from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
+from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
+from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse
 
@@ -50,30 +52,45 @@ class Place:
 
 @dataclass(frozen=True)
 class Current:
-    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``."""
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
+    and integrates, here or on several processes."""
 
     pair: Pair
+    differentiate: Differentiate = differentiated
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
-        pair = self.pair
+        pair, down = self.pair, self._down
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
-        coupling = couple(contactor, target, pair.coupling.degree, options, across=self._across)
-        pressure = pair.space.transfer @ multipliers[pair.normal]
-        by = coupling_tangent(contactor, target, pair.coupling.degree, options, pressure, across=self._across)
-        down = pair.space.transfer.T
-        weight = np.asarray(down @ coupling.weight)
-        slope = by.gap if place.offset == 0.0 or by.weight is None else by.gap + place.offset * by.weight
+        normals = self._normals.at(contactor)
+        tangents = self._tangents(contactor, normals, multipliers)
+        load = self._load(multipliers, tangents)
+        by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
+        points, dim = len(contactor.points), contactor.dim
+        along, *places = added_up(down, by.operators, points)
+        weight = np.asarray(down @ by.weight_value)
+        slope = down @ by.slope(np.array([1.0, place.offset]))
         now = ContactNow(
             replace(
-                pair, contactor=contactor, target=target, coupling=coupling, space=replace(pair.space, weight=weight),
-                rows=(down @ coupling.operator).tocsr(),
+                pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
+                rows=block_rows((along[..., :dim], *places), points).tocsr(),
             ),
-            np.asarray(down @ coupling.gap + place.offset * weight),
-            (down @ slope).tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
+            np.asarray(down @ by.gap_value + place.offset * weight),
+            slope.tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
-        return self._with_friction(now, place, options, multipliers) if pair.frictional else now
+        if not pair.frictional:
+            return now
+        assert place.points is not None
+        slip = slip_now(place.points, contactor, target, normals)
+        if tangents is None:
+            turned = tangents_2d(normals, *self._anchors)
+            made = rub_in_plane(self._down_along, by, added_up(self._down_along, by.operators, points), slip)
+        else:
+            square = along[..., dim:].reshape(-1, dim, dim), *places
+            turned, made = tangents.now.tangents, rub_in_space(down, by, square, slip, tangents, contactor)
+        covered = pair.space.plain.T @ place.points.moments(len(contactor))
+        return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
 
     def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
         """Contactor and target at a displacement (dim n_points,)."""
@@ -82,13 +99,12 @@ class Current:
 
     def points(self, displacement: Array) -> SlipPoints:
         """The integration points at a displacement, from which the next step's slip counts."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_points=True)
-        surfaces = self.surfaces(displacement)
-        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options, across=self._across))
+        options = self._options(np.zeros_like(displacement))
+        return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
 
-    def shown(self, displacement: Array) -> Coupling:
-        """With what results ask for beside it."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True)
+    def shown(self, displacement: Array, points: bool = False) -> Coupling:
+        """With what results ask for beside it; points: integration points, too."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
         return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
 
     def _options(self, moved: Array) -> CouplingOptions:
@@ -119,87 +135,54 @@ class Current:
         assert self.pair.slip is not None
         return Frames.of(self.pair.contactor, self.pair.space, self.pair.slip.tangents)
 
-    def _with_friction(self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array) -> ContactNow:
-        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
-        pair, now_pair = self.pair, now.pair
-        assert place.points is not None
-        slip = slip_now(place.points, now_pair.contactor, now_pair.target, self._across)
-        rubbed = self._in_plane if now_pair.contactor.dim == 2 else self._in_space
-        made = rubbed(now_pair, slip, options, multipliers)
-        covered = pair.space.plain.T @ place.points.moments(len(now_pair.contactor))
-        assert pair.slip is not None
-        moved = replace(pair.slip, operators=made.operators, tangents=made.tangents)
-        return ContactNow(
-            replace(now_pair, rows=sp.vstack([now_pair.rows, made.rows]).tocsr(), slip=moved),
-            np.concatenate([now.gap, made.slip]),
-            sp.vstack([now.by_position, made.by_position]).tocsr(),
-            (now.bending + made.bending).tocsr(),
-            covered < KNOWN * pair.weight[pair.normal],
-        )  # fmt: skip
+    @cached_property
+    def _normals(self) -> NormalPattern:
+        return normal_pattern(self.pair.contactor, self._across)
 
-    def _in_plane(self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
-        """2D: forces of a traction are those of a pressure, turned by a right angle at every point."""
-        part = self.pair.components[1].transfer
-        turn = quarter(len(now_pair.contactor.points))
-        along = part @ multipliers[self.pair.tangential]
-        by = coupling_tangent(
-            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, along, across=self._across
-        )
-        turned_rows = (now_pair.coupling.operator @ turn).tocsr()
-        return Rubbing(
-            rows=part.T @ turned_rows, slip=np.asarray(part.T @ slip.value[:, 0]), by_position=part.T @ slip.by_position[0],
-            bending=turn.T @ by.force_tangent, tangents=tangents_2d(now_pair.contactor, self._across, *self._anchors),
-            operators=SlipOperators((turned_rows,), now_pair.coupling.gap[:, None]),
-        )  # fmt: skip
+    @cached_property
+    def _down(self) -> Sparse:
+        """(n_functions, 9 n_facets)."""
+        return weights_of_rows(self.pair.space.transfer.T)
 
-    def _in_space(self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array) -> Rubbing:
-        """3D: two components along tangents that turn with the surface."""
-        pair, x = self.pair, now_pair.contactor.points
-        kept = replace(options, keep_points=True)
-        at = couple(now_pair.contactor, now_pair.target, now_pair.coupling.degree, kept, across=self._across).points
-        assert at is not None
-        operators = slip_operators(at, x)
-        fields = [pair.space.transfer.T @ along for along in operators.along]
-        value = pair.space.transfer.T @ slip.value
-        change = [pair.space.transfer.T @ by for by in slip.by_position]
-        tangents, by_tangent = self._frames.at(now_pair.contactor, self._across)
-        rows, slips, slopes, bending = [], [], [], sp.csr_matrix((x.size, x.size))
-        traction = np.zeros((len(pair.space), 3))
-        for b, by in enumerate(by_tangent):
-            has = pair.index[:, 1 + b] >= 0
-            t = np.where(has, multipliers[np.maximum(pair.index[:, 1 + b], 0)], 0.0)
-            traction += t[:, None] * tangents[:, b]
-            parts = [by[a::3] for a in range(3)]
-            rows.append(sum(sp.diags(tangents[:, b, a]) @ fields[a] for a in range(3)).tocsr()[has])
-            slips.append(np.einsum("nd,nd->n", value, tangents[:, b])[has])
-            slopes.append(
-                sum(
-                    sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)
-                ).tocsr()[has]
-            )
-            bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
-        by_force = coupling_tangent(
-            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, np.zeros(len(now_pair.coupling.gap)),
-            pair.space.transfer @ traction, across=self._across,
-        )  # fmt: skip
-        return Rubbing(
-            sp.vstack(rows),
-            np.concatenate(slips),
-            sp.vstack(slopes),
-            bending + by_force.force_tangent,
-            tangents,
-            operators,
-        )
+    @cached_property
+    def _down_along(self) -> Sparse:
+        """The same for tractions in 2D."""
+        return weights_of_rows(self.pair.components[1].transfer.T)
+
+    @cached_property
+    def _kept(self) -> NDArray[np.int64]:
+        """Of two tractions a function, in 3D, those that have multipliers."""
+        return np.concatenate([2 * np.flatnonzero(self.pair.index[:, 1 + b] >= 0) + b for b in range(2)])
+
+    def _tangents(self, contactor: Surface, normals: MovingNormals, multipliers: Array) -> Tangents | None:
+        """With their tractions; None in 2D, and without friction."""
+        if contactor.dim == 2 or not self.pair.frictional:
+            return None
+        index = self.pair.index[:, 1:]
+        along = np.where(index >= 0, multipliers[np.maximum(index, 0)], 0.0)
+        return Tangents(self._frames, self._frames.at(contactor, normals), along, self._kept)
+
+    def _load(self, multipliers: Array, tangents: Tangents | None) -> ContactLoad:
+        pair = self.pair
+        pressure = pair.space.transfer @ multipliers[pair.normal]
+        if tangents is not None:
+            return ContactLoad(pressure, traction=pair.space.transfer @ tangents.traction)
+        if pair.frictional:
+            return ContactLoad(pressure, turned=pair.components[1].transfer @ multipliers[pair.tangential])
+        return ContactLoad(pressure)
 
 
-@dataclass(frozen=True)
-class Rubbing:
-    """What friction adds, m rows. rows: (m, dim n_points) of the forces; slip: (m,) weighted; by_position: its derivative;
-    bending: derivative of the forces; tangents: (n_functions, dim - 1, dim); operators: of the slip, facet by facet."""
-
-    rows: Sparse
-    slip: Array
-    by_position: Sparse
-    bending: Sparse
-    tangents: Array
-    operators: SlipOperators
+def _with(now: ContactNow, made: Rubbing, tangents: Array, without_history: NDArray[np.bool_]) -> ContactNow:
+    """The same with friction; tangents: (n_functions, dim - 1, dim)."""
+    assert now.pair.slip is not None
+    return ContactNow(
+        replace(
+            now.pair,
+            rows=sp.vstack([now.pair.rows, made.rows], format="csr"),
+            slip=replace(now.pair.slip, tangents=tangents),
+        ),
+        np.concatenate([now.gap, made.slip]),
+        sp.vstack([now.by_position, made.by_position], format="csr"),
+        now.bending if made.bending is None else (now.bending + made.bending.tocsr()),
+        without_history,
+    )

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.contact.coupling_tangent import normal_derivative
-from abut.contact.geometry import Smoothing, by_kind, nodal_normals, node_coordinates, split_at_creases
+from abut.contact.block_rows import block_rows
+from abut.contact.geometry import by_kind, node_coordinates, split_at_creases
+from abut.contact.moving_normals import MovingNormals, crossing
 from abut.contact.pressure_space import PressureSpace
 from abut.contact.tangential import turned
 from abut.mesh.surface import Surface
@@ -49,19 +49,11 @@ class Frames:
         handed = -np.sign(np.einsum("nd,nd->n", np.cross(normal, tangents[:, 0]), tangents[:, 1]))
         return cls(facet, local, np.einsum("nja,na->nj", both, share), handed)
 
-    def at(self, contactor: Surface, across: Smoothing) -> tuple[Array, tuple[Sparse, Sparse]]:
-        """Tangents (n, 2, 3) square to each other and to the normal now, theory (G5), and their derivatives, (3 n, 3
-        n_points) each."""
-        x, n = contactor.points, len(self.facet)
-        nodes = np.maximum(contactor.nodes[self.facet], 0)
-        normal = -nodal_normals(contactor, across)[self.facet, self.local]
+    def at(self, contactor: Surface, normals: MovingNormals) -> FramesNow:
+        """Tangents square to each other and to the normal now, theory (G5)."""
+        x, nodes = contactor.points, np.maximum(contactor.nodes[self.facet], 0)
+        normal = -normals.values[self.facet, self.local]
         along = np.einsum("nj,njd->nd", self.slopes, x[nodes])
-        row = np.repeat(np.arange(n), MAX_FACET_NODES)
-        by_along = sp.kron(
-            sp.csr_matrix((self.slopes.ravel(), (row, nodes.ravel())), shape=(n, len(x))), sp.identity(3), format="csr"
-        )
-        place = 3 * (MAX_FACET_NODES * self.facet + self.local)[:, None] + np.arange(3)
-        by_normal = -normal_derivative(contactor, across)[place.ravel()]
         up = np.einsum("nd,nd->n", normal, along)
         flat = along - up[:, None] * normal
         length = np.linalg.norm(flat, axis=1)[:, None, None]
@@ -69,11 +61,37 @@ class Frames:
         square = (np.eye(3) - first[:, :, None] * first[:, None]) / length
         level = np.eye(3) - normal[:, :, None] * normal[:, None]
         turn = up[:, None, None] * np.eye(3) + normal[:, :, None] * along[:, None]
-        by_first = _blocks(square @ level) @ by_along - _blocks(square @ turn) @ by_normal
+        by_along, by_outward = square @ level, square @ turn
         second = self.handed[:, None] * np.cross(normal, first)
         sign = self.handed[:, None, None]
-        by_second = _blocks(sign * _crossing(normal)) @ by_first - _blocks(sign * _crossing(first)) @ by_normal
-        return np.stack([first, second], axis=1), (by_first.tocsr(), by_second.tocsr())
+        by_first, by_normal = sign * crossing(normal), sign * crossing(first)
+        return FramesNow(
+            np.stack([first, second], axis=1),
+            np.stack([by_along, by_first @ by_along], axis=1),
+            np.stack([by_outward, by_first @ by_outward + by_normal], axis=1),
+            normals.numbers[self.facet, self.local],
+        )
+
+    def spread(self, contactor: Surface, values: Array) -> Sparse:
+        """What blocks (n, r, 3) of derivatives by the first tangent's direction are by the points, (r n, 3 n_points)."""
+        used = (contactor.nodes[self.facet] >= 0) & (self.slopes != 0.0)
+        row, local = np.nonzero(used)
+        node = contactor.nodes[self.facet][row, local]
+        order = np.lexsort((node, row))
+        row, local, node = row[order], local[order], node[order]
+        start = np.searchsorted(row, np.arange(len(values) + 1))
+        return block_rows((self.slopes[row, local][:, None, None] * values[row], node, start), len(contactor.points))
+
+
+@dataclass(frozen=True)
+class FramesNow:
+    """Tangents (n, 2, 3), and their derivatives (n, 2, 3, 3) by the direction that the first one follows, ``Frames.spread``,
+    and by the nodal normal, out of the contactor, of number ``number`` (n,)."""
+
+    tangents: Array
+    by_along: Array
+    by_normal: Array
+    number: NDArray[np.int32]
 
 
 def anchors(contactor: Surface, space: PressureSpace) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -85,20 +103,6 @@ def anchors(contactor: Surface, space: PressureSpace) -> tuple[NDArray[np.int64]
     return facet[at], local[at]
 
 
-def tangents_2d(contactor: Surface, across: Smoothing, facet: NDArray[np.int64], local: NDArray[np.int64]) -> Array:
+def tangents_2d(normals: MovingNormals, facet: NDArray[np.int64], local: NDArray[np.int64]) -> Array:
     """(n, 1, 2): the normal from target to contactor turned by a right angle."""
-    return turned(-nodal_normals(contactor, across)[facet, local])[:, None]
-
-
-def _blocks(values: Array) -> Sparse:
-    """(3 n, 3 n) from blocks (n, 3, 3) on the diagonal."""
-    n = np.arange(len(values) + 1)
-    return sp.bsr_matrix((np.ascontiguousarray(values), n[:-1], n), shape=(3 * len(values),) * 2).tocsr()
-
-
-def _crossing(v: Array) -> Array:
-    """The matrices (n, 3, 3) of w -> v x w."""
-    result = np.zeros((*v.shape, 3))
-    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        result[:, a, c], result[:, c, a] = v[:, b], -v[:, b]
-    return result
+    return turned(-normals.values[facet, local])[:, None]
