@@ -214,6 +214,4 @@ def test_tractions_do_not_depend_on_the_tangents_they_have() -> None:
 
     here = np.einsum("kab,kb->ka", turns, answer(pair, values))
     there = answer(other, np.einsum("kab,kb->ka", turns, values))
-    assert (
-        np.abs(here - there).max() < 1e-3 * np.abs(here).max()
-    )  # the root is taken to 1 %, over a spectrum that is estimated
+    assert np.abs(here - there).max() < 1e-3 * np.abs(here).max()  # the root is taken to 1 %, over a spectrum that is estimated

@@ -111,7 +111,9 @@ BENCHMARKS = (
             "force half down": Reference(0.94e8, 0.01, SOURCE, MESH),
             "force down": Reference(3.17e8, 0.01, SOURCE, MESH),
             "force on the slab": Reference(4.04e8, 0.01, SOURCE, MESH),
-            "force along the slab": Reference(1.31e8, 0.01, SOURCE, MESH + "; mean from 2.5 to 7 of 10, where it rises and falls by 1 %"),
+            "force along the slab": Reference(
+                1.31e8, 0.01, SOURCE, MESH + "; mean from 2.5 to 7 of 10, where it rises and falls by 1 %"
+            ),
             "iterations": _few(300.0, "linear solutions"),
             "steps": _few(60.0, "load steps"),
         },

@@ -120,7 +120,9 @@ def _rate_places(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]
 
 def _all_rates(surface: Surface) -> list[NDArray[np.float64]]:
     """Derivatives of the area vectors at each facet's nodes by its points, (facets, nodes, nodes, dim, dim) by kind."""
-    return [_area_rates(surface, kind, surface.nodes[facets, : CELLS[kind].nodes]) for kind, facets in by_kind(surface)]
+    return [
+        _area_rates(surface, kind, surface.nodes[facets, : CELLS[kind].nodes]) for kind, facets in by_kind(surface)
+    ]
 
 
 def _area_rates(surface: Surface, kind: str, nodes: Array) -> NDArray[np.float64]:

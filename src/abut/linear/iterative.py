@@ -176,9 +176,7 @@ class Multigrid:
         levels = hierarchy((0.5 * (elastic + elastic.T)).tocsr(), bodies.free, bodies.near_null, bodies.points)
         beside = loose(system, bodies, levels, self.count)
         made = self._with_pressures(
-            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]),
-            replace(levels, product=product),
-            beside,
+            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]), replace(levels, product=product), beside
         )
         return replace(made, system=system, pressures=replace(made.pressures, covered=covered))
 

@@ -92,6 +92,4 @@ def _along(tangents: Array, parts: CompressedRows) -> CompressedRows:
 
 def _at_normals(values: Array, number: NDArray[np.int32], normals: int) -> Sparse:
     """A block (n, r, 3) a row, in the columns of the nodal normals."""
-    return sp.bsr_matrix(
-        (values, number, np.arange(len(values) + 1)), shape=(values.shape[1] * len(values), 3 * normals)
-    )
+    return sp.bsr_matrix((values, number, np.arange(len(values) + 1)), shape=(values.shape[1] * len(values), 3 * normals))
