@@ -83,12 +83,12 @@ def test_light_touch_counts_as_much_as_its_pressure() -> None:
 
 
 def rippled(raw: NDArray[np.float64]) -> float:
-    """The line "oscillation" of a surface of 16 facets with multipliers (17,) and the averages that are reported, theory (P10)."""
+    """The line "oscillation" of 16 facets with multipliers (17,) and the averages that are reported, theory (P10)."""
     sides = {"lower": (0, 1), "upper": (1, 2)}
     mesh = join({name: rectangle((0, 1), y, (16, 1), "quad4") for name, y in sides.items()})
     model = abut.Model(
         mesh, [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
-        [abut.Support("lower.bottom", x=0, y=0)], contacts=[abut.Contact("lower.top", "upper.bottom")], plane="strain",
+        [abut.Support("lower.bottom", x=0, y=0)], contacts=[abut.Contact("lower.top", "upper.bottom", pressure="P1")], plane="strain",
     )  # fmt: skip
     own = pair(model, model.contacts[0], supports(model))
     surface = own.contactor

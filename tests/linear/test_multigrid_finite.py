@@ -6,17 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import abut
 from abut.analysis.run import Run
 from abut.linear import iterative
 from abut.linear.bodies_now import bodies_now
+from abut.linear.choice import choose
 from abut.linear.krylov import fgmres
 from abut.linear.multigrid import hierarchy
+from abut.linear.schur_preconditioner import interfaces, schur_inverse, selection
 from abut.mesh import make
-from abut.mesh.mesh import Mesh
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
-from models.sliding import FIRST, SOFT, THEN, arched, bent, turned
+from models.rigid import glued
+from models.sliding import FIRST, SOFT, THEN, arched, bent, finite, turned
 
 TWO_STEPS = abut.SolveOptions(times=(0.4, 1.0))
 AGREE = 1e-6  # equilibrium is met to 1e-9 of the largest force, and pressures and slip are worse conditioned
@@ -80,8 +84,8 @@ def test_in_the_plane() -> None:
 
 
 def stacked() -> abut.Model:
-    """A pad glued to a rigid back that is free to sink and to tilt, pressed on a slab and pulled along it; only friction with
-    the ground holds the slab. Equations tie points of the pad, and a pressure follows its side."""
+    """A pad glued to a rigid back that is free to sink and to tilt, pressed on a slab and pulled along it; only friction
+    with the ground holds the slab. Equations tie points of the pad, and a pressure follows its side."""
     mesh = make.join(
         {
             "ground": make.box([-0.2, 1.4], [-0.2, 1.2], [-0.4, 0], cells=[3, 3, 1]),
@@ -104,17 +108,6 @@ def stacked() -> abut.Model:
             abut.Contact("pad.bottom", "slab.top", friction=0.2), abut.Contact("slab.bottom", "ground.top", friction=0.6),
         ], solve=TWO_STEPS,
     )  # fmt: skip
-
-
-def glued(mesh: Mesh, body: str, surface: str) -> Mesh:
-    """The mesh with each point of ``body`` that lies on a surface replaced by the surface's own."""
-    nodes = mesh.nodes_of(surface)
-    place = np.arange(len(mesh.points))
-    for node in mesh.nodes_of(body):
-        (same,) = np.nonzero(np.abs(mesh.points[nodes] - mesh.points[node]).max(axis=1) < 1e-12)
-        place[node] = nodes[same[0]] if len(same) else node
-    blocks = [replace(block, nodes=place[block.nodes].astype(block.nodes.dtype)) for block in mesh.blocks]
-    return replace(mesh, blocks=blocks)
 
 
 def test_rigid_body_equations_and_what_only_friction_holds() -> None:
@@ -167,8 +160,8 @@ def test_the_direct_solver_takes_a_step_that_multigrid_cannot(monkeypatch: pytes
 
 
 def test_a_body_that_turns_far() -> None:
-    """Rigid motions are those of where the body is: after a quarter turn as many Krylov iterations as before it, with those of
-    the undeformed body more."""
+    """Rigid motions are those of where the body is: after a quarter turn as many Krylov iterations as before it, with those
+    of the undeformed body more."""
     mesh = make.join({"strip": make.rectangle([0, 30], [0, 1], cells=[120, 4])})
     counts = {}
     for angle in (0.0, 0.5 * np.pi):
@@ -192,3 +185,33 @@ def test_a_body_that_turns_far() -> None:
 def at_rest(system: Linearised) -> Linearised:
     """The same system with its state forgotten."""
     return replace(system, about=None)
+
+
+def test_large_models_choose_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By size in 3D, never in 2D."""
+    flat, solid = (finite(model) for model in (arched(0.3), cushion(0.3, "hex8", (4, 3))))
+    assert choose("auto", solid) == choose("auto", flat) == "direct"
+    monkeypatch.setattr("abut.linear.choice.LARGE_FINITE", {1: 100, 2: 100})
+    assert choose("auto", solid) == "amg"
+    assert choose("auto", flat) == "direct"
+
+
+def test_tractions_do_not_depend_on_the_tangents_they_have() -> None:
+    """Tangents turned by an angle of its own at every function: the inverse of S turns with them."""
+    pair = finite(cushion(0.3, "hex8", (4, 3))).pairs[0]
+    assert pair.slip is not None
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(0.0, 2.0 * np.pi, len(pair.space))
+    turns = np.stack([turned(angle) for angle in angles])
+    other = replace(pair, slip=replace(pair.slip, tangents=np.einsum("kab,kbd->kad", turns, pair.slip.tangents)))
+    every = selection(np.ones(len(pair), dtype=bool))
+    values = rng.standard_normal((len(pair.space), 2))
+
+    def answer(of: Pair, jumps: NDArray[np.float64]) -> NDArray[np.float64]:
+        gap = np.zeros(len(of))
+        gap[of.index[:, 1:]] = jumps
+        return schur_inverse(interfaces([of]), every)(gap)[of.index[:, 1:]]
+
+    here = np.einsum("kab,kb->ka", turns, answer(pair, values))
+    there = answer(other, np.einsum("kab,kb->ka", turns, values))
+    assert np.abs(here - there).max() < 1e-3 * np.abs(here).max()  # the root is taken to 1 %, over a spectrum that is estimated

@@ -36,7 +36,10 @@ def bowed(points: Array) -> Array:
 
 
 def clamp(
-    cell: str, closing: float = 0.15, sides: tuple[Names, Names] = ("body", "body"), cells: tuple[int, int] = (24, 1),
+    cell: str,
+    closing: float = 0.15,
+    sides: tuple[Names, Names] = ("body", "body"),
+    cells: tuple[int, int] = (24, 1),
     **contact: Any,
 ) -> abut.Model:
     """The arms are pressed together where they are outside, the upper one moved along a little as well; in 3D between
@@ -65,9 +68,7 @@ def _where(mesh: Mesh, surface: str, chosen: Any) -> NDArray[np.int64]:
     return rows[[bool(chosen(mesh.points[nodes[nodes >= 0]]).all()) for nodes in mesh.facets(rows).nodes]]
 
 
-def tube(
-    cell: str, closing: float = 0.1, sides: tuple[Names, Names] = ("body", "body"), cells: int = 24
-) -> abut.Model:
+def tube(cell: str, closing: float = 0.1, sides: tuple[Names, Names] = ("body", "body"), cells: int = 24) -> abut.Model:
     """A thick tube, pressed together where it is outside at the top and the bottom until its inside touches itself."""
     solid = cell in SOLID_CELLS
     lines = [np.linspace(0.0, 1.0, cells + 1), np.array([0.0, 1.0])]

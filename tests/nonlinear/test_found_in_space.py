@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 import abut
 from abut.detection import every_pair
@@ -26,12 +25,14 @@ def found(mesh: Mesh, *held: abut.Support, rotations: tuple[abut.Rotation, ...] 
 def pad() -> Mesh:
     """With a rounded top, under the place that the arm swings to."""
     box = make.box([-0.4, 0.4], [1.9, 2.7], [-0.8, 0.0], (2, 2, 1))
-    return bent(box, lambda x: x - np.outer(0.3 * (x[:, 2] + 0.8) / 0.8 * (x[:, 0] ** 2 + (x[:, 1] - 2.3) ** 2), [0, 0, 1]))
+    return bent(
+        box, lambda x: x - np.outer(0.3 * (x[:, 2] + 0.8) / 0.8 * (x[:, 0] ** 2 + (x[:, 1] - 2.3) ** 2), [0, 0, 1])
+    )
 
 
 def test_an_arm_swings_over_a_pad() -> None:
-    """Out of reach at the outset, turned by a right angle, then pressed by the pad: as if it had been built there. On the way
-    the arm passes close over the pad: that the two see each other's far sides through themselves is no penetration."""
+    """Out of reach at the outset, turned by a right angle, then pressed by the pad: as if it had been built there. On
+    the way it passes close over the pad: that they see each other's far sides through themselves is no penetration."""
     arm = make.box([0, 3], [-0.3, 0.3], [0.05, 0.65], (5, 1, 1))
     there = bent(arm, lambda x: np.column_stack([-x[:, 1], x[:, 0], x[:, 2]]))
     lifted = abut.Support("pad.bottom", x=0.0, y=0.0, z=0.25, amplitude=LIFT)

@@ -46,7 +46,9 @@ def closed(cell: str, sides: tuple[Names, Names] = WHOLE) -> Solution:
     return solution
 
 
-@pytest.mark.parametrize("cell", ["quad4", "quad8", "tri6", "hex8", "hex20", pytest.param("tet10", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "cell", ["quad4", "quad8", "tri6", "hex8", "hex20", pytest.param("tet10", marks=pytest.mark.long)]
+)
 def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
     """Jaws level with each other. The body named twice, whole, gives what its two arms as contactor and target give; to the
     tolerance of a step; where the edges of facets are curves in 3D the rule of integration is that of the most curved facet,
@@ -60,8 +62,8 @@ def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
 
 
 def test_extruded_by_one_cell() -> None:
-    """Between two planes hex8 is quad4 in plane strain, contact included: the means of gaps through the depth are those in the
-    plane. (Quadratic facets have pressure functions of their own through the depth: 0.5 % in force.)"""
+    """Between two planes hex8 is quad4 in plane strain, contact included: the means of gaps through the depth are those in
+    the plane. (Quadratic facets have pressure functions of their own through the depth: 0.5 % in force.)"""
     flat, deep = closed("quad4"), closed("hex8")
     ids = np.flatnonzero(deep.model.mesh.points[:, 2] == 0.0)
     order = [int(np.argmin(np.abs(deep.model.mesh.points[ids, :2] - x).sum(axis=1))) for x in flat.model.mesh.points]
@@ -82,7 +84,8 @@ def test_quadratic_folds_close() -> None:
     solution = abut.solve(accordion(1.1, cells=60, cell="quad8"))
     assert solution.converged
     assert all(check.passed for check in solution.certificate)
-    assert -solution.contacts[0].force[0] == pytest.approx(57.0, rel=0.1)  # two valleys under uniaxial strain: 49, and the bends
+    force = -solution.contacts[0].force[0]
+    assert 49.0 < force < 64.0  # two valleys under uniaxial strain: 49, and the bends
 
 
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])

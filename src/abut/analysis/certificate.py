@@ -136,7 +136,8 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
         "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
     )
     yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
-        "largest penetration at a point, over what the largest pressure indents between nodes", pressure=case.pressing)  # fmt: skip
+        "largest penetration at a point, over what the largest pressure indents between nodes",
+        pressure=case.pressing)  # fmt: skip
     shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
     yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
         "pressure caused by faceting of curved surfaces, over the largest pressure", pressure=case.matters)  # fmt: skip
@@ -157,7 +158,8 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)
     alternating = oscillation(pair, case.values, pressure, support, largest) * largest / case.matters
     yield case.check("oscillation", alternating, OSCILLATION,
-        "largest alternating part of the pressure inside the contact over the largest pressure", pressure=case.matters)  # fmt: skip
+        "largest alternating part of the pressure inside the contact over the largest pressure",
+        pressure=case.matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, pressure, support, largest) if counts else 0.0
     yield case.check("resolution", facets, RESOLUTION,

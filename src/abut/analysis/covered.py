@@ -62,7 +62,9 @@ def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:
     """A pair without some multipliers, keep (n,), with the weights of what is covered now. undeformed: (n_functions,) those
     of the laws, theory (G3)."""
     ends = np.cumsum([len(part) for part in pair.components])[:-1]
-    components = [_weighed(only(part, chosen), pair.coupling) for part, chosen in zip(pair.components, np.split(keep, ends))]
+    components = [
+        _weighed(only(part, chosen), pair.coupling) for part, chosen in zip(pair.components, np.split(keep, ends))
+    ]
     functions = keep[pair.normal]
     number = np.where(keep, np.cumsum(keep) - 1, -1)
     index = np.where(pair.index >= 0, number[np.maximum(pair.index, 0)], -1)[functions]

@@ -104,9 +104,7 @@ def _inside(graph: Graph, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(closed & graph.all_of(closed))
 
 
-def _carrying(
-    graph: Graph, surface: Surface, values: NDArray[np.float64], largest: float
-) -> NDArray[np.bool_]:
+def _carrying(graph: Graph, surface: Surface, values: NDArray[np.float64], largest: float) -> NDArray[np.bool_]:
     """Corner points (n_points,) whose multiplier carries pressure, and those between such points. Averages reach one facet
     further: the kink at the edge of contact is in those of the outermost."""
     corner = surface.nodes >= 0

@@ -21,7 +21,15 @@ ASLANT = np.array([1.0, 0.764, 0.583])  # to the axes, so that hardly any two fa
 OPEN = 0.05  # share of what is aslant in the direction of ranks
 BENEATH = 2.0  # facets below its middle that a facet is ranked: those opposite each other are that much further apart
 APART = 1e3  # in extents: ranks of different bodies do not mix
-BODY, RANK, MIDDLE, NORMAL, REACH, THICKNESS, WIDTH = 0, 1, slice(2, 5), slice(5, 8), 8, 9, 10  # columns of ``Surface.kin``
+BODY, RANK, MIDDLE, NORMAL, REACH, THICKNESS, WIDTH = (
+    0,
+    1,
+    slice(2, 5),
+    slice(5, 8),
+    8,
+    9,
+    10,
+)  # columns of ``Surface.kin``
 
 
 def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -> tuple[Surface, Surface]:
@@ -85,9 +93,7 @@ def _sights(surface: Surface, body: NDArray[np.int64], extent: float) -> _Sights
     at = couple(surface, surface, 0, options).points
     assert at is not None
     own = body[at.facet] == body[at.target_facet]
-    return _Sights(
-        at.facet[own].astype(np.int64), at.target_facet[own].astype(np.int64), at.gap[own], at.weight[own]
-    )
+    return _Sights(at.facet[own].astype(np.int64), at.target_facet[own].astype(np.int64), at.gap[own], at.weight[own])
 
 
 def _thickness(n_facets: int, sights: _Sights) -> Array:

@@ -1,4 +1,4 @@
-"""The bodies of a problem at a state, as multigrid must know them: how they move without strain, and what moves many points."""
+"""The bodies of a problem at a state, as multigrid must know them: where they are, and how they move without strain."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@ an approximate Schur complement for the pressures, which alone changes with the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -141,8 +142,8 @@ class Multigrid:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at large
-        displacements both stay for a load step."""
+        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at
+        large displacements both stay for a load step."""
         if system.about is not None:
             return self._at_state(system, previous)
         known = previous if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness else None
@@ -163,16 +164,19 @@ class Multigrid:
         def product(values: Vector) -> Vector:
             return np.asarray(system.stiffness @ values)
 
-        covered = np.concatenate([np.zeros(0), *map(_covered, system.pairs)])
+        covered = covered_shares(system.pairs)
         if isinstance(previous, Iterative) and previous.system.time == system.time:
-            levels, pressures = replace(previous.hierarchy, product=product), replace(previous.pressures, covered=covered)
+            levels, pressures = (
+                replace(previous.hierarchy, product=product),
+                replace(previous.pressures, covered=covered),
+            )
             return replace(previous, system=system, hierarchy=levels, pressures=pressures)
         bodies = bodies_now(self.problem, system)
         elastic = system.stiffness if system.bending is None else system.stiffness + system.bending
         levels = hierarchy((0.5 * (elastic + elastic.T)).tocsr(), bodies.free, bodies.near_null, bodies.points)
         beside = loose(system, bodies, levels, self.count)
         made = self._with_pressures(
-            replace(system, pairs=[_whole(pair) for pair in system.pairs]), replace(levels, product=product), beside
+            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]), replace(levels, product=product), beside
         )
         return replace(made, system=system, pressures=replace(made.pressures, covered=covered))
 
@@ -186,12 +190,17 @@ class Multigrid:
         return prepared.hierarchy.summary if isinstance(prepared, Iterative) else self.name
 
 
-def _whole(pair: Pair) -> Pair:
+def wholly_covered(pair: Pair) -> Pair:
     """With products of functions over the whole contactor, whatever is opposite."""
     if pair.tied:
         return pair
     mass = facet_products(pair.contactor, pair.coupling.degree)
     return replace(pair, coupling=replace(pair.coupling, mass=mass))
+
+
+def covered_shares(pairs: Sequence[Pair]) -> Vector:
+    """(n,) share of every multiplier's function that is opposite the target, of all pairs."""
+    return np.concatenate([np.zeros(0), *map(_covered, pairs)])
 
 
 def _covered(pair: Pair) -> Vector:

@@ -142,5 +142,5 @@ def _with_diagonal(matrix: Sparse) -> Sparse:
     """Every diagonal entry stored."""
     matrix.sort_indices()
     indptr, indices = joined_pattern(matrix.indptr, matrix.indices, matrix.indptr, matrix.indices)
-    values = values_in(indptr, indices, matrix.indptr, matrix.indices, matrix.data)
+    values, _ = values_in(indptr, indices, matrix.indptr, matrix.indices, matrix.data)
     return sp.csr_matrix((values, indices, indptr), shape=matrix.shape)

@@ -37,8 +37,8 @@ Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 @dataclass(frozen=True)
 class Interface:
     """One pair's pressures, or its tractions (of a tied one those along one axis): their rows in the system, L + M / l^2 and
-    M of ordinary functions, what these integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of ordinary
-    functions M itself), kappa, 1 / l^2."""
+    M of ordinary functions, what these integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of
+    ordinary functions M itself), kappa, 1 / l^2."""
 
     rows: NDArray[np.int64]
     full: Sparse

@@ -15,6 +15,7 @@ from abut.contact.coupling import couple as couple_here
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, assembled, of_facets
 from abut.contact.merging import added
 from abut.contact.moving_normals import MovingNormals
+from abut.errors import AbutError
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
 from abut.types import Json, Sparse
@@ -54,6 +55,9 @@ def differentiate(
     turn = np.arange(len(contactor)) % team.size
     dealt = [(turn == rank,) for rank in range(team.size)]
     parts = team.each(_differentiate, *small, degree, options, load, _without_blocks(normals), per_rank=dealt)
+    for part in parts:
+        if isinstance(part, AbutError):
+            raise part
     value, column, start = normals.blocks
     place = np.zeros(len(contactor.points), dtype=column.dtype)
     place[points] = np.arange(len(points))
@@ -113,5 +117,9 @@ def _couple(
 def _differentiate(
     store: Store, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
     normals: MovingNormals, chosen: NDArray[np.bool_],
-) -> Json:  # fmt: skip
-    return of_facets(contactor, target, degree, options, load, normals, chosen)
+) -> Json | AbutError:  # fmt: skip
+    """As ``of_facets``; errors are returned, as the others would wait for a process that has left."""
+    try:
+        return of_facets(contactor, target, degree, options, load, normals, chosen)
+    except AbutError as error:
+        return error

@@ -123,7 +123,7 @@ class FiniteProblem(ContactProblem):
         stiffness = self.springs.added_to(sum(tangent.reduce(constraints) for tangent in stiff) - by_contact)
         rows = [pair_now.pair.rows for pair_now in contacts]
         if self.constraints.turns is not None:
-            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self._split(now.multipliers)))
+            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
         about = self._expansion(shares, now.unknowns, force, stiffness)
@@ -140,7 +140,8 @@ class FiniteProblem(ContactProblem):
         )  # fmt: skip
         return system, shares
 
-    def _split(self, values: Array) -> list[Array]:
+    def split(self, values: Array) -> list[Array]:
+        """Values of all multipliers (n,), pair by pair."""
         return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
 
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
@@ -161,7 +162,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, result = before.history.of(POINTS), []
-        for pair, kind, part in zip(self.pairs, self.moving, self._split(at.multipliers)):
+        for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
                 continue
