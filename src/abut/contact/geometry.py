@@ -303,6 +303,18 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
     return moments
 
 
+def full_masses(surface: Surface, degree: int) -> NDArray[np.float64]:
+    """int H_k H_l over the whole of each facet, an area (2D: a length), (n_facets, 9, 9), zero where padded; degree 1 or 2."""
+    masses = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
+    for kind, facets in by_kind(surface):
+        xi, weights = gauss_rule(kind, 6)
+        _, _, area = facet_measure(surface, kind, facets, xi)
+        values, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, np.ascontiguousarray(xi))
+        n = np.arange(values.shape[1])
+        masses[facets[:, None, None], n[:, None], n] = np.einsum("fq,qk,ql->fkl", area * weights, values, values)
+    return masses
+
+
 def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:
     """int grad H_k . grad H_l along the surface over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
     result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))

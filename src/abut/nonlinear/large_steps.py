@@ -36,9 +36,10 @@ def march_finite(
         guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         step = Step(
-            problem, before, solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
-        )
-        attempt = _ended(step, solve_finite(step, guess, time), time)
+            problem, problem.with_ordinary_inside(before, problem.displacement(before), before.closed), solver, increment, min(MOST, control.limit), control.observe,
+            careful=cuts >= CAREFUL,
+        )  # fmt: skip
+        attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
         if attempt.converged:
             pace.take(len(attempt.iterations))
             yield attempt
@@ -68,6 +69,19 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
     return replace(
         before, time=time, multipliers=ahead, unknowns=before.unknowns + ratio * (before.unknowns - earlier.unknowns)
     )
+
+
+def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
+    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was where that fails."""
+    if not found.converged:
+        return step, found
+    here = step.problem.displacement(replace(found.state, time=time))
+    before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
+    if before is step.before:
+        return step, found
+    again = replace(step, before=before, limit=step.limit + len(step.done))
+    inside = solve_finite(again, found.state, time)
+    return (again, inside) if inside.converged else (step, found)
 
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:
