@@ -7,16 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.models.sheets import chain, sheet, turn
 
 import abut
-from abut.contact.facet_area import area_change
-from abut.contact.geometry import full_masses, full_moments
-from abut.contact.pressure_space import pressure_space, resolve
-from abut.contact.coupling import CouplingOptions, couple
-from abut.mesh import make
-from abut.problem.dual_functions import Mixture
-from models.sliding import arched, bent, finite, pressed_in_space
+from models.sliding import arched, finite, pressed_in_space
 
 LINEAR = ("P0", "P1", "P1-discontinuous", "dual")
 QUADRATIC = (*LINEAR, "P2", "P2-discontinuous")

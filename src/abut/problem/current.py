@@ -219,9 +219,7 @@ class Current:
             )
             bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
         if mixing is not None:
-            bending = bending + sum(
-                operators.along[a].T @ sp.diags(apart @ traction[:, a]) @ mixing for a in range(3)
-            )
+            bending = bending + sum(operators.along[a].T @ sp.diags(apart @ traction[:, a]) @ mixing for a in range(3))
         by_force = coupling_tangent(
             now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, np.zeros(len(now_pair.coupling.gap)),
             pair.space.transfer @ traction, across=self._across,

@@ -83,7 +83,9 @@ def _least_around(contactor: Surface, values: Array) -> NDArray[np.int64]:
     return np.asarray(order[result])
 
 
-def inner_now(space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: Array, near: float) -> Array:
+def inner_now(
+    space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: Array, near: float
+) -> Array:
     """Where functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, theory (P9): well inside closed contact.
 
     whole: (n_facets,) covered share; closed: (n_functions,) bool; near: a length, how far apart the surfaces may be."""

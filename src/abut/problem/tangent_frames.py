@@ -13,7 +13,6 @@ from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling_tangent import normal_derivative
 from abut.contact.geometry import Smoothing, by_kind, nodal_normals, node_coordinates, split_at_creases
 from abut.contact.pressure_space import PressureSpace
-from abut.contact.tangential import turned
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 

@@ -84,4 +84,3 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
         coupling=replace(whole.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
         values=friction_values(model, whole.contact, points),
     )  # fmt: skip
-
