@@ -1,7 +1,7 @@
 """The contact patch test at finite strain: squeezed to 0.8 in a frame turned by 70 degrees, for every pair of facets and
 pressure.
 
-One affine motion is the solution, with Cauchy's pressure everywhere on the interface and none on the sides, which are free."""
+One affine motion is the solution, with Cauchy's pressure everywhere on the interface and none on the free sides."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ RUBBER = abut.NeoHooke(100.0, 0.3)
 SHEAR, LAME, SQUEEZE = 100.0 / 2.6, 100.0 * 0.3 / (1.3 * 0.4), 0.8
 ANGLE = np.deg2rad(70.0)
 EXACT = 1e-9
-ENDS = 1e-12  # of Newton's method, which else stops at 1e-9 of the largest force: seen here is what the discretisation leaves
+ENDS = (
+    1e-12  # of Newton's method, which else stops at 1e-9 of the largest force: what the discretisation leaves is seen
+)
 LINEAR = ("P0", "P1", "dual", "dual-P1")  # those whose pressures are determined
 QUADRATIC = (*LINEAR, "P1-discontinuous", "P2")
 PLANE = {"line2": "quad4", "line3": "quad8"}
@@ -70,7 +72,8 @@ def errors(contactor: str, target: str, pressure: str, friction: float = 0.0) ->
     axes = {axis: u(a) for a, axis in enumerate("xyz"[:dim])}
     built = abut.Model(
         mesh, [abut.Solid("lower", RUBBER), abut.Solid("upper", RUBBER)],
-        supports=[abut.Support(name, **axes) for name in ("lower.bottom", "upper.top")], plane="strain" if dim == 2 else None,
+        supports=[abut.Support(name, **axes) for name in ("lower.bottom", "upper.top")],
+        plane="strain" if dim == 2 else None,
         contacts=[abut.Contact("lower.top", "upper.bottom", pressure=pressure, friction=friction)],
         kinematics="finite", solve=abut.SolveOptions(steps=1),
     )  # fmt: skip

@@ -304,7 +304,8 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
 
 
 def full_masses(surface: Surface, degree: int) -> NDArray[np.float64]:
-    """int H_k H_l over the whole of each facet, an area (2D: a length), (n_facets, 9, 9), zero where padded; degree 1 or 2."""
+    """int H_k H_l over the whole of each facet, an area (2D: a length), (n_facets, 9, 9), zero where padded, for degree 1
+    or 2."""
     masses = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
     for kind, facets in by_kind(surface):
         xi, weights = gauss_rule(kind, 6)

@@ -35,10 +35,10 @@ def march_finite(
             control.begins(number, time)
         guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
+        begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
         step = Step(
-            problem, problem.with_ordinary_inside(before, problem.displacement(before), before.closed), solver, increment, min(MOST, control.limit), control.observe,
-            careful=cuts >= CAREFUL,
-        )  # fmt: skip
+            problem, begin, solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
+        )
         attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
         if attempt.converged:
             pace.take(len(attempt.iterations))
@@ -72,7 +72,7 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was where that fails."""
+    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was if that fails."""
     if not found.converged:
         return step, found
     here = step.problem.displacement(replace(found.state, time=time))

@@ -84,7 +84,7 @@ def _least_around(contactor: Surface, values: Array) -> NDArray[np.int64]:
 
 
 def inner_now(
-    space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: Array, near: float
+    space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: NDArray[np.bool_], near: float
 ) -> Array:
     """Where functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, theory (P9): well inside closed contact.
 

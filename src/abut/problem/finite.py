@@ -68,12 +68,12 @@ class FiniteProblem(ContactProblem):
         return self._marked(replace(now, history=history))
 
     def with_ordinary_inside(self, before: State, here: Array, closed: NDArray[np.bool_]) -> State:
-        """A converged state from which a step begins with the ordinary functions of "dual-P1" inside what is ``closed``, (n,)
-        multipliers, at displacements ``here`` (dim n_points,). The same object where they are there already."""
+        """A converged state from which a step begins, with the ordinary functions of "dual-P1" inside what is ``closed``,
+        (n,) multipliers, at displacements ``here`` (dim n_points,). The same object where they are there already."""
         inner, old = {}, before.history.of(INNER)
-        for kind, part in zip(self.moving, self._split(closed)):
+        for kind, part in zip(self.moving, self._split(closed.astype(float))):
             if kind is not None and kind.pair.space.name == DUAL_P1:
-                inner[kind.pair.contact.name] = kind.inner(here, part)
+                inner[kind.pair.contact.name] = kind.inner(here, part > 0.0)
         known = {name: old.get(name, np.zeros_like(facets)) for name, facets in inner.items()}
         if all(np.array_equal(known[name], facets) for name, facets in inner.items()):
             return before
