@@ -25,22 +25,25 @@ def run(folder: Path) -> dict[str, Any]:
     analysis = structural_mechanics_analysis.StructuralMechanicsAnalysis(model_, text)
     start = time.process_time()
     analysis.Initialize()
-    solver, rows, force = analysis._GetSolver(), [], []
+    solver, rows, force, stopped = analysis._GetSolver(), [], [], ""
+    plane = text["solver_settings"]["domain_size"].GetInt() == 2
+    axes = (KratosMultiphysics.REACTION_X, KratosMultiphysics.REACTION_Y if plane else KratosMultiphysics.REACTION_Z)
     while analysis.KeepAdvancingSolutionLoop():
         analysis.time = analysis._AdvanceTime()
         analysis.InitializeSolutionStep()
         solver.Predict()
-        good = bool(solver.SolveSolutionStep())
+        try:
+            good = bool(solver.SolveSolutionStep())
+        except RuntimeError as error:  # of its linear solver
+            stopped = f"at t = {analysis.time:.3f}: {str(error).strip().splitlines()[0]}"
+            break
         analysis.FinalizeSolutionStep()
         rows.append((model_["Structure"].ProcessInfo[KratosMultiphysics.NL_ITERATION_NUMBER], good))
         nodes = model_["Structure.support_0"].Nodes
-        force = [
-            sum(node.GetSolutionStepValue(one) for node in nodes)
-            for one in (KratosMultiphysics.REACTION_X, KratosMultiphysics.REACTION_Z)
-        ]
+        force = [sum(node.GetSolutionStepValue(one) for node in nodes) for one in axes]
     return {
         "cpu": time.process_time() - start, "iterations": sum(row[0] for row in rows), "steps": len(rows),
-        "unconverged": sum(not row[1] for row in rows), "force": force,
+        "unconverged": sum(not row[1] for row in rows), "force": force, "stopped": stopped,
     }  # fmt: skip
 
 

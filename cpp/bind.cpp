@@ -5,6 +5,7 @@ NB_MODULE(_core, m) {
   m.doc() = "abut's compiled kernels: stateless, arrays in and out.";
   abut::bind_cells(m);
   abut::bind_facets(m);
+  abut::bind_padding(m);
   abut::bind_pattern(m);
   abut::bind_integrate(m);
   abut::bind_interface(m);

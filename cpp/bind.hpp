@@ -70,6 +70,7 @@ template <class T> nb::ndarray<nb::numpy, T> to_numpy(Buffer<T> &&buffer) {
 
 void bind_cells(nb::module_ &m);
 void bind_facets(nb::module_ &m);
+void bind_padding(nb::module_ &m);
 void bind_pattern(nb::module_ &m);
 void bind_integrate(nb::module_ &m);
 void bind_interface(nb::module_ &m);

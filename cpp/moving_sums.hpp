@@ -1,6 +1,7 @@
 // What the integration points of one contactor facet add to the derivatives; see docs/theory/coupling-tangent.md.
 #pragma once
 #include "accumulator.hpp"
+#include "cutting.hpp"
 #include "dual.hpp"
 #include "tangent.hpp"
 
@@ -43,18 +44,25 @@ struct MovingPoint {
   const double *rate[2], *weight_rate;
 };
 
+// Where int H_k g and int H_k of all facets are added up; facets of one thread are no others'.
+struct Moments {
+  double *gap, *weight;
+};
+
 // Derivatives of a contactor facet's rows with one target facet after another.
 template <int D> class MovingSums {
 public:
-  MovingSums(TangentLists &lists, const Planned &contactor, const Planned &target, int degree, const Load &load,
-             const Numbering &numbering)
-      : lists_(lists), contactor_(contactor.surface), target_(target.surface), degree_(degree), load_(load),
-        numbering_(numbering) {}
+  MovingSums(const Moments &moments, TangentLists &lists, const Interface &both, const Load &load,
+             const Numbering &numbering, bool tangential)
+      : moments_(moments), lists_(lists), contactor_(both.contactor.surface), target_(both.target.surface),
+        degree_(both.options.degree), rounding_(both.options.rounding), load_(load), numbering_(numbering),
+        width_(operator_width(D, tangential)) {}
 
   void begin(std::size_t f, const Facet &c) {
     f_ = f, c_ = &c, functions_ = pressure_functions(c.kind, degree_), hit_ = false;
     own_columns_ = 2 * D * c.nodes;
     own_.assign(rows(0) * own_columns_, 0);
+    own_operator_.assign(functions_ * c.nodes * width_, 0);
     for (double &value : own_load_)
       value = 0;
   }
@@ -62,6 +70,7 @@ public:
   void begin_target(int t, const Facet &facet, const Columns &columns) {
     t_ = t, facet_ = &facet, columns_ = &columns;
     block_.assign(rows(facet.nodes) * columns.size, 0);
+    other_operator_.assign(functions_ * facet.nodes * width_, 0);
     std::fill(other_load_, other_load_ + MAX_FACET_NODES * D, 0.0);
     for (auto &row : row_)
       row.resize(columns.size);
@@ -72,6 +81,7 @@ public:
     find_rows(at);
     add_forces(at);
     add_moments(at);
+    add_values(at);
     hit_ = true;
   }
 
@@ -87,6 +97,7 @@ public:
     emit_own(other, size, theirs, target_.facet_nodes(t_), numbering_.target_offset);
     emit_targets(rows(0), theirs, target_.facet_nodes(t_), numbering_.target_offset);
     emit_load(other_load_, target_.facet_nodes(t_), facet_->nodes, numbering_.target_offset);
+    emit_operator(other_operator_, target_.facet_nodes(t_), facet_->nodes, numbering_.target_offset);
   }
 
   void end() {
@@ -95,6 +106,7 @@ public:
     emit_own(own_.data(), own_columns_, D * c_->nodes, contactor_.facet_nodes(f_), 0);
     emit_moments(&own_[D * c_->nodes * own_columns_], own_columns_, true);
     emit_load(own_load_, contactor_.facet_nodes(f_), c_->nodes, 0);
+    emit_operator(own_operator_, contactor_.facet_nodes(f_), c_->nodes, 0);
   }
 
 private:
@@ -120,6 +132,8 @@ private:
     length = Number(-1) / sqrt(length);
     for (Number &value : normal) // from target to contactor: theory (F1)
       value = value * length;
+    for (int a = 0; a < D; ++a)
+      normal_[a] = normal[a].v;
     see(place, normal, y);
     find_force(at, normal, h, dh);
   }
@@ -194,6 +208,10 @@ private:
     along = along * weight;
     for (int a = 0; a < D; ++a)
       value_[FORCE + a] = load_.traction ? along * normal[a] + weight * t[a] : along * normal[a];
+    if (D == 2 && load_.turned) {
+      const Number turned = coefficient(load_.turned + MAX_FACET_NODES * f_, 1) * weight;
+      value_[FORCE] -= turned * normal[1], value_[FORCE + 1] += turned * normal[0];
+    }
   }
 
   // From seeds to columns.
@@ -271,6 +289,25 @@ private:
     }
   }
 
+  // int H_k g and int H_k; int H_k N_j N and int H_k N_j (I - N N), with the target's negative.
+  void add_values(const MovingPoint &at) {
+    const double g = value_[GAP].v, gap = std::abs(g) < rounding_ ? 0 : g;
+    double along[D + D * D];
+    for (int a = 0; a < D; ++a) {
+      along[a] = normal_[a];
+      for (int b = 0; b < D; ++b)
+        along[D + D * a + b] = (a == b) - normal_[a] * normal_[b];
+    }
+    for (int k = 0; k < functions_; ++k) {
+      const double area = at.weight * h_[k];
+      moments_.gap[MAX_FACET_NODES * f_ + k] += area * gap, moments_.weight[MAX_FACET_NODES * f_ + k] += area;
+      for (int i = 0; i < c_->nodes; ++i)
+        add_row(width_, area * nc_[i], along, &own_operator_[(k * c_->nodes + i) * width_]);
+      for (int j = 0; j < facet_->nodes; ++j)
+        add_row(width_, -area * nt_[j], along, &other_operator_[(k * facet_->nodes + j) * width_]);
+    }
+  }
+
   // Of a block: the contactor's nodes, gap and weight of each pressure function, the target's nodes.
   std::size_t rows(int others) const { return D * (c_->nodes + others) + 2 * functions_; }
 
@@ -327,6 +364,14 @@ private:
     }
   }
 
+  void emit_operator(const std::vector<double> &from, const std::int32_t *nodes, int count, std::int32_t offset) {
+    Blocks &to = lists_.operators;
+    for (int k = 0; k < functions_; ++k)
+      for (int i = 0; i < count; ++i)
+        to.row.push_back(std::int32_t(MAX_FACET_NODES * f_ + k)), to.column.push_back(offset + nodes[i]);
+    to.value.insert(to.value.end(), from.begin(), from.end());
+  }
+
   void emit_load(const double *from, const std::int32_t *nodes, int count, std::int32_t offset) {
     for (int i = 0; i < count; ++i) {
       lists_.loaded.push_back(offset + nodes[i]);
@@ -334,19 +379,23 @@ private:
     }
   }
 
+  const Moments moments_;
   TangentLists &lists_;
   const SurfaceView &contactor_, &target_;
-  int degree_;
+  const int degree_;
+  const double rounding_;
   const Load &load_;
   const Numbering &numbering_;
+  const std::size_t width_; // of an entry of the operators
   const Facet *c_ = nullptr, *facet_ = nullptr;
   const Columns *columns_ = nullptr;
   std::size_t f_ = 0, own_columns_ = 0;
   int t_ = 0, functions_ = 0;
   bool hit_ = false;
-  std::vector<double> own_, block_, row_[ROWS];
+  std::vector<double> own_, block_, row_[ROWS], own_operator_, other_operator_;
   double own_load_[MAX_FACET_NODES * D], other_load_[MAX_FACET_NODES * D];
   Number value_[ROWS];
+  double normal_[D];
   double other_slope_[2][3];
   double nc_[MAX_FACET_NODES], dnc_[MAX_FACET_NODES][3], nt_[MAX_FACET_NODES], dnt_[MAX_FACET_NODES][3];
   double h_[MAX_FACET_NODES], dh_[MAX_FACET_NODES][2];

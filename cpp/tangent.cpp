@@ -9,7 +9,7 @@ namespace abut {
 static void append(Blocks &to, Blocks &from) {
   append(to.row, from.row), append(to.column, from.column), append(to.value, from.value);
 }
-static void append(Derivative &to, Derivative &from) {
+void append(Derivative &to, Derivative &from) {
   append(to.by_points, from.by_points), append(to.by_normals, from.by_normals);
 }
 
@@ -20,9 +20,10 @@ constexpr std::size_t FEW_MOVING_FACETS = 50; // not worth a thread
 // Differentiates what contactor facets see, one after another; one for each thread.
 class Differentiator {
 public:
-  Differentiator(const Interface &both, TangentLists &lists, const Load &load, const Numbering &numbering)
-      : both_(both), cutter_(both), lines_(lists, both.contactor, both.target, both.options.degree, load, numbering),
-        faces_(lists, both.contactor, both.target, both.options.degree, load, numbering), pieces_(faces_) {}
+  Differentiator(const Interface &both, const Moments &moments, TangentLists &lists, const Load &load,
+                 const Numbering &numbering, bool tangential)
+      : both_(both), cutter_(both), lines_(moments, lists, both, load, numbering, false),
+        faces_(moments, lists, both, load, numbering, tangential), pieces_(faces_) {}
 
   void run(std::size_t f) {
     cutter_.cut(
@@ -95,19 +96,20 @@ private:
 } // namespace
 
 TangentLists tangent(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options,
-                     const Load &load, const Numbering &numbering) {
+                     const Load &load, const Numbering &numbering, bool tangential) {
   const std::size_t facets = contactor.surface.facets;
   const Interface both = interface(contactor, target, rules, options);
   const std::size_t parts = facets < FEW_MOVING_FACETS ? 1 : thread_count();
   std::vector<TangentLists> lists(parts);
+  TangentLists out;
+  out.gap.assign(MAX_FACET_NODES * facets, 0), out.weight.assign(MAX_FACET_NODES * facets, 0);
   run_parts(parts, [&](std::size_t part) {
-    Differentiator differentiator(both, lists[part], load, numbering);
+    Differentiator differentiator(both, {out.gap.data(), out.weight.data()}, lists[part], load, numbering, tangential);
     for (std::size_t f = facets * part / parts; f < facets * (part + 1) / parts; ++f)
       differentiator.run(f);
   });
-  TangentLists out;
   for (TangentLists &part : lists) {
-    append(out.moment, part.moment), append(out.force, part.force);
+    append(out.moment, part.moment), append(out.force, part.force), append(out.operators, part.operators);
     append(out.loaded, part.loaded), append(out.load, part.load);
   }
   return out;
@@ -139,7 +141,7 @@ CompressedBlocks compress(const Blocks &blocks, std::size_t rows, std::size_t wi
       for (std::size_t a = 0; a < width; ++a)
         sum[a] += value[a];
     }
-    out.start.push_back(std::int64_t(out.column.size()));
+    out.start.push_back(std::int32_t(out.column.size()));
   }
   return out;
 }

@@ -4,9 +4,10 @@
 
 namespace abut {
 
-// Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each.
+// Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each, and in
+// 2D those along the turned normal (none: null) one.
 struct Load {
-  const double *pressure, *traction;
+  const double *pressure, *traction, *turned;
 };
 
 // Numbers of what is differentiated by: the points of both surfaces, and the contactor's nodal normals.
@@ -26,20 +27,27 @@ struct Derivative {
   Blocks by_points, by_normals;
 };
 
-// Rows of `moment` are MAX_FACET_NODES f + k, values dim of the gap and dim of the weight; those of `force` are points,
-// values dim x dim.
+// Values of an entry of the operators: dim along the normal, and where tangential ones are wanted dim x dim of the rest.
+inline std::size_t operator_width(std::size_t dim, bool tangential) { return tangential ? dim + dim * dim : dim; }
+
+void append(Derivative &to, Derivative &from); // which is empty afterwards, or of no use
+
+// Rows of `moment` and `operators` are MAX_FACET_NODES f + k, values dim of the gap and dim of the weight; those of `force`
+// are points, values dim x dim.
 struct TangentLists {
   Derivative moment, force;
+  Blocks operators;
+  std::vector<double> gap, weight;  // of all facets, MAX_FACET_NODES each
   std::vector<std::int32_t> loaded; // points, with dim values each:
   std::vector<double> load;
 };
 
 TangentLists tangent(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options,
-                     const Load &load, const Numbering &numbering);
+                     const Load &load, const Numbering &numbering, bool tangential);
 
 // Blocks as compressed rows: those in one place added up in their order.
 struct CompressedBlocks {
-  std::vector<std::int64_t> start;
+  std::vector<std::int32_t> start;
   std::vector<std::int32_t> column;
   std::vector<double> value;
 };

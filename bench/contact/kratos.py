@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,16 @@ import numpy as np
 
 import abut
 from abut.cells import BY_CODE
+from abut.mesh.surface import Surface
 
 ELEMENTS = {
     "hex8": "SmallDisplacementElement3D8N",
     "hex20": "SmallDisplacementElement3D20N",
     "tet10": "SmallDisplacementElement3D10N",
+    "quad4": "SmallDisplacementElement2D4N",
 }
 CONDITIONS = {
+    "line2": "LineCondition2D2N",
     "quad4": "SurfaceCondition3D4N",
     "quad8": "SurfaceCondition3D8N",
     "tri6": "SurfaceCondition3D6N",
@@ -53,28 +57,36 @@ def mdpa(case: abut.Model) -> Iterator[str]:
     mesh, contact = case.mesh, case.contacts[0]
     for i in range(len(case.solids) + 1):
         yield from _block(f"Properties {i}", ())
-    yield from _block("Nodes", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(mesh.points.tolist(), 1)))
+    points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.dim))).tolist()
+    yield from _block("Nodes", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(points, 1)))
     for i, solid in enumerate(case.solids, 1):
         for kind, nodes, numbers in mesh.cells_of(solid.body):
             table = np.column_stack([numbers, nodes[:, ORDER.get(kind, slice(None))]]) + 1
             rows = (f"{row[0]} {i} {' '.join(map(str, row[1:]))}" for row in table.tolist())
             yield from _block(f"Elements {ELEMENTS[kind]}", rows)
-    first, faces = 1, {}
-    for i, name in enumerate((contact.contactor, contact.target), 1):
-        surface = mesh.surface(name)
+    first, faces, sides = 1, [], [surface_of(mesh, name) for name in (contact.contactor, contact.target)]
+    for i, surface in enumerate(sides, 1):
         kind = BY_CODE[int(surface.kinds[0])]
         table = (surface.nodes[:, : kind.nodes] + 1).tolist()
         rows = (f"{number} {i} {' '.join(map(str, row))}" for number, row in enumerate(table, first))
         yield from _block(f"Conditions {CONDITIONS[kind.name]}", rows)
-        faces[name] = range(first, first + len(table))
+        faces.append(range(first, first + len(table)))
         first += len(table)
     for body in mesh.bodies:
         cells = (mesh.bodies[body] + 1).tolist()
         yield from _part(f"body_{body}", Nodes=(mesh.nodes_of(body) + 1).tolist(), Elements=cells)
-    for side, name in (("slave", contact.contactor), ("master", contact.target)):
-        yield from _part(side, Nodes=(mesh.nodes_of(name) + 1).tolist(), Conditions=faces[name])
+    for part, surface, numbers in zip(("slave", "master"), sides, faces):
+        yield from _part(part, Nodes=(surface.node_ids + 1).tolist(), Conditions=numbers)
     for i, support in enumerate(case.supports):
         yield from _part(f"support_{i}", Nodes=(mesh.nodes_of(support.on) + 1).tolist())
+
+
+def surface_of(mesh: abut.Mesh, names: str | tuple[str, ...]) -> Surface:
+    """One surface, or several together."""
+    parts = [mesh.surface(name) for name in ([names] if isinstance(names, str) else names)]
+    kinds, nodes = (np.concatenate([getattr(part, name) for part in parts]) for name in ("kinds", "nodes"))
+    cells, local = (np.concatenate([getattr(part, name) for part in parts]) for name in ("cells", "local"))
+    return replace(parts[0], kinds=kinds, nodes=nodes, cells=cells, local=local)
 
 
 def materials(case: abut.Model) -> dict[str, Any]:
@@ -135,7 +147,7 @@ def parameters(case: abut.Model) -> dict[str, Any]:
         "solver_settings": {
             "solver_type": "Static",
             "model_part_name": "Structure",
-            "domain_size": 3,
+            "domain_size": case.mesh.dim,
             "echo_level": 0,
             "analysis_type": "non_linear",
             "model_import_settings": {"input_type": "mdpa", "input_filename": "case"},

@@ -19,10 +19,10 @@ from cards import Card, plain, read
 from frd import Displacements
 
 import abut
-from abut.decks.cards import read_deck
-from abut.decks.cards.time_histories import ends
 from abut.decks.translation import translate
 from abut.errors import AbutError, ConvergenceError, InputError
+from abut.io.deck import read_deck
+from abut.io.deck.time_histories import ends
 from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
 AGREES = 0.01  # largest difference of displacement over the largest displacement

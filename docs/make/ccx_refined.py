@@ -25,9 +25,9 @@ from frd import Displacements
 from refine import adjusted, refine
 
 import abut
-from abut.decks.cards import read_deck
 from abut.decks.translation import translate
 from abut.errors import AbutError
+from abut.io.deck import read_deck
 from reference import EXAMPLES, NoReference, decks, reference
 
 PAGE = DOCS / "verification" / "decks.md"

@@ -117,7 +117,8 @@ def _value(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
     if options:
         return " or ".join(dict.fromkeys(_value(o, schema) for o in options if o.get("type") != "null"))
     if entry.get("type") == "array":
-        return f"list of {_value(entry['items'], schema)}s" if isinstance(entry.get("items"), dict) else "list"
+        inner = _value(entry["items"], schema) if isinstance(entry.get("items"), dict) else ""
+        return f"list of {inner}{'' if ' or ' in inner else 's'}" if inner else "list"
     names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true, false"}
     return names.get(entry.get("type", ""), "table")
 

@@ -46,6 +46,12 @@ class Stopped(AbutError):
     exit_status = 130  # 128 + SIGINT, as shells have it
 
 
+class OutOfTime(Stopped):
+    """A run has taken as long as it may (``SolveOptions.seconds``) before its first step converged."""
+
+    exit_status = 124  # as of timeout(1)
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the closest known name, else the list of what exists."""
     known = sorted(known)

@@ -258,6 +258,21 @@ def test_what_is_hardly_covered_counts_nowhere() -> None:
     assert result.partly_covered == 30.0
 
 
+def test_what_is_hardly_covered_counts_where_nothing_else_presses() -> None:
+    """Under an edge of the target a node less than half covered may carry all of the force."""
+    mesh = make.join({"body": make.rectangle([0, 3], [0, 1], cells=[3, 1], cell="quad4")})
+    surface = mesh.surface("body.top")
+    x = surface.points[np.maximum(surface.nodes, 0), 0]
+    there = surface.nodes >= 0
+    pressure = np.where(there, np.where(x > 2.5, 30.0, 0.0), np.nan)
+    share = np.where(there, np.where(x > 2.5, 0.4, 1.0), np.nan)
+    area = np.where(there & (x > 2.5), 0.2, 0.0)
+    result = pressure_statistics(surface, pressure, area * 30.0, area, share)
+    assert (result.largest, result.mean, result.area) == (30.0, pytest.approx(30.0), pytest.approx(0.2))
+    assert result.place.tolist() == [3.0, 1.0]
+    assert np.isnan(result.partly_covered)
+
+
 @pytest.mark.parametrize("kind", ["contact", "tied"])
 def test_nothing_pressed(kind: str, tmp_path: Path) -> None:
     """Apart, or tied and pulled: no mean, no place, in files null or nan; the tie still has a centre of its forces."""

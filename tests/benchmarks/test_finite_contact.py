@@ -9,14 +9,15 @@ import pytest
 
 import abut
 from abut.benchmarks import BENCHMARKS, run
-from abut.benchmarks.finite_contact import _ironing
+from abut.benchmarks.finite_contact import ironing
 
 
 @pytest.mark.parametrize(
     "name",
     [
         "shallow-ironing", "crushed-ring", "gears", "die-drawn-hex8",
-        *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-tet10", "die-drawn-hex20", "wires")),
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-hex20", "wires")),
+        pytest.param("die-drawn-tet10", marks=pytest.mark.exhaustive),
     ],
 )  # fmt: skip
 def test_known_answer(name: str) -> None:
@@ -26,7 +27,7 @@ def test_known_answer(name: str) -> None:
 
 def test_ironing_in_plane_stress() -> None:
     """The same prototype's forces in plane stress, pressed down only: 0.835e8 half way, 2.80e8."""
-    solution = abut.solve(replace(_ironing(0), plane="stress", solve=abut.SolveOptions(times=(1 / 6, 1 / 3))))
+    solution = abut.solve(replace(ironing(0), plane="stress", solve=abut.SolveOptions(times=(1 / 6, 1 / 3))))
     half, down = (
         next(step.reactions["die.top"][1] for step in solution.steps if np.isclose(step.factor, time))
         for time in (1 / 6, 1 / 3)

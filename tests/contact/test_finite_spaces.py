@@ -12,7 +12,7 @@ from tests.models.sheets import chain, sheet, turn
 import abut
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.facet_area import area_change
-from abut.contact.geometry import full_masses, full_moments
+from abut.contact.geometry import facet_products, full_moments
 from abut.contact.pressure_space import pressure_space
 from abut.mesh import make
 from abut.mesh.surface import Surface
@@ -107,7 +107,7 @@ def test_dual_functions_of_whole_facets() -> None:
     contactor = turn(chain("line2", 8, lambda s: [8.0 * s, 0.0 * s]))
     target = chain("line2", 3, lambda s: [-1.0 + 5.3 * s, 0.0 * s])
     coupling = couple(contactor, target, 1, CouplingOptions())
-    whole = replace(coupling, weight=full_moments(contactor, 1).ravel(), mass=full_masses(contactor, 1))
+    whole = replace(coupling, weight=full_moments(contactor, 1).ravel(), mass=facet_products(contactor, 1))
     space = pressure_space("dual", contactor, whole)
     rows = (space.transfer - space.plain).tocsr()
     assert abs(rows).sum() > 1.0

@@ -151,13 +151,25 @@ def test_a_converted_deck_keeps_what_nlgeom_means(tmp_path: Path) -> None:
     assert again.solids[0].material == first.solids[0].material
 
 
-def test_a_step_that_cannot_begin_says_why(tmp_path: Path) -> None:
-    """Equations hold all nodes of both surfaces level: of their four multipliers only the sum is known."""
+def test_level_faces(tmp_path: Path) -> None:
+    """Equations hold all nodes of both surfaces level, so that of their four pressures only the sum is known: small loads
+    give what small displacements do."""
     level = "".join(
         f"*EQUATION\n2\n{n}, 3, 1., {first}, 3, -1.\n" for first in (5, 11) for n in range(first + 1, first + 4)
     )
-    model = load(tmp_path, LARGE.replace("*STEP", level + "*STEP")).model
+    text = LARGE.replace("*STEP", level + "*STEP")
+    large, small = (abut.solve(load(tmp_path, text, *ignored).model) for ignored in ((), ("NLGEOM",)))
+    assert large.converged
+    assert large.contacts[0].force == pytest.approx(small.contacts[0].force, rel=1e-2)
+    assert np.abs(large.displacement - small.displacement).max() < 0.05 * np.abs(small.displacement).max()
+
+
+def test_a_step_that_cannot_begin_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object) -> None:
+        raise abut.errors.SingularModelError("the direct solver failed (for the test)")
+
+    monkeypatch.setattr("abut.nonlinear.semismooth.advance", fails)
     with pytest.raises(
         abut.errors.ConvergenceError, match="step 1 cannot be begun, however short: the direct solver failed"
     ):
-        abut.solve(model)
+        abut.solve(load(tmp_path, LARGE).model)

@@ -9,8 +9,8 @@ from abut import Mesh
 from abut._core import shape_functions
 from abut.bodies.loads import stress_load, surface_area
 from abut.cells import CELLS
-from abut.decks.cards.elements import ELEMENTS
 from abut.errors import InputError
+from abut.io.deck.elements import ELEMENTS
 from abut.mesh.integrals import chunks, gradients
 from abut.mesh.quadrature import stiffness_rule
 from models.decks import MESH

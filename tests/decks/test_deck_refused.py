@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from abut.cli import main
-from abut.decks.cards.cards import key
-from abut.decks.cards.supported import NEEDED, PROCEDURES, QUIET, READ, REFUSED
 from abut.errors import InputError
+from abut.io.deck.cards import key
+from abut.io.deck.supported import NEEDED, PROCEDURES, QUIET, READ, REFUSED
 from abut.job import load_job
 from abut.mesh.mesh import Mesh
 from models.decks import BRICKS, HELD, PAIR, PUSH, load, step, write

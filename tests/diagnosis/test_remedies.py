@@ -193,3 +193,73 @@ def test_place_is_named_with_nodes_and_coordinates(tmp_path: Path) -> None:
     shown = dict(arrays(tmp_path / "contact_c_0001.vtu"))
     assert shown["unsettled"].sum() == 2
     assert shown["unsettled"][shown["side"] == 1].sum() == 0
+
+
+def pulled(force: float, **more: Any) -> abut.Model:
+    """A block between a plate and a lid that presses 27.5 or so on either of its faces, friction 0.2; then it is pulled."""
+    mesh = make.join(
+        {
+            "plate": make.rectangle(x=[0, 4], y=[0, 1], cells=[8, 2], cell="quad4"),
+            "block": make.rectangle(x=[1, 3], y=[1, 2], cells=[5, 3], cell="quad4"),
+            "lid": make.rectangle(x=[0, 4], y=[2, 3], cells=[8, 2], cell="quad4"),
+        }
+    )
+    then = abut.Amplitude(((0.0, 0.0), (0.5, 0.0), (1.0, 1.0)))
+    return abut.Model(
+        mesh, plane="strain",
+        solids=[abut.Solid(body, abut.LinearElastic(1e3, 0.3)) for body in ("plate", "block", "lid")],
+        supports=[
+            abut.Support("plate.bottom", x=0, y=0), abut.Support("lid.top", x=0),
+            abut.Support("lid.top", y=-0.05, amplitude=abut.Amplitude(((0.0, 0.0), (0.5, 1.0)))),
+            *more.pop("supports", ()),
+        ],
+        loads=[abut.Force("block.right", (force, 0.0), amplitude=then)],
+        contacts=[
+            abut.Contact("block.bottom", "plate.top", name="under", friction=0.2),
+            abut.Contact("block.top", "lid.bottom", name="over", friction=0.2),
+        ],
+        solve=abut.SolveOptions(times=[0.5, 0.75, 1.0]),
+    )  # fmt: skip
+
+
+def test_what_friction_no_longer_holds_is_said() -> None:
+    """Both faces slip when the pull is as large as their bounds; the parts of the step end just below, and what is said
+    names both with what they carry."""
+    solution = abut.solve(pulled(40.0))
+    assert not solution.converged
+    last = solution.steps[-2]
+    bound = sum(c.friction.force_limit for c in last.contacts if c.friction is not None)
+    assert 80.0 * (last.factor - 0.5) == pytest.approx(bound, rel=0.02)
+    (remedy,) = remedies(solution)
+    assert remedy.action.startswith("a support")
+    for name in ("under", "over"):
+        assert f"'{name}' carries" in remedy.reason
+
+
+def test_what_friction_never_held_is_said() -> None:
+    """The first step failed, so that nothing is known but that loads push what supports leave free."""
+    solution = abut.solve(pulled(40.0))
+    step = replace(solution.steps[0], converged=False)
+    (remedy,) = remedies(replace(solution, steps=(step,)))
+    assert remedy.reason == "loads may push along what friction alone holds, in contact 'under', 'over'"
+
+
+def test_rubber_is_advised_for_the_body_that_gives_way() -> None:
+    """Of both, the one that the reason names, as both bear large stresses; neither where stresses are small."""
+    solution = abut.solve(replace(pulled(1.0), contacts=[], loads=[], kinematics="finite", supports=[
+        abut.Support(f"{body}.{side}", x=0, y=0.0 if side == "bottom" else -0.2)
+        for body in ("plate", "block", "lid") for side in ("bottom", "top")
+    ]))  # fmt: skip
+    step = replace(solution.steps[-1], converged=False, reason="cell 9 of body 'lid' turns inside out")
+    ends = remedies(replace(solution, steps=(step,)))
+    assert "of body 'lid'" in ends[0].action
+    gentle = replace(step, stress=0.1 * step.stress)
+    assert not [remedy for remedy in remedies(replace(solution, steps=(gentle,))) if "neo-hooke" in remedy.action]
+
+
+def test_friction_at_its_limit_is_no_reason_where_supports_hold() -> None:
+    model = pulled(40.0, supports=[abut.Support("block.left", x=-0.5, y=0)])
+    solution = abut.solve(model)
+    steps = tuple(replace(step, converged=step.number < 3) for step in solution.steps)
+    assert all(rub.force_by_area > 0.95 * rub.force_limit for c in steps[1].contacts if (rub := c.friction))
+    assert not [r for r in remedies(replace(solution, steps=steps)) if "friction" in r.reason]

@@ -66,7 +66,7 @@ def make(seed: int, number: int) -> Input:
 def _reads_decks() -> bool:
     import importlib.util
 
-    return importlib.util.find_spec("abut.decks.cards") is not None
+    return importlib.util.find_spec("abut.io.deck") is not None
 
 
 def run_all(numbers: Sequence[int], seed: int, folder: Path) -> Iterator[Result]:

@@ -52,7 +52,10 @@ def test_there_and_back(tmp_path: Path, text: str) -> None:
     ("text", "words"),
     [
         ("friction = -1", "friction: expected a coefficient >= 0, got -1"),
-        ('friction = "slick"', "friction: expected a coefficient >= 0, \"rough\", or pairs .* got 'slick'"),
+        (
+            'friction = "slick"',
+            "friction: expected a coefficient >= 0, .* \"rough\", or pairs .* got 'slick': unknown name",
+        ),
         ("friction = true", "friction: expected a finite number"),
         ("friction = nan", "friction: expected a finite number"),
         ("friction = { mu = 0.3 }", "friction: expected a coefficient >= 0"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,9 +36,18 @@ def arched(friction: float, cell: str = "quad4", slide: float = 0.5, **options: 
     )  # fmt: skip
 
 
-def bent(mesh: Mesh, move: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Mesh:
-    from dataclasses import replace
+def sharp(friction: float, cells: int, **options: Any) -> abut.Model:
+    """The same block with a flat underside and sharp edges, and the plate with so many cells as the contactor: its nodes
+    come under the block one after the other."""
+    plate = make.rectangle([0, 3], [0, 1], cells=[cells, 2], cell="quad4")
+    block = make.rectangle([0.5, 1.5], [1, 2], cells=[5, 2], cell="quad4")
+    contacts = [abut.Contact("lower.top", "upper.bottom", friction=friction)]
+    return replace(
+        arched(friction, slide=0.6, **options), mesh=make.join({"lower": plate, "upper": block}), contacts=contacts
+    )
 
+
+def bent(mesh: Mesh, move: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Mesh:
     return replace(mesh, points=move(mesh.points))
 
 
@@ -46,6 +56,27 @@ def finite(model: abut.Model) -> FiniteProblem:
     problem = Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled.problem
     assert isinstance(problem, FiniteProblem)
     return problem
+
+
+def tangent_errors(problem: FiniteProblem, size: float) -> tuple[float, float]:
+    """Of the derivatives of balance and of gaps (slips) against central differences, relative, in all displacements at once
+    and near random ones of that size."""
+    rng = np.random.default_rng(3)
+    before, n = problem.start(), problem.operator.shape[0]
+    at = replace(
+        before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
+    )
+    system, way = problem.linearise(before, at), rng.standard_normal(problem.n_free)
+
+    def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        state = replace(at, unknowns=at.unknowns + step * way)
+        near = problem.linearise(before, state)
+        return near.unbalanced(state), near.gap(state)
+
+    (force, gap), (force_back, gap_back) = there(1e-6), there(-1e-6)
+    forces, gaps = (force - force_back) / 2e-6, (gap - gap_back) / 2e-6
+    left = np.abs(forces - system.stiffness @ way).max() / np.abs(forces).max()
+    return float(left), float(np.abs(gaps - system.operator @ way).max() / np.abs(gaps).max())
 
 
 def turned(angle: float) -> NDArray[np.float64]:

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import PressureSpace, only
+from abut.contact.tangential import SlipOperators, arms
 from abut.problem.contact_pairs import Pair
-from abut.problem.current import Current
 from abut.problem.finite import FiniteProblem, bare
+from abut.problem.friction_rows import Slip
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS
 from abut.solution.state import State
@@ -30,7 +31,9 @@ def covered(
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            pair = _of_covered(pair, kind, keep, here, whole.weight[whole.normal]) if under.any() else pair
+            seen = kind.shown(here, points=pair.frictional and pair.contactor.dim == 3)
+            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen))
+            pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
     keep = np.concatenate([np.zeros(0, bool), *keeps])
@@ -47,18 +50,27 @@ def covered(
     return smaller, kept, keep
 
 
-def _of_covered(pair: Pair, kind: Current, keep: NDArray[np.bool_], here: Array, undeformed: Array) -> Pair:
+def _with_arms(pair: Pair, seen: Coupling) -> Slip | None:
+    """What makes tangential rows, its arms those of the points that are seen now."""
+    if pair.slip is None:
+        return None
+    of_points = seen.gap[:, None] if seen.points is None else arms(seen.points, pair.contactor.points)
+    return replace(pair.slip, operators=SlipOperators((), of_points))
+
+
+def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:
     """A pair without some multipliers, keep (n,), with the weights of what is covered now. undeformed: (n_functions,) those
     of the laws, theory (G3)."""
-    coupling = kind.shown(here)
     ends = np.cumsum([len(part) for part in pair.components])[:-1]
-    components = [_weighed(only(part, chosen), coupling) for part, chosen in zip(pair.components, np.split(keep, ends))]
+    components = [
+        _weighed(only(part, chosen), pair.coupling) for part, chosen in zip(pair.components, np.split(keep, ends))
+    ]
     functions = keep[pair.normal]
     number = np.where(keep, np.cumsum(keep) - 1, -1)
     index = np.where(pair.index >= 0, number[np.maximum(pair.index, 0)], -1)[functions]
     weight = np.concatenate([part.weight for part in components])
     return replace(
-        pair, coupling=coupling, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
+        pair, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
         components=tuple(components), index=index, rows=pair.rows[keep], operator=pair.operator[keep], gap=pair.gap[keep],
         prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
         slip=None

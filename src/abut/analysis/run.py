@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.deadline import Deadline
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
@@ -26,7 +27,7 @@ from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.finite import FiniteProblem
 from abut.problem.restraint import require_balance
-from abut.solution import Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class Run:
 
     model: Model
     told: Told
+    deadline: Deadline
     keep: OnStep
     team: Team | None
     clock: Clock
@@ -67,7 +69,7 @@ class Run:
     @classmethod
     def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
-        told, clock = Told(observe), Clock()
+        told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
         places = find_places(model)
         for text in (text for place in places for text in place.notes):
             told.note(text)
@@ -84,7 +86,9 @@ class Run:
         kind = solver_kind(problem, team)
         if resume and model.solve.linear in ("auto", "petsc"):
             kind = resume[-1].linear
-        return cls(model, told, keep, team, clock, places, assembled, kind, linear_solver(kind, problem, team))
+        return cls(
+            model, told, deadline, keep, team, clock, places, assembled, kind, linear_solver(kind, problem, team)
+        )
 
     def restore(self, done: Sequence[Saved]) -> State:
         """Take up the steps done before; the state to go on from."""
@@ -105,6 +109,7 @@ class Run:
         count = len(self.steps) + len(times)
 
         def begins(number: int, time: float) -> None:
+            self.deadline.begins()
             of_all = max(count, number)
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
             if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
@@ -112,6 +117,10 @@ class Run:
             factors = weights(self.model.histories, time)
             loads = problem.constraints.free.T @ (self.assembled.loaded.forces @ factors)
             require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
+
+        def iterated(item: Iteration) -> None:
+            observe(item)
+            self.deadline.iterated()
 
         def prepares(what: LinearSolver) -> None:
             observe(Phase(*setting_up(what, problem)))
@@ -123,7 +132,7 @@ class Run:
             )
 
         halve = self.model.finite or any(pair.frictional for pair in problem.pairs)
-        control = Control(solve.max_iterations, observe, begins, prepares, self.told.note, self._fallback, halves)
+        control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves)
         attempts: Iterator[Attempt]
         if isinstance(problem, FiniteProblem):
             pace = pace_of(solve.steps, solve.times, self.model.histories)
@@ -189,8 +198,12 @@ class Run:
         self.clock.mark("writing")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
+        direct = linear_solver("direct", self.assembled.problem, self.team)
+        if isinstance(self.assembled.problem, FiniteProblem):
+            self.told.note(f"step {number}: {reason}: the direct solver takes this step")
+            return direct
         self.told.note(f"step {number}: {reason}: going on with the direct solver")
-        self.solver, self.kind = linear_solver("direct", self.assembled.problem, self.team), "direct"
+        self.solver, self.kind = direct, "direct"
         return self.solver
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from abut.analysis.run import Run
+from abut.errors import OutOfTime
 from abut.model import Model
 from abut.solution import Observer, OnStep, Saved, Solution
 
@@ -32,7 +33,8 @@ def solve(
     done before, in order, of the same model: the run goes on after the last of them. ``team``: processes that share the
     work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
     A run that does not converge is returned with its last state (``solution.converged`` is False).
-    Raises InputError for a model that cannot be used, SingularModelError for one without a unique solution.
+    After ``solve.seconds`` the steps done so far are returned (``solution.complete`` is False). Raises OutOfTime where there
+    are none, InputError for a model that cannot be used, SingularModelError for one without a unique solution.
 
     Two stacked blocks with meshes that do not match, pressed together:
 
@@ -58,5 +60,11 @@ def solve(
     """
     run = Run.of(model, observer or _silent, on_step or _silent, team, resume)
     first = run.restore(resume)
-    run.march(first, resume)
+    try:
+        run.march(first, resume)
+    except OutOfTime as reason:
+        if not run.steps:
+            raise
+        run.told.note(str(reason))
+        return run.so_far(complete=False)
     return run.so_far(complete=True)

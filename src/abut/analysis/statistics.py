@@ -78,11 +78,13 @@ def pressure_statistics(
     pressure: (n_facets, 9) at the facets' own nodes, NaN where padded; load, area: (n_facets, 9) normal force and loaded
     area that each of them stands for; share: (n_facets, 9) covered share of their supports, NaN where padded; nothing:
     largest pressure that is taken for none. The mean is the force over the area, at most the largest. The percentile is
-    that of the pressures at nodes, each at the middle of its area in their order, linear between them.
+    that of the pressures at nodes, each at the middle of its area in their order, linear between them. Nodes less than half
+    covered count where no others carry anything, as under an edge of the target.
     """
-    counted = supported(surface, share)
-    partly = (share > 0.0) & ~counted
-    counted = counted if counted.any() else partly
+    covered, counted = share > 0.0, supported(surface, share)
+    if not (pressure[counted] > LOADED * pressure[covered].max(initial=0.0)).any():  # all of it is at an edge
+        counted = covered
+    partly = covered & ~counted
     largest = float(pressure[counted].max()) if counted.any() else 0.0
     aside = float(pressure[partly].max()) if partly.any() else 0.0
     aside = aside if aside > max(LOADED * largest, nothing) else np.nan

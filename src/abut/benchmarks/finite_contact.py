@@ -35,7 +35,8 @@ def _die(level: int) -> Mesh:
     return replace(mesh, points=points + np.array([0.2 + half, 4.0 + GAP]))
 
 
-def _ironing(level: int) -> Model:
+def ironing(level: int) -> Model:
+    """The die above the slab; ``level`` halves the cells."""
     slab = rectangle((0.0, 12.0), (0.0, 4.0), (60 * 2**level, 12 * 2**level), "quad4")
     rubber = {
         name: NeoHooke(young, 0.32, volumetric="log-squared") for name, young in (("slab", 68.96e7), ("die", 68.96e8))
@@ -102,7 +103,7 @@ SOURCE = (
 )
 BENCHMARKS = (
     Benchmark(
-        "shallow-ironing", "a die pressed into a slab and drawn along it, friction 0.3", _ironing, _forces,
+        "shallow-ironing", "a die pressed into a slab and drawn along it, friction 0.3", ironing, _forces,
         {
             "force half down": Reference(0.94e8, 0.01, SOURCE, MESH),
             "force down": Reference(3.17e8, 0.01, SOURCE, MESH),

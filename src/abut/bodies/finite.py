@@ -59,15 +59,45 @@ def respond_finite(
 def cauchy_stress(solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED) -> Array:
     """Cauchy stress xx yy zz xy yz zx at the points, (n_points, 6), in the fixed axes, averaged over the cells of a point as
     ``abut.bodies.stress.nodal_stress`` does. Raises Inverted."""
+    sums = cauchy_sums(solids, displacement, temperature)
+    if sums.unsound:
+        sums = cauchy_sums(solids, displacement, temperature, sums.unsound)
+    return averaged(sums.total, sums.count)
+
+
+@dataclass(frozen=True)
+class CauchySums:
+    """Sums of stresses at the points (n_points, 6), and of how many cells (n_points,); unsound: groups of cells (type, law,
+    integration) left out because a cell of them is inside out at a point where stresses are taken."""
+
+    total: Array
+    count: Array
+    unsound: frozenset[tuple[str, int, str]]
+
+
+def cauchy_sums(
+    solids: Solids,
+    displacement: Array,
+    temperature: TemperatureChange = UNHEATED,
+    coarse: frozenset[tuple[str, int, str]] = frozenset(),
+) -> CauchySums:
+    """What ``cauchy_stress`` averages; sums of parts of a mesh add up. coarse: groups of cells whose stresses are taken at
+    the integration points, where they are sound if the forces are. Raises Inverted for these."""
     total, count = np.zeros((len(solids.points), 6)), np.zeros(len(solids.points))
     moved = np.ascontiguousarray(displacement, dtype=float)
+    unsound = set()
     for group in solids.groups():
+        key = group.kind, group.law, group.integration
+        rule = cell_rule(group.kind, group.integration) if key in coarse else stress_rule(group.kind)
         try:
-            sums = _nodal_sums(solids, group, moved, temperature, stress_rule(group.kind))
-        except Inverted:  # though sound at the integration points
-            sums = _nodal_sums(solids, group, moved, temperature, cell_rule(group.kind, group.integration))
+            sums = _nodal_sums(solids, group, moved, temperature, rule)
+        except Inverted:
+            if key in coarse:
+                raise
+            unsound.add(key)
+            continue
         total, count = total + sums[0], count + sums[1]
-    return averaged(total, count)
+    return CauchySums(total, count, frozenset(unsound))
 
 
 def _nodal_sums(

@@ -7,6 +7,7 @@ import scipy.sparse as sp
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
+from abut.fields import Given, evaluate
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 from abut.types import Array, Sparse
@@ -15,9 +16,14 @@ TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])  # from a tangent to the normal outwa
 PERMUTATION = np.array([[[(i - j) * (j - k) * (k - i) / 2.0 for k in range(3)] for j in range(3)] for i in range(3)])
 
 
-def follower_pressure(surface: Surface, value: float) -> tuple[Array, Sparse]:
+def follower_pressure(
+    surface: Surface, value: Given, undeformed: Array | None = None, name: str = "pressure: value"
+) -> tuple[Array, Sparse]:
     """Nodal forces (dim n_points,) of a pressure (force per area, positive into the body) on a surface at its present
-    positions, and their derivative by these (dim n_points, dim n_points) CSR."""
+    positions, and their derivative by these (dim n_points, dim n_points) CSR.
+
+    value: a number, or a function of the positions ``undeformed``, (n_points, dim), points (n, dim) -> (n,). Raises
+    InputError, beginning with ``name``, for a function that does not return finite numbers."""
     dim, n = surface.dim, surface.points.size
     load, slopes = np.zeros(surface.points.shape), sp.csr_matrix((n, n))
     for code in np.unique(surface.kinds):
@@ -38,8 +44,10 @@ def follower_pressure(surface: Surface, value: float) -> tuple[Array, Sparse]:
         by = by * around[..., None, None, None]
         if surface.axisymmetric:
             by[..., 0] += 2.0 * np.pi * np.einsum("qk,fqa->fqka", values, normal)
-        np.add.at(load, nodes, -value * np.einsum("q,qn,fqa,fq->fna", weights, values, normal, around))
-        slopes = slopes + _assembled(nodes, -value * np.einsum("q,qi,fqkab->fiakb", weights, values, by), n)
+        first_at = at if undeformed is None else undeformed[nodes]
+        pressure = evaluate(value, np.einsum("qn,fnd->fqd", values, first_at), name)
+        np.add.at(load, nodes, -np.einsum("q,qn,fqa,fq,fq->fna", weights, values, normal, around, pressure))
+        slopes = slopes - _assembled(nodes, np.einsum("q,qi,fqkab,fq->fiakb", weights, values, by, pressure), n)
     return load.ravel(), slopes
 
 

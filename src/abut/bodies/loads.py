@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
-from abut.fields import Field, evaluate
+from abut.fields import Given, evaluate
 from abut.mesh.integrals import body_chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import facet_rule, field_rule, stiffness_rule
 from abut.mesh.surface import Surface, around
 
 
-def _spread(
-    surface: Surface,
-    traction: Sequence[float] | NDArray[np.float64] | Field | None,
-    stress: NDArray[np.float64] | None = None,
-    name: str = "",
-) -> NDArray[np.float64]:
-    """int N t for a traction t, uniform or a function of position, or for t = stress n with the outward normal n."""
+def _spread(surface: Surface, given: Given, rank: int, name: str = "") -> NDArray[np.float64]:
+    """int N t for a traction t, uniform or a function of position; rank 1: t itself is given, rank 2: a stress whose product
+    with the outward normal t is, rank 0: a stress that is the same in all directions."""
     load = np.zeros(surface.points.shape)
     for code in np.unique(surface.kinds):
         cell = CELLS[BY_CODE[code].name]
@@ -35,39 +31,39 @@ def _spread(
         else:
             normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
         at = np.einsum("qn,fnd->fqd", values, surface.points[nodes])
-        if traction is None:
-            force = normal @ stress
+        value = evaluate(given, at, name, (surface.dim,) * rank)
+        if rank == 1:
+            force = np.linalg.norm(normal, axis=2)[..., None] * value
         else:
-            force = np.linalg.norm(normal, axis=2)[..., None] * evaluate(traction, at, name, (surface.dim,))
+            force = np.einsum("fqa,fqab->fqb", normal, value) if rank else normal * value[..., None]
         force = force * surface.around(at)[..., None]
         np.add.at(load, nodes, np.einsum("q,qn,fqd->fnd", weights, values, force))
     return load
 
 
-def pressure_load(surface: Surface, value: float) -> NDArray[np.float64]:
-    """Pressure (force per area, positive into the body), (dim n_points,)."""
-    return _spread(surface, None, -value * np.eye(surface.dim)).ravel()
+def pressure_load(surface: Surface, value: Given, name: str = "pressure: value") -> NDArray[np.float64]:
+    """Pressure (force per area, positive into the body), a number or a function of position, points (n, dim) -> (n,);
+    (dim n_points,). Raises InputError, beginning with ``name``, for a function that does not return finite numbers."""
+    return -_spread(surface, value, 0, name).ravel()
 
 
 def stress_load(surface: Surface, stress: NDArray[np.float64]) -> NDArray[np.float64]:
     """Traction of a uniform stress (dim, dim) on the surface's outward side, (dim n_points,)."""
-    return _spread(surface, None, stress).ravel()
+    return _spread(surface, stress, 2).ravel()
 
 
-def traction_load(
-    surface: Surface, value: Sequence[float] | NDArray[np.float64] | Field, name: str = "traction: value"
-) -> NDArray[np.float64]:
+def traction_load(surface: Surface, value: Given, name: str = "traction: value") -> NDArray[np.float64]:
     """Traction (force per area), a vector or a function of position, points (n, dim) -> (n, dim); (dim n_points,).
 
     Raises InputError, beginning with ``name``, for a function that does not return a finite vector for each point."""
-    return _spread(surface, value, name=name).ravel()
+    return _spread(surface, value, 1, name).ravel()
 
 
 def surface_area(surface: Surface) -> float:
     """Area (2D: length; axisymmetric: all round) of a surface."""
     first = np.zeros(surface.dim)
     first[0] = 1.0
-    return float(_spread(surface, first)[:, 0].sum())
+    return float(_spread(surface, first, 1)[:, 0].sum())
 
 
 def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -75,9 +71,7 @@ def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.floa
     return traction_load(surface, np.asarray(vector, dtype=float) / surface_area(surface))
 
 
-def body_load(
-    mesh: Mesh, forces: Mapping[str, Sequence[float] | NDArray[np.float64] | Field], name: str = "body force: value"
-) -> NDArray[np.float64]:
+def body_load(mesh: Mesh, forces: Mapping[str, Given], name: str = "body force: value") -> NDArray[np.float64]:
     """int f N of a force per volume in each of the bodies named, a vector or a function of position, points (n, dim) ->
     (n, dim); (dim n_points,).
 

@@ -25,7 +25,8 @@ PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
-    130 stopped by Ctrl-C (143 by SIGTERM), 1 internal error. Of several processes all but the first keep silent about it."""
+    124 out of time, 130 stopped by Ctrl-C (143 by SIGTERM), 1 internal error. Of several processes all but
+    the first keep silent about it."""
     if processes() > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when NumPy and the core are imported
     arguments = _parse(argv)

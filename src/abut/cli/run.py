@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.errors import ConvergenceError, InputError, Stopped
+from abut.errors import ConvergenceError, InputError, OutOfTime, Stopped
 from abut.parallel.launch import processes, unused
 
 if sys.version_info >= (3, 11):
@@ -30,6 +30,7 @@ DONE = 0
 STATUS = """exit status:
   0    done
   2    bad input: the message says what, where, and how to correct it
+  124  the time of solve.seconds is over: all steps done so far are written, and --restart goes on from there
   3    not converged: the last state is written, the message names facets and gives advice
   4    the model has no unique solution
   130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
@@ -114,13 +115,22 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
         except Stopped as reason:
             progress.close()
             _say(str(reason))
-            return interrupt.exit_status
+            return reason.exit_status if isinstance(reason, OutOfTime) else interrupt.exit_status
     if arguments.json:
         print(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
         _print_result(solution, directory)
     if not solution.converged:
         raise ConvergenceError(_failure(solution, directory))
+    if not solution.complete:
+        _say(
+            _left(
+                f"stopped after {solution.model.solve.seconds:g} s, as solve.seconds says",
+                len(solution.steps),
+                directory,
+            )
+        )
+        return OutOfTime.exit_status
     return DONE
 
 
@@ -164,8 +174,10 @@ def _solve(
 
         try:
             solution = told(solve(job.model, observe, keep, before, team=team))
+        except OutOfTime as reason:
+            raise OutOfTime(_left(str(reason), stream.steps, directory)) from None
         except Stopped:
-            raise Stopped(_left(stream.steps, directory)) from None
+            raise Stopped(_left("stopped", stream.steps, directory)) from None
         if text := _unused(arguments.petsc):
             _say(text)
             solution = replace(solution, notes=(*solution.notes, text))
@@ -205,12 +217,12 @@ def _say(text: str) -> None:
     print(f"abut: {text}", file=sys.stderr, flush=True)
 
 
-def _left(steps: int, directory: Path) -> str:
-    """What a run that was stopped leaves behind."""
+def _left(how: str, steps: int, directory: Path) -> str:
+    """What a run that was stopped, ``how`` in words, leaves behind."""
     if not steps:
-        return "stopped before the first step converged: nothing is written"
+        return f"{how} before the first step converged: nothing is written"
     some = "step 1 is" if steps == 1 else f"steps 1 to {steps} are"
-    return f"stopped: {some} in {directory}; go on with abut run --restart"
+    return f"{how}: {some} in {directory}; go on with abut run --restart"
 
 
 def _failure(solution: Solution, directory: Path) -> str:

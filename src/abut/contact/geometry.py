@@ -111,7 +111,7 @@ def smoothing(surface: Surface) -> Smoothing:
     facet, local = _visits(surface)
     vector = areas[facet, local]
     length = np.linalg.norm(vector, axis=1, keepdims=True)
-    _check_normals(surface, areas, length)
+    check_normals(surface, areas, length)
     pairs = list(_without_crease(surface.nodes[facet, local].astype(np.int64), vector / length))
     return Smoothing(np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs]))
 
@@ -129,7 +129,7 @@ def nodal_normals(surface: Surface, across: Smoothing | None = None) -> NDArray[
     total = _totals(areas[facet, local], across)
     result = np.zeros_like(areas)
     length = np.linalg.norm(total, axis=1, keepdims=True)
-    _check_normals(surface, areas, length)
+    check_normals(surface, areas, length)
     result[facet, local] = total / length
     return result
 
@@ -146,7 +146,7 @@ def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float6
     return total
 
 
-def _check_normals(surface: Surface, vectors: NDArray[np.float64], length: NDArray[np.float64]) -> None:
+def check_normals(surface: Surface, vectors: NDArray[np.float64], length: NDArray[np.float64]) -> None:
     """vectors: (n_facets, 9, dim) area vectors; length: (n_visits, 1) of what is to become a unit vector."""
     facet, local = _visits(surface)
     flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(vectors, axis=2).max(axis=1)[facet])
@@ -303,17 +303,17 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
     return moments
 
 
-def full_masses(surface: Surface, degree: int) -> NDArray[np.float64]:
-    """int H_k H_l over the whole of each facet, an area (2D: a length), (n_facets, 9, 9), zero where padded, for degree 1
-    or 2."""
-    masses = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
+def facet_products(surface: Surface, degree: int) -> NDArray[np.float64]:
+    """int H_k H_l over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
+    result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
     for kind, facets in by_kind(surface):
+        cell = CELLS[pressure_kind(kind, degree)]
         xi, weights = gauss_rule(kind, 6)
         _, _, area = facet_measure(surface, kind, facets, xi)
-        values, _ = shape_functions(CELLS[pressure_kind(kind, degree)].code, np.ascontiguousarray(xi))
-        n = np.arange(values.shape[1])
-        masses[facets[:, None, None], n[:, None], n] = np.einsum("fq,qk,ql->fkl", area * weights, values, values)
-    return masses
+        values, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+        block = np.einsum("fq,qk,ql->fkl", area * weights, values, values, optimize=True)
+        result[facets[:, None, None], np.arange(cell.nodes)[:, None], np.arange(cell.nodes)] = block
+    return result
 
 
 def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:

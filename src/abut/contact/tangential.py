@@ -40,10 +40,11 @@ def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
         fields = [turned(normal)]
     else:
         fields = [np.eye(dim)[a] - normal * normal[:, [a]] for a in range(dim)]
-    return SlipOperators(tuple(_integrated(at, shapes, field) for field in fields), _arms(at, points))
+    return SlipOperators(tuple(_integrated(at, shapes, field) for field in fields), arms(at, points))
 
 
-def _arms(at: IntegrationPoints, points: Array) -> Array:
+def arms(at: IntegrationPoints, points: Array) -> Array:
+    """int H_k (x_C - x_T), (9 n_facets, 3); in 2D its size (9 n_facets, 1): theory (R12)."""
     gap = at.weight * (at.gap_operator @ points.ravel())
     field = gap[:, None] if points.shape[1] == 2 else gap[:, None] * at.normal
     return np.asarray(at.pressure.T @ field)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from abut.decks.cards.record import Deck, Friction
-from abut.decks.cards.time_histories import RAMP, ends
+from abut.io.deck.record import Deck, Friction
+from abut.io.deck.time_histories import RAMP, ends
 from abut.model import Amplitude, Contact
 from abut.types import Json
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Deck, Step
-from abut.decks.cards.time_histories import courses, ends, times
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Deck, Step
+from abut.io.deck.time_histories import courses, ends, times
 from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many

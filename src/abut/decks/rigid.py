@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from abut.decks.cards.faces import element_nodes
-from abut.decks.cards.groups import Piece
-from abut.decks.cards.nodal_constraints import coordinates
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Deck, Numbers, RigidBody
-from abut.decks.cards.time_histories import Course, courses, scaled, zero
+from abut.io.deck.faces import element_nodes
+from abut.io.deck.groups import Piece
+from abut.io.deck.nodal_constraints import coordinates
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Deck, Numbers, RigidBody
+from abut.io.deck.time_histories import Course, courses, scaled, zero
 from abut.model import Amplitude, Rigid
 
 

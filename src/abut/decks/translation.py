@@ -10,20 +10,20 @@ import numpy as np
 
 from abut.bodies.loads import stress_load
 from abut.contact.sides import bodies_of, find_sides
-from abut.decks.cards import read_deck
-from abut.decks.cards.adjust import distance
-from abut.decks.cards.elements import FACES
-from abut.decks.cards.groups import Groups, Piece, pieces
-from abut.decks.cards.nodal_constraints import Bonds, bonds
-from abut.decks.cards.pretension import cut
-from abut.decks.cards.reasons import DeckError, Reasons
-from abut.decks.cards.record import Deck, GeneralContact, Numbers, Pair
-from abut.decks.cards.time_histories import Course, combine, courses, scaled, times, zero
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
+from abut.io.deck import read_deck
+from abut.io.deck.adjust import distance
+from abut.io.deck.elements import FACES
+from abut.io.deck.groups import Groups, Piece, pieces
+from abut.io.deck.nodal_constraints import Bonds, bonds
+from abut.io.deck.pretension import cut
+from abut.io.deck.reasons import DeckError, Reasons
+from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
+from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
 
@@ -15,10 +15,15 @@ from abut.contact.geometry import facet_sizes
 from abut.diagnosis.contactor import swap
 from abut.materials.elastic import LinearElastic
 from abut.model import LAWS, METHODS, SolveOptions
-from abut.solution import Solution, Step
+from abut.problem.constraints import supports
+from abut.problem.restraint import restraint
+from abut.solution import ContactResult, Solution, Step
 
 COUNT = 3
 STATUSES = ("open", "sticking", "slipping")
+SPENT = 0.95  # share of the limit of a whole contact from which on friction can hardly carry more
+LOOSE = 1e-9  # of a rigid motion, at a point that it moves
+STRAINED = 0.1  # stress over Young's modulus from which on a linear elastic material may be what gives way
 NAMED = 4  # nodes that the message names
 MORE = 4  # times the iterations, and as many as are allowed without asking at least
 
@@ -85,6 +90,7 @@ def remedies(solution: Solution) -> tuple[Remedy, ...]:
         _by_overlap(solution)
         if solution.converged
         else (
+            *_by_sliding(solution),
             *_by_deformation(solution),
             *_by_law(solution),
             *_by_limit(solution),
@@ -129,7 +135,7 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
     """Of all contacts at once: what one of them does moves the others."""
     smooth = [contact for contact in solution.model.contacts if contact.law == LAWS[1] and contact.kind != "tied"]
     if smooth:
-        names = ", ".join(f"'{contact.name}'" for contact in smooth)
+        names = _listed([contact.name for contact in smooth])
         yield Remedy(
             f'contact{"s" if len(smooth) > 1 else ""} {names}: law = "complementarity"',
             f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
@@ -137,19 +143,68 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
         )
 
 
+def _by_sliding(solution: Solution) -> Iterator[Remedy]:
+    """Of bodies that supports leave free and loads push along, where friction gave all that it can in the last state that
+    converged, or where none did."""
+    model, steps = solution.model, [step for step in solution.steps if step.converged]
+    rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None]
+    if not (rubbing and model.loads):
+        return
+    free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)
+    loose = free.reshape(-1, model.dim).max(axis=1) > LOOSE
+    names = [c.name for c in rubbing if loose[c.contactor.node_ids].any() or loose[c.target.node_ids].any()]
+    action = "a support, a prescribed displacement in place of the load, or more friction or pressure"
+    if names and not steps:
+        yield Remedy(action, f"loads may push along what friction alone holds, in contact {_listed(names)}")
+    elif spent := [c for c in steps[-1].contacts if c.name in names and _spent(c)] if steps else []:
+        some = [
+            f"contact '{c.name}' carries {rub.force_by_area:.4g} of at most {rub.force_limit:.4g}"
+            for c in spent
+            if (rub := c.friction)
+        ]
+        yield Remedy(
+            action,
+            f"friction reaches its limit, and what it alone holds slides: {', '.join(some)}, at time "
+            f"{steps[-1].factor:.4g}",
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def _spent(contact: ContactResult) -> bool:
+    rub = contact.friction
+    return rub is not None and rub.force_by_area >= SPENT * rub.force_limit > 0.0
+
+
 def _by_deformation(solution: Solution) -> Iterator[Remedy]:
     """Of finite deformation, where load steps have been halved in vain."""
-    model = solution.model
-    if not model.finite or solution.converged:
+    model, step = solution.model, solution.steps[-1]
+    if not model.finite:
         return
-    if any(isinstance(solid.material, LinearElastic) for solid in model.solids):
+    for solid in sorted(model.solids, key=lambda solid: f"'{solid.body}'" not in step.reason):
+        at = model.mesh.nodes_of(solid.body)
+        if (
+            isinstance(solid.material, LinearElastic)
+            and np.abs(step.stress[at]).max() > STRAINED * solid.material.young
+        ):
+            yield Remedy(
+                f"material kind = \"neo-hooke\" of body '{solid.body}'",
+                "a linear elastic one gives way when it is pressed to about half its length",
+            )
+            break
+    if model.contacts and model.loads:
         yield Remedy(
-            'material kind = "neo-hooke"', "a linear elastic one gives way when it is pressed to about half its length"
+            "prescribed displacements in place of the loads",
+            "where a load finds no state near by that balances it (buckling, snapping through, sliding off) steps become "
+            "too short, however many there are",
         )
-    yield Remedy(
-        f"solve.steps = {4 * len(model.solve.ends)}",
-        "steps are halved six times at most; a load that no deformation balances stays out of reach",
-    )
+    if not model.contacts:
+        yield Remedy(
+            f"solve.steps = {4 * len(model.solve.ends)}",
+            "steps are halved six times at most; a load that no deformation balances stays out of reach",
+        )
 
 
 def _by_limit(solution: Solution) -> Iterator[Remedy]:

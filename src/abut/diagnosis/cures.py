@@ -14,6 +14,7 @@ from abut.model import LAWS, METHODS, Contact
 from abut.solution import Check, ContactResult, Solution
 
 SECOND = " (second pass)"
+UNSETTLED = {"complementarity", "friction cone", "slip direction", "sticking", "friction work"}
 SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"
 
 
@@ -23,6 +24,10 @@ def cure(check: Check, solution: Solution) -> str:
         return ""
     if not check.contact:
         return MODEL[check.name]
+    if check.name in UNSETTLED and not solution.converged:
+        taken = len(solution.steps[-1].iterations)
+        if taken < solution.model.solve.max_iterations:
+            return "the step did not converge: what is advised for that mends this line, too"
     name = check.contact.removesuffix(SECOND)
     contact = next(c for c in solution.model.contacts if c.name == name)
     result = next(c for c in solution.contacts if c.name == check.contact)

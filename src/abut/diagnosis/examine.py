@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from abut.diagnosis.constraints import constraints
@@ -16,9 +18,10 @@ from abut.diagnosis.rigid_body_check import motions
 from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
-from abut.model import Model
+from abut.model import Contact, Model
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pair
+from abut.problem.whole_pairs import whole_pair
 
 
 def check(model: Model) -> Report:
@@ -45,6 +48,23 @@ def check(model: Model) -> Report:
     return Report(in_order(findings), tuple(shown))
 
 
+def _why(model: Model, contact: Contact, supported: Constraints, error: AbutError) -> Finding:
+    """Why a contact cannot be built: its friction, if it can without, else where its surfaces are."""
+    try:
+        pair(model, replace(contact, friction=0.0, friction_amplitude=None), supported)
+    except AbutError:
+        return not_facing(model, contact, error)
+    return from_error(error, f"contact '{contact.name}'")
+
+
+def _facing(model: Model, one: Pair) -> list[Finding]:
+    """Of sides that do not face each other at the outset, which finite kinematics allows: units that do not match."""
+    if one.coupling.covered.any():
+        return []
+    finding = not_facing(model, one.contact, InputError(""))
+    return [finding] if MIXED in finding.what else []
+
+
 def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Finding]]:
     """The contact pairs that can be built, and findings on all of them."""
     built: list[Pair] = []
@@ -52,10 +72,14 @@ def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Findi
     outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
     for contact in model.contacts:
         try:
-            one = pair(model, contact, supported)
+            sliding = model.finite and contact.kind != "tied"
+            one = whole_pair(model, contact, supported) if sliding else pair(model, contact, supported)
         except AbutError as error:
-            findings.append(not_facing(model, contact, error))
+            findings.append(_why(model, contact, supported, error))
             continue
         built.append(one)
-        findings += [*interface(model, one, outside), *sides(model, contact), *constraints(model, one, supported)]
+        if contact.contactor != contact.target:  # a body that may come to touch itself
+            findings += _facing(model, one) or [*interface(model, one, outside), *sides(model, contact)]
+        if one.coupling.covered.any():
+            findings += constraints(model, one, supported)
     return built, findings

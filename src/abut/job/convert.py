@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from abut.errors import InputError
+from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
@@ -104,8 +105,12 @@ def _plain(record: Any) -> Json:
 
 
 def _value(value: Any, name: str) -> Any:
+    if isinstance(value, Expression):
+        return value.text
+    if isinstance(value, Expressions):
+        return [component.text for component in value.components]
     if callable(value) and not isinstance(value, Amplitude):
-        raise InputError(f"{name}: a job file holds numbers, not functions of position")
+        raise InputError(f"{name}: a job file holds numbers and expressions of position, not functions")
     if isinstance(value, Amplitude):
         return [list(point) for point in value.points]
     if isinstance(value, (Integration, SolveOptions)):

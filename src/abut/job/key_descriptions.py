@@ -69,15 +69,21 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "SupportTable": {
         "on": "name of the surface or node set",
+        "x": "displacement along x, a number or an expression; left out: free [length]",
+        "y": "displacement along y, a number or an expression; left out: free [length]",
+        "z": "displacement along z (3D only), a number or an expression; left out: free [length]",
         "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
     },
     "PressureTable": {
         "kind": "pressure on a surface",
-        "value": "positive into the body [force/length^2]",
+        "value": "positive into the body, a number or an expression [force/length^2]",
         "follows": "finite kinematics: along the normal and on the area of the deformed surface, or (false) of the "
         "undeformed one, as a dead load; the other loads are dead",
     },
-    "TractionTable": {"kind": "traction on a surface", "value": "vector, one number for each axis [force/length^2]"},
+    "TractionTable": {
+        "kind": "traction on a surface",
+        "value": "vector, a number or an expression for each axis [force/length^2]",
+    },
     "ForceTable": {
         "kind": "total force, spread evenly over a surface",
         "value": "vector; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
@@ -95,7 +101,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "TemperatureTable": {
         "kind": "change of temperature, which strains bodies by their expansion",
         "on": "name of the node set or body",
-        "value": "change at the nodes, adds to that of the solid [temperature]",
+        "value": "change at the nodes, a number or an expression, adds to that of the solid [temperature]",
     },
     "EquationTable": {
         "terms": "terms of the sum that is prescribed",
@@ -138,8 +144,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "bodies, and each with itself",
         "bodies": "with auto: look at these bodies only; left out: all of them",
         "reach": "with auto: the largest gap; left out: half the sum of the two facets' sizes [length]",
-        "friction": "Coulomb's coefficient, or pairs of pressure and coefficient (linear between, constant outside), or "
-        '"rough" where nothing slips; left out: none',
+        "friction": "Coulomb's coefficient, a number or an expression, or pairs of pressure and coefficient (linear "
+        'between, constant outside), or "rough" where nothing slips; left out: none',
         "friction_amplitude": "pairs of time (0 to 1) and factor of the coefficient; left out: it is constant",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
@@ -165,6 +171,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
+        "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
+        "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
     },
     "OutputTable": {"directory": "folder of the results, beside the job file"},
 }

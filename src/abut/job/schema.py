@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
+from abut.errors import InputError
+from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
 from abut.materials.hyperelastic import VOLUMETRIC
 from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
@@ -43,6 +46,21 @@ Points = Annotated[
 ]
 
 
+def _varying(value: object) -> object:
+    """The value if it is a number or an expression, which the model's own record makes of it."""
+    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+        raise PydanticCustomError("varying", "Input should be a number or an expression of x, y, z")
+    try:
+        number_or_field(value, "")
+    except InputError as error:
+        said = str(error).removeprefix(": ").partition(", got")[0]
+        raise PydanticCustomError("varying", "{said}", {"said": said}) from None
+    return value
+
+
+Varying = Annotated[Any, AfterValidator(_varying), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]
+
+
 # Checked by the model's own record, which says once what is wrong where a choice of types would say it for each.
 Friction = Annotated[
     Any,
@@ -50,7 +68,7 @@ Friction = Annotated[
         {
             "anyOf": [
                 {"type": "number", "minimum": 0},
-                {"const": "rough", "type": "string"},
+                {"type": "string"},
                 {
                     "type": "array",
                     "minItems": 1,
@@ -110,9 +128,9 @@ class SolidTable(Table):
 
 class SupportTable(Table):
     on: str
-    x: Number | None = None
-    y: Number | None = None
-    z: Number | None = None
+    x: Varying = None
+    y: Varying = None
+    z: Varying = None
     normal: Number | None = None
     amplitude: Points | None = None
 
@@ -175,11 +193,13 @@ class VectorTable(Table):
 
 class PressureTable(ScalarTable):
     kind: Literal["pressure"]
+    value: Varying
     follows: bool = True
 
 
 class TractionTable(VectorTable):
     kind: Literal["traction"]
+    value: list[Varying]
 
 
 class ForceTable(VectorTable):
@@ -196,6 +216,7 @@ class TemperatureTable(ScalarTable):
     """change of temperature at the nodes, degrees"""
 
     kind: Literal["temperature"]
+    value: Varying
 
 
 class GravityTable(Table):
@@ -255,6 +276,7 @@ class SolveTable(Table):
     linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None
+    seconds: Number | None = None
 
 
 class OutputTable(Table):

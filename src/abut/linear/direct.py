@@ -25,7 +25,7 @@ SETTINGS = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
 
 
 @functools.lru_cache(maxsize=1)
-def _pardiso() -> Foreign:
+def pardiso() -> Foreign:
     """pypardiso's module, or None. Its own search for the library walks the whole environment, so name the file."""
     try:
         for file in importlib.metadata.files("mkl") or ():
@@ -42,7 +42,7 @@ def _pardiso() -> Foreign:
 
 def solver_name() -> str:
     """Which library ``solve`` uses here."""
-    return "PARDISO" if _pardiso() is not None else "SuperLU"
+    return "PARDISO" if pardiso() is not None else "SuperLU"
 
 
 def solve(matrix: Sparse, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[np.float64]:
@@ -54,21 +54,21 @@ def solve(matrix: Sparse, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArr
     if size == 0.0:
         return np.zeros_like(rhs)
     rhs = rhs / size  # refinement stops on absolute sizes
-    if _pardiso() is None:
+    if pardiso() is None:
         x = _solve_superlu(matrix, rhs, symmetric)
-        error = _residual(matrix, x, rhs, symmetric)
+        error = residual(matrix, x, rhs, symmetric)
     else:
         x = _solve_pardiso(matrix, rhs, symmetric)
-        error = _residual(matrix, x, rhs, symmetric)
+        error = residual(matrix, x, rhs, symmetric)
         if symmetric and not error < ACCURATE:
             # The symmetric factorisation pivots only within blocks; the unsymmetric one also before.
             full = (matrix + sp.triu(matrix, 1).T).tocsr()
             x = _solve_pardiso(full, rhs, False)
-            error = _residual(full, x, rhs, False)
+            error = residual(full, x, rhs, False)
         if not error < ACCURATE:
             # PARDISO perturbs pivots that partial pivoting avoids: SuperLU is slower and sure.
             x = _solve_superlu(matrix, rhs, symmetric)
-            error = _residual(matrix, x, rhs, symmetric)
+            error = residual(matrix, x, rhs, symmetric)
     if not error < SINGULAR:
         raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
     return size * x
@@ -78,7 +78,7 @@ def factorized(matrix: Sparse, *, definite: bool = False) -> Callable[[NDArray[n
     """Factorise a symmetric matrix (CSR, whole) once; returns the solution for one right-hand side or several.
 
     Raises SingularModelError where the matrix is singular."""
-    module = _pardiso()
+    module = pardiso()
     failures = (RuntimeError,) if module is None else (RuntimeError, module.pardiso_wrapper.PyPardisoError)
     try:
         if module is None:
@@ -88,7 +88,7 @@ def factorized(matrix: Sparse, *, definite: bool = False) -> Callable[[NDArray[n
             solver.iparm[key - 1] = value
         upper = sp.triu(matrix, format="csr")
         upper.sort_indices()
-        _analyse(solver, upper, np.zeros(upper.shape[0]))
+        analyse(solver, upper, np.zeros(upper.shape[0]))
         solver.set_phase(22)
         solver._call_pardiso(upper, np.zeros(upper.shape[0]))
     except failures as error:
@@ -106,7 +106,7 @@ class Factorization:
 
     def __init__(self, upper: Sparse) -> None:
         self._matrix = upper
-        self._solver = None if _pardiso() is None else _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
+        self._solver = None if pardiso() is None else pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
         if self._solver is None:
             return
         for key, value in SETTINGS.items():
@@ -114,10 +114,10 @@ class Factorization:
         weakref.finalize(self, self._solver.free_memory, everything=True)
         self._sound = True
         try:
-            _analyse(self._solver, upper, np.zeros(upper.shape[0]))
+            analyse(self._solver, upper, np.zeros(upper.shape[0]))
             self._solver.set_phase(22)
             self._solver._call_pardiso(upper, np.zeros(upper.shape[0]))
-        except _pardiso().pardiso_wrapper.PyPardisoError:
+        except pardiso().pardiso_wrapper.PyPardisoError:
             self._sound = False
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -127,51 +127,26 @@ class Factorization:
             return solve(self._matrix, rhs, symmetric=True)
         self._solver.set_phase(33)
         x: NDArray[np.float64] = self._solver._call_pardiso(self._matrix, rhs / size)
-        if _residual(self._matrix, x, rhs / size, True) < ACCURATE:
+        if residual(self._matrix, x, rhs / size, True) < ACCURATE:
             return size * x
         return solve(self._matrix, rhs, symmetric=True)
 
 
-class Repeated:
-    """Matrices that differ in their values only, one after the other: analysed once, as long as the pattern lasts."""
-
-    def __init__(self) -> None:
-        self._solver: Foreign = None
-        self._pattern: tuple[NDArray[np.int32], NDArray[np.int32], bool] | None = None
-
-    def solve(self, matrix: Sparse, rhs: NDArray[np.float64], *, symmetric: bool) -> NDArray[np.float64]:
-        """As ``solve``, which takes over where this one is not accurate. Raises SingularModelError."""
-        size = np.abs(rhs).max(initial=0.0)
-        module = _pardiso()
-        if module is None or size == 0.0:
-            return solve(matrix, rhs, symmetric=symmetric)
-        try:
-            if not self._knows(matrix, symmetric):
-                self._analyse(matrix, symmetric)
-            self._solver.set_phase(23)
-            x: NDArray[np.float64] = self._solver._call_pardiso(matrix, rhs / size)
-            if _residual(matrix, x, rhs / size, symmetric) < ACCURATE:
-                return size * x
-        except module.pardiso_wrapper.PyPardisoError:
-            self._pattern = None
-        return solve(matrix, rhs, symmetric=symmetric)
-
-    def _knows(self, matrix: Sparse, symmetric: bool) -> bool:
-        if self._pattern is None:
-            return False
-        indptr, indices, data = self._pattern
-        return data == symmetric and np.array_equal(indptr, matrix.indptr) and np.array_equal(indices, matrix.indices)
-
-    def _analyse(self, matrix: Sparse, symmetric: bool) -> None:
-        self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
-        for key, value in (SETTINGS | {11: 0, 13: 0}).items():  # scaling and matching would depend on the values
-            self._solver.iparm[key - 1] = value
-        weakref.finalize(self, self._solver.free_memory, everything=True)
-        _analyse(self._solver, matrix, np.zeros(matrix.shape[0]))
-        self._pattern = matrix.indptr, matrix.indices, symmetric
+def solver_of(symmetric: bool, settings: dict[int, int]) -> Foreign:
+    """PARDISO for one kind of matrix, with settings by their numbers."""
+    solver = pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
+    for key, value in settings.items():
+        solver.iparm[key - 1] = value
+    return solver
 
 
-def _analyse(solver: Foreign, matrix: Sparse, b: NDArray[np.float64]) -> None:
+def failures() -> type[Exception]:
+    """What PARDISO raises."""
+    error: type[Exception] = pardiso().pardiso_wrapper.PyPardisoError
+    return error
+
+
+def analyse(solver: Foreign, matrix: Sparse, b: NDArray[np.float64]) -> None:
     """PARDISO's symbolic phase. Raises InputError where the factors would not fit into memory."""
     solver.set_phase(11)
     solver._call_pardiso(matrix, b)
@@ -205,7 +180,7 @@ class PartialFactorization:
 
     def __init__(self, matrix: Sparse, kept: NDArray[np.int64]) -> None:
         self._matrix = matrix
-        self._solver = _pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
+        self._solver = pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
         # Own settings (1), nested dissection (2), no refinement (8: not possible here), Schur complement (36).
         for key, value in {1: 1, 2: 2, 8: 0, 10: 13, 24: 0, 36: 1}.items():
             self._solver.iparm[key - 1] = value
@@ -213,7 +188,7 @@ class PartialFactorization:
         self._solver.perm[kept] = 1
         weakref.finalize(self, self._solver.free_memory, everything=True)
         place = np.zeros((len(kept), len(kept)), order="F")
-        _analyse(self._solver, matrix, place)
+        analyse(self._solver, matrix, place)
         self.schur = self._call(22, place)
         self.sound = self._solver.iparm[13] == 0  # number of perturbed pivots
 
@@ -234,7 +209,7 @@ class PartialFactorization:
 def partial_factorization(matrix: Sparse, kept: NDArray[np.int64]) -> PartialFactorization | None:
     """Eliminate all but the ``kept`` unknowns of a matrix given by its upper triangle (CSR, diagonal stored); what is
     eliminated must be positive definite. None where it is singular, or PARDISO is not installed."""
-    module = _pardiso()
+    module = pardiso()
     if module is None:
         return None
     matrix.sort_indices()
@@ -245,7 +220,7 @@ def partial_factorization(matrix: Sparse, kept: NDArray[np.int64]) -> PartialFac
     return result if result.sound else None
 
 
-def _residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:
+def residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], symmetric: bool) -> float:
     """Largest residual over the largest entry of the right-hand side, or componentwise over |A| |x| + |b| where that is
     smaller (a right-hand side at rounding level is met no better)."""
 
@@ -261,15 +236,12 @@ def _residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], 
 
 
 def _solve_pardiso(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
-    module = _pardiso()
-    solver = module.PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE if symmetric else UNSYMMETRIC)
-    for key, value in SETTINGS.items():
-        solver.iparm[key - 1] = value
+    solver = solver_of(symmetric, SETTINGS)
     try:
-        _analyse(solver, matrix, rhs)
+        analyse(solver, matrix, rhs)
         solver.set_phase(23)
         x: NDArray[np.float64] = solver._call_pardiso(matrix, rhs)
-    except module.pardiso_wrapper.PyPardisoError as error:
+    except failures() as error:
         raise SingularModelError(f"the direct solver failed ({error}); check supports, contacts and units") from None
     finally:
         solver.free_memory(everything=True)

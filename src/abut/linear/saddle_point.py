@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.linear import direct
+from abut.linear.repeated import Repeated
 from abut.linear.schur_preconditioner import Predict
 from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.problem.linearised import Linearised, Rows
@@ -44,17 +45,27 @@ def saddle(unit: float, operator: Sparse, rows: Rows, residual: NDArray[np.float
     soft = np.where(known, 0.0, -rows.by_pressure.diagonal()) if rows.symmetric else np.zeros(len(s))
     s = np.where(soft > 0.0, 1.0 / np.sqrt(s**-2 + soft / unit), s)
     rhs_u = -residual + operator.T @ fixed
-    ones = sp.diags(np.where(known, -unit, 0.0))
-    free = sp.diags((~known).astype(float))
-    coupled = (sp.diags(s) @ free @ operator).tocsr()
+    free = (~known).astype(float)
     if rows.symmetric:
+        coupled = (sp.diags(s) @ sp.diags(free) @ operator).tocsr()
         rhs_p = np.where(known, 0.0, -rows.residual * s)
-        return Saddle(coupled, -coupled, ones - sp.diags(soft * s * s), rhs_u, rhs_p, True, fixed, known, s)
-    by_displacement, by_pressure = free @ rows.by_displacement, free @ rows.by_pressure @ free @ sp.diags(s)
+        corner = sp.diags(np.where(known, -unit, 0.0)) - sp.diags(soft * s * s)
+        return Saddle(coupled, -coupled, corner, rhs_u, rhs_p, True, fixed, known, s)
+    by_displacement = scaled(rows.by_displacement.tocsr(), free)
+    by_pressure = scaled(rows.by_pressure.tocsr(), free, s * free)
     t = unit / np.maximum(_row_max(by_displacement), _row_max(by_pressure, 0.0))
     rhs_p = np.where(known, 0.0, t * (-rows.residual - rows.by_pressure @ fixed))
-    lower, corner = sp.diags(t) @ by_displacement, sp.diags(t) @ by_pressure + ones
-    return Saddle(coupled, lower, corner, rhs_u, rhs_p, False, fixed, known, s)
+    corner = scaled(by_pressure, t) + sp.diags(np.where(known, -unit, 0.0))
+    coupled = scaled(operator, s * free)
+    return Saddle(coupled, scaled(by_displacement, t), corner, rhs_u, rhs_p, False, fixed, known, s)
+
+
+def scaled(matrix: Sparse, rows: NDArray[np.float64], columns: NDArray[np.float64] | None = None) -> Sparse:
+    """A CSR matrix with its rows and columns multiplied; what becomes zero is kept, so that its pattern lasts."""
+    data = matrix.data * np.repeat(rows, np.diff(matrix.indptr))
+    if columns is not None:
+        data *= columns[matrix.indices]
+    return sp.csr_matrix((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
 def newton_step(
@@ -63,16 +74,21 @@ def newton_step(
     rows: Rows,
     residual: NDArray[np.float64],
     pressure: NDArray[np.float64],
+    repeated: Repeated | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Solve [K, -B^T; r_u, r_p] (du, dp) = -(residual, r), theory (V1), and return (du, dp).
 
-    stiffness: (n_u, n_u) sparse, symmetric if the rows are; operator and residual as in ``saddle``."""
+    stiffness: (n_u, n_u) sparse, symmetric if the rows are; operator and residual as in ``saddle``; repeated: of the
+    systems before it, None where there is none like it."""
     if len(pressure) == 0:
         matrix = sp.triu(stiffness, format="csr") if rows.symmetric else store_diagonal(stiffness)
         return direct.solve(matrix, -residual, symmetric=rows.symmetric), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
-    matrix = _whole(stiffness, s)
-    solution = direct.solve(matrix, np.concatenate([s.rhs_u, s.rhs_p]), symmetric=s.symmetric)
+    matrix, rhs = _whole(stiffness, s), np.concatenate([s.rhs_u, s.rhs_p])
+    if repeated is None:
+        solution = direct.solve(store_diagonal(matrix), rhs, symmetric=s.symmetric)
+    else:
+        solution = repeated.solve(matrix, rhs, symmetric=s.symmetric)
     return solution[: len(residual)], s.pressure(solution[len(residual) :])
 
 
@@ -80,7 +96,9 @@ def factorise(stiffness: Sparse, operator: Sparse, rows: Rows) -> Solve:
     """The same for several right-hand sides (residual of equilibrium, residual of the law) with one factorisation; of
     symmetric rows."""
     unit, n = np.median(stiffness.diagonal()), stiffness.shape[0]
-    factors = direct.Factorization(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n))))
+    factors = direct.Factorization(
+        store_diagonal(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n))))
+    )
 
     def solve(
         residual: NDArray[np.float64], of_law: NDArray[np.float64]
@@ -101,15 +119,16 @@ class SaddlePoint:
     predict: Predict
     exact: bool = True
     accurate: float = ACCURATE
-    repeated: direct.Repeated = field(default_factory=direct.Repeated)
+    repeated: Repeated = field(default_factory=Repeated)
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``."""
         if self.system.about is not None and len(pressure) == 0:
             symmetric, matrix = self.system.symmetric, self.system.stiffness
-            matrix = store_diagonal(sp.triu(matrix, format="csr") if symmetric else matrix)
+            matrix = sp.triu(matrix, format="csr") if symmetric else matrix
             return self.repeated.solve(matrix, -residual, symmetric=symmetric), pressure
-        return newton_step(self.system.stiffness, self.system.columns, rows, residual, pressure)
+        repeated = None if self.system.about is None else self.repeated
+        return newton_step(self.system.stiffness, self.system.columns, rows, residual, pressure, repeated)
 
     def factorise(self, rows: Rows) -> Solve:
         """As in ``Prepared``."""
@@ -131,12 +150,29 @@ def _whole(stiffness: Sparse, s: Saddle) -> Sparse:
     """The matrix, only its upper triangle where it is symmetric."""
     if s.symmetric:
         upper = sp.triu(stiffness, format="csr")
-        return store_diagonal(sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr"))
-    return store_diagonal(sp.bmat([[stiffness, -s.coupled.T], [s.lower, s.corner]], format="csr"))
+        return sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr")
+    columns = s.coupled.T.tocsr()
+    above = _beside(stiffness, scaled(columns, np.full(columns.shape[0], -1.0)))
+    return sp.vstack([above, _beside(s.lower, s.corner.tocsr())], format="csr")
+
+
+def _beside(left: Sparse, right: Sparse) -> Sparse:
+    """Two CSR matrices side by side, entries that are zero included."""
+    count, more = np.diff(left.indptr), np.diff(right.indptr)
+    of_left = np.arange(left.nnz) + np.repeat(right.indptr[:-1], count)
+    of_right = np.arange(right.nnz) + np.repeat(left.indptr[1:], more)
+    data, indices = np.empty(left.nnz + right.nnz), np.empty(left.nnz + right.nnz, dtype=np.int32)
+    data[of_left], data[of_right] = left.data, right.data
+    indices[of_left], indices[of_right] = left.indices, right.indices + left.shape[1]
+    shape = left.shape[0], left.shape[1] + right.shape[1]
+    return sp.csr_matrix((data, indices, left.indptr + right.indptr), shape=shape)
 
 
 def _row_max(matrix: Sparse, empty: float = 1.0) -> NDArray[np.float64]:
-    size = np.asarray(abs(matrix).max(axis=1).todense()).ravel()
+    """Largest size of an entry of each row; ``empty`` where all are zero."""
+    size, filled = np.zeros(matrix.shape[0]), np.diff(matrix.indptr) > 0
+    if matrix.nnz:
+        size[filled] = np.maximum.reduceat(np.abs(matrix.data), matrix.indptr[:-1][filled])
     return np.where(size > 0.0, size, empty)
 
 

@@ -14,8 +14,8 @@ from scipy.sparse.csgraph import connected_components
 
 from abut.cells import CELLS
 from abut.checks import LARGEST
-from abut.decks.cards import read_abaqus
 from abut.errors import InputError
+from abut.io.deck import read_abaqus
 from abut.io.gmsh import read_gmsh
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -12,11 +12,15 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.errors import InputError
-from abut.fields import Field
+from abut.expression import Expression, Expressions
+from abut.fields import Field, number_or_field
 from abut.types import Json
 
 COMPONENTS = ("x", "y", "z")
 TURNS = ("rx", "ry", "rz")
+
+
+SLIGHTLY = 1e-9  # beyond the end is rounding
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,12 @@ class Amplitude:
         for (before, _), (after, _) in pairwise(points):
             if not before < after:
                 raise InputError(f"amplitude: times must increase, but {after:g} follows {before:g}")
+        first, last = points[0][0], points[-1][0]
+        if first < -SLIGHTLY or last > 1.0 + SLIGHTLY:
+            raise InputError(
+                f"amplitude: time runs from 0 to 1 over all load steps, but there is a point at "
+                f"{last if last > 1.0 else first:g}; divide the times by that of the end"
+            )
         object.__setattr__(self, "points", points)
 
     def __call__(self, time: float) -> float:
@@ -83,7 +93,7 @@ def drives(condition: Any) -> bool:
 class Support:
     """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
     outward normal); components left out are free. Values in the mesh's length unit, times ``amplitude``; x, y and z
-    may be functions of position, points (n, dim) -> (n,), taken at the nodes.
+    may be expressions ("0.01*y") or functions of position, points (n, dim) -> (n,), taken at the nodes.
 
     >>> import abut
     >>> clamp = abut.Support("block.bottom", x=0, y=0)
@@ -91,17 +101,20 @@ class Support:
     """
 
     on: str
-    x: float | Field | None = None
-    y: float | Field | None = None
-    z: float | Field | None = None
+    x: float | str | Field | None = None
+    y: float | str | Field | None = None
+    z: float | str | Field | None = None
     normal: float | None = None
     amplitude: History = None
 
     def __post_init__(self) -> None:
         given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
         for name, value in given.items():
-            if name == "normal" or not callable(value):
-                checks.finite(value, f"support on '{self.on}': {name}")
+            where = f"support on '{self.on}': {name}"
+            if name == "normal":
+                checks.finite(value, where)
+            else:
+                object.__setattr__(self, name, number_or_field(value, where))
         if not given:
             raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
@@ -184,7 +197,8 @@ class Rigid:
 
 @dataclass(frozen=True)
 class Pressure:
-    """Pressure on a surface, force per area, positive into the body.
+    """Pressure on a surface, force per area, positive into the body; a number, an expression ("0.01*(50 - y)") or a
+    function of position in the undeformed mesh, points (n, dim) -> (n,).
 
     ``follows``: with kinematics "finite" it acts along the normal of the deformed surface, on its deformed area; False: a
     dead load, along the normal and on the area of the undeformed one. Without effect with kinematics "small".
@@ -194,14 +208,14 @@ class Pressure:
     """
 
     on: str
-    value: float
+    value: float | str | Field
     amplitude: History = None
     follows: bool = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.follows, bool):
             raise InputError(f"pressure on '{self.on}': follows: expected true or false, got {self.follows!r}")
-        checks.finite(self.value, f"pressure on '{self.on}': value")
+        object.__setattr__(self, "value", number_or_field(self.value, f"pressure on '{self.on}': value"))
         _amplitude(self.amplitude, f"pressure on '{self.on}'")
 
 
@@ -215,17 +229,28 @@ def _vector(values: Any, name: str) -> tuple[float, ...]:
     return result
 
 
+def _components(values: Any, name: str) -> tuple[float, ...] | Field:
+    """A vector; as expressions where one component is."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise InputError(f"{name}: expected 2 or 3 numbers or expressions, got {values!r}")
+    given = [number_or_field(value, name) for value in values]
+    if not any(isinstance(value, Expression) for value in given):
+        return _vector(given, name)
+    return Expressions(tuple(v if isinstance(v, Expression) else Expression(repr(v)) for v in given))
+
+
 @dataclass(frozen=True)
 class Traction:
-    """Traction vector on a surface, force per area; numbers or a function of position, points (n, dim) -> (n, dim)."""
+    """Traction vector on a surface, force per area; numbers and expressions of position, or a function, points (n, dim) ->
+    (n, dim)."""
 
     on: str
-    value: tuple[float, ...] | Field
+    value: tuple[float | str, ...] | Field
     amplitude: History = None
 
     def __post_init__(self) -> None:
         if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, f"traction on '{self.on}': value"))
+            object.__setattr__(self, "value", _components(self.value, f"traction on '{self.on}': value"))
         _amplitude(self.amplitude, f"traction on '{self.on}'")
 
 
@@ -262,18 +287,17 @@ class NodalForce:
 
 @dataclass(frozen=True)
 class Temperature:
-    """Change of temperature at the nodes of a node set or body (degrees), a number or a function of position, points
-    (n, dim) -> (n,). It strains bodies by their expansion; between nodes the shape functions interpolate, zero at nodes
-    without one, so that neighbours glued to a heated body are warm in their first row of cells. Several add up, also
-    with ``Solid.temperature``."""
+    """Change of temperature at the nodes of a node set or body (degrees), a number, an expression ("20 + 3*x") or a
+    function of position, points (n, dim) -> (n,). It strains bodies by their expansion; between nodes the shape functions
+    interpolate, zero at nodes without one, so that neighbours glued to a heated body are warm in their first row of cells.
+    Several add up, also with ``Solid.temperature``."""
 
     on: str
-    value: float | Field
+    value: float | str | Field
     amplitude: History = None
 
     def __post_init__(self) -> None:
-        if not callable(self.value):
-            checks.finite(self.value, f"temperature on '{self.on}': value")
+        object.__setattr__(self, "value", number_or_field(self.value, f"temperature on '{self.on}': value"))
         _amplitude(self.amplitude, f"temperature on '{self.on}'")
 
 

@@ -47,10 +47,11 @@ class Contact:
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
     that of friction by its square root);
     ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, a function of position,
-    points (n, dim) -> (n,), taken in the undeformed mesh, pairs of pressure and coefficient, linear between and constant
-    outside, or "rough" for surfaces that never slip while they touch; times ``friction_amplitude``, constant where that is
-    left out. With friction the result depends on the order of the loads, and on the load steps.
+    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, an expression of x, y and z
+    ("0.1 + 0.2*x") or a function of position, points (n, dim) -> (n,), both taken in the undeformed mesh, pairs of pressure
+    and coefficient, linear between and constant outside, or "rough" for surfaces that never slip while they touch; times
+    ``friction_amplitude``, constant where that is left out. With friction the result depends on the order of the loads, and
+    on the load steps.
 
     >>> import abut
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius

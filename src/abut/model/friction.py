@@ -12,7 +12,8 @@ import numpy as np
 from abut import checks
 from abut.contact.friction_bound import FrictionBound, PressureCurve
 from abut.errors import InputError
-from abut.fields import Field, evaluate
+from abut.expression import Expression
+from abut.fields import Field, called, evaluate
 from abut.types import Array
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 ROUGH = "rough"  # friction that never slips
 Table = tuple[tuple[float, float], ...]  # pressure, coefficient
 Friction = float | str | Field | Table
-EXPECTED = 'expected a coefficient >= 0, "rough", or pairs of pressure and coefficient'
+EXPECTED = 'expected a coefficient >= 0, an expression of x, y, z, "rough", or pairs of pressure and coefficient'
 
 
 def checked(value: object, where: str) -> Friction:
@@ -30,9 +31,10 @@ def checked(value: object, where: str) -> Friction:
     if callable(value):
         return value
     if isinstance(value, str):
-        if value != ROUGH:
-            raise InputError(f"{where}: {EXPECTED}, got {value!r}")
-        return value
+        try:
+            return value if value == ROUGH else Expression(value)
+        except InputError as error:
+            raise InputError(f"{where}: {EXPECTED}, got {value!r}: {error}") from None
     if isinstance(value, (list, tuple, np.ndarray)):
         return _table(value, where)
     if value is None or isinstance(value, dict):
@@ -93,8 +95,8 @@ class FrictionValues:
 
 
 def friction_values(model: Model, contact: Contact, points: Array) -> FrictionValues:
-    """The friction of one of the model's contacts at points (n, dim). Raises InputError for a function that returns anything
-    but numbers >= 0."""
+    """The friction of one of the model's contacts at points (n, dim). Raises InputError for an expression or a function that
+    returns anything but numbers >= 0."""
     given, n, curve = contact.friction, len(points), None
     if isinstance(given, str):
         coefficient = np.full(n, math.inf)
@@ -106,7 +108,7 @@ def friction_values(model: Model, contact: Contact, points: Array) -> FrictionVa
         if (coefficient < 0.0).any():
             first = int(np.argmax(coefficient < 0.0))
             raise InputError(
-                f"{where}: the function returns {coefficient[first]:g} at {points[first].tolist()}, not >= 0"
+                f"{where}: {called(given)} returns {coefficient[first]:g} at {points[first].tolist()}, not >= 0"
             )
     amplitude = contact.friction_amplitude
     if amplitude is None:

@@ -18,7 +18,8 @@ MOST_STEPS = 1_000_000  # load steps, and iterations in one
 class SolveOptions:
     """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
     time), linear solver, iterations allowed in a step of each method that is tried. ``steps`` "auto" is one step. Where
-    contacts have friction a step that does not converge is taken in parts, whose results are not written.
+    contacts have friction a step that does not converge is taken in parts, whose results are not written. ``seconds``: that
+    a run may take, after which it ends with the steps done so far.
 
     >>> import abut
     >>> abut.SolveOptions(steps=4).ends
@@ -29,6 +30,7 @@ class SolveOptions:
     linear: str = "auto"
     max_iterations: int = 50
     times: tuple[float, ...] | None = None
+    seconds: float | None = None
 
     def __post_init__(self) -> None:
         for name, other in (("steps", f'"{AUTO}" or '), ("max_iterations", "")):
@@ -38,6 +40,8 @@ class SolveOptions:
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_STEPS:
                 raise InputError(f"solve.{name}: expected {other}a whole number from 1 to {MOST_STEPS}, got {value!r}")
         checks.choice(self.linear, "solve.linear", LINEAR)
+        if self.seconds is not None:
+            object.__setattr__(self, "seconds", checks.positive(self.seconds, "solve.seconds"))
         if self.times is not None:
             self._check_times()
 

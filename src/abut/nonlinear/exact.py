@@ -21,8 +21,9 @@ TOLD, MOST = (
     3,
 )  # of equilibrium and of closed gaps, where a state tells which set comes next; solutions until there
 STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
-SURE, FURTHER = 0.05, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
+SURE, FURTHER = 0.3, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
 # another way than the norm of the residual; and the most at once
+TRUSTED = 0.1  # error from which on a set that stands still is not taken for the last one
 ROUNDING = 1e-8  # the same that may be left to rounding
 SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
@@ -78,8 +79,9 @@ def settled(solver: Prepared, solved: Solved, aim: Aim, before: float = np.inf) 
 
 
 def finer(solver: Prepared, solved: Solved, aim: Aim) -> float:
-    """The reduction of the residual to ask for next where it has not."""
-    return max(SURE * _wanted(solver, aim) / solved.error, FURTHER)
+    """The reduction of the residual to ask for next where it has not: the rougher the state in which a set stands still,
+    the less is it worth to be solved to the end."""
+    return max(SURE * _wanted(solver, aim) / solved.error, min(solved.error, TRUSTED) ** 2, FURTHER)
 
 
 def _wanted(solver: Prepared, aim: Aim) -> float:

@@ -3,34 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.finite import Inverted
+from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import averaged
 from abut.contact.coupling import Coupling, CouplingOptions
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
+from abut.contact.moving_normals import MovingNormals
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
-from abut.parallel.interface import couple
-from abut.parallel.matrix import Distributed, reduce
-from abut.parallel.partition import Piece, layout, owners, pieces, point_owners
-from abut.parallel.team import Team
+from abut.parallel.interface import couple, differentiate
+from abut.parallel.matrix import Distributed, reduce, tell
+from abut.parallel.partition import Layout, Piece, layout, owners, pieces, point_owners
+from abut.parallel.team import Kept, Team
+from abut.problem.backend import Deformed
 from abut.problem.constraints import Constraints
 
 
 @dataclass(frozen=True)
 class DistributedBodies:
     """As ``abut.problem.backend.Backend``, by a team. owner: (n_cells,) process of each cell, points: (n_points,) of each
-    point; pieces: by process."""
+    point; pieces: by process; told: the change of variables that all processes know, and the layout, which stays."""
 
     model: Model
     team: Team
     owner: NDArray[np.int64]
     points: NDArray[np.int64]
     pieces: Sequence[Piece]
+    told: list[tuple[Constraints, Layout]] = field(default_factory=list)
 
     @property
     def summary(self) -> str:
@@ -48,30 +55,59 @@ class DistributedBodies:
         """Every facet of the contactor by the process that has its cell."""
         return couple(self.team, self.owner[contactor.cells], contactor, target, degree, options)
 
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """As in ``Backend``; facets of the contactor are dealt out in turn."""
+        return differentiate(self.team, contactor, target, degree, options, load, normals)
+
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``abut.problem.backend.Backend``."""
+        arguments = [(share,) for share in self.shares(displacement)]
+        return self.summed(self.team.each(part.internal, per_rank=arguments), displacement)
+
+    def shares(self, values: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Values (dim n_points, ...) at the points of each process."""
         dim = self.model.dim
-        nodal = displacement.reshape(-1, dim, *displacement.shape[1:])
-        arguments = [
-            (nodal[piece.points].reshape(dim * len(piece.points), *displacement.shape[1:]),) for piece in self.pieces
-        ]
-        total = np.zeros_like(nodal)
-        for piece, force in zip(self.pieces, self.team.each(part.internal, per_rank=arguments)):
-            total[piece.points] += force.reshape(-1, *nodal.shape[1:])
-        return total.reshape(displacement.shape)
+        nodal = values.reshape(-1, dim, *values.shape[1:])
+        return [nodal[piece.points].reshape(dim * len(piece.points), *values.shape[1:]) for piece in self.pieces]
+
+    def summed(self, shares: Sequence[NDArray[np.float64]], like: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Back again, sums where points belong to several; like: values at all points."""
+        total = np.zeros((len(self.points), self.model.dim, *like.shape[1:]))
+        for piece, share in zip(self.pieces, shares):
+            total[piece.points] += share.reshape(-1, *total.shape[1:])
+        return total.reshape(like.shape)
 
     def reduce(self, constraints: Constraints) -> Distributed:
         """As in ``Backend``, a matrix of PETSc's."""
+        return self.reduced("stiffness", constraints)
+
+    def reduced(self, tangent: str | int, constraints: Constraints) -> Distributed:
+        """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose."""
+        places, kept = self._laid_out(constraints), self.team.keep()
+        self.team.each(reduce, tangent, kept.number, places.starts, places.block)
+        return Distributed(self.team, places, kept)
+
+    def _laid_out(self, constraints: Constraints) -> Layout:
+        """Where free displacements stand; every process knows the change of variables then."""
+        if self.told and self.told[0][0] is constraints:
+            return self.told[0][1]
         dim = self.model.dim
-        places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled)
+        if self.told:
+            places = self.told[0][1]
+        else:
+            places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled)
         arguments = []
         for piece in self.pieces:
             rows = constraints.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
             used = np.flatnonzero(np.diff(rows.indptr))
             used = used[np.argsort(places.slot[used])]
             arguments.append((places.slot[used], rows[:, used].tocsr()))
-        self.team.each(reduce, places.starts, places.block, per_rank=arguments)
-        return Distributed(self.team, places)
+        self.team.each(tell, per_rank=arguments)
+        self.told[:] = [(constraints, places)]
+        return places
 
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
@@ -85,13 +121,80 @@ class DistributedBodies:
             count[piece.points] += cells
         return averaged(total, count)
 
+    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
+        """As in ``Backend``."""
+        kept = self.team.keep() if tangent else None
+        answers = self.team.each(
+            part.deform,
+            None if kept is None else kept.number,
+            change.bodies,
+            per_rank=self._moved(displacement, change),
+        )
+        self._require_sound(answers)
+        force = self.summed([force for force, _ in answers], displacement.ravel())
+        slope = None if kept is None else TangentOfParts(self, kept)
+        return Deformed(force, slope, sum(energy for _, energy in answers))
+
+    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
+        """As in ``Backend``. Cells of one kind are treated alike on all processes."""
+        moved, coarse = self._moved(displacement, change), frozenset[tuple[str, int, str]]()
+        for _ in range(2):
+            answers = self.team.each(part.cauchy, change.bodies, coarse, per_rank=moved)
+            self._require_sound(answers)
+            coarse = frozenset[tuple[str, int, str]]().union(*(sums.unsound for sums in answers))
+            if not coarse:
+                break
+        total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
+        for piece, sums in zip(self.pieces, answers):
+            total[piece.points] += sums.total
+            count[piece.points] += sums.count
+        return averaged(total, count)
+
+    def _moved(
+        self, displacement: NDArray[np.float64], change: TemperatureChange
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64] | None]]:
+        heated = change.nodes
+        return [(displacement[p.points], None if heated is None else heated[p.points]) for p in self.pieces]
+
+    def _require_sound(self, answers: Sequence[object]) -> None:
+        """Raises Inverted for the first cell in the whole mesh that is inside out, as one process would."""
+        unsound = [
+            (int(piece.cells[answer[0]]), *answer[1:])
+            for piece, answer in zip(self.pieces, answers)
+            if _inside_out(answer)
+        ]
+        if unsound:
+            raise Inverted(*min(unsound))
+
+
+@dataclass(frozen=True)
+class TangentOfParts:
+    """As ``abut.problem.backend.Tangent``: every process has that of its part, until it is reduced."""
+
+    bodies: DistributedBodies
+    kept: Kept
+
+    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As in ``Tangent``."""
+        arguments = [(share,) for share in self.bodies.shares(displacement)]
+        answers = self.bodies.team.each(part.product, self.kept.number, per_rank=arguments)
+        return self.bodies.summed(answers, displacement)
+
+    def reduce(self, constraints: Constraints) -> Distributed:
+        """As in ``Tangent``, once."""
+        return self.bodies.reduced(self.kept.number, constraints)
+
+
+def _inside_out(answer: object) -> TypeGuard[part.InsideOut]:
+    return isinstance(answer, tuple) and len(answer) == 3
+
 
 def deal_out(model: Model, team: Team) -> DistributedBodies:
     """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
-    if not model.deformable.constant:
+    if not (model.deformable.constant or model.finite):
         raise InputError(
-            'solve.linear "petsc" and several processes know linear elastic materials under small strains only; run without '
-            'mpiexec, with linear = "auto"'
+            'solve.linear "petsc" and several processes know, of materials under small strains, linear elastic ones only; '
+            'run without mpiexec, with linear = "auto"'
         )
     owner = owners(model.mesh, team)
     points = point_owners(model.mesh, owner)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,17 +13,20 @@ from numpy.typing import NDArray
 
 from abut._core import padded_blocks
 from abut.parallel.partition import Layout
-from abut.parallel.team import Store, Team
+from abut.parallel.team import Kept, Store, Team
 from abut.problem.constraints import Constraints
 from abut.types import Foreign, Sparse
 
 
 @dataclass(frozen=True)
 class Distributed:
-    """On process 0: (n_free, n_free), as far as the search for the active set asks for it."""
+    """On process 0: (n_free, n_free), as far as the search for the contact status asks for it. kept: PETSc's matrix, of the
+    bodies; beside: what process 0 adds to it, sparse, of springs, contact and loads that follow: no more than surfaces."""
 
     team: Team
     layout: Layout
+    kept: Kept
+    beside: Sparse | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -32,47 +36,82 @@ class Distributed:
 
     def diagonal(self) -> NDArray[np.float64]:
         """(n_free,)."""
-        return self.layout.values(self.team.each(_diagonal))
+        own = self.layout.values(self.team.each(_diagonal, self.kept.number))
+        return own if self.beside is None else own + self.beside.diagonal()
 
     def __matmul__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.layout.values(self.team.each(_product, per_rank=self.layout.shares(values)))
+        if values.ndim > 1:
+            return np.stack([self @ column for column in values.T], axis=1) if values.size else values
+        if not values.any():  # as at the state that a problem is linearised about
+            return np.zeros_like(values)
+        own = self.layout.values(self.team.each(_product, self.kept.number, per_rank=self.layout.shares(values)))
+        return own if self.beside is None else np.asarray(own + self.beside @ values)
 
-    def __add__(self, springs: Sparse) -> Distributed:
-        """With a diagonal matrix added; the matrix itself changes."""
-        self.team.each(_stiffen, per_rank=self.layout.shares(springs.diagonal()))
-        return self
+    def __add__(self, other: Sparse) -> Distributed:
+        return replace(self, beside=other.tocsr() if self.beside is None else self.beside + other)
+
+    def __radd__(self, other: Sparse | int) -> Distributed:
+        return self if isinstance(other, int) else self + other  # a sum begins with zero
+
+    def __sub__(self, other: Sparse) -> Distributed:
+        return self + -1.0 * other
+
+    def beside_by_process(self) -> list[Sparse | None]:
+        """The rows of ``beside`` that belong to each process, at their places among its own, columns at those among all."""
+        if self.beside is None:
+            return [None] * self.team.size
+        starts, entries = self.layout.starts, self.beside.tocoo()
+        slot, n = self.layout.slot, int(starts[-1])
+        placed = sp.csr_matrix((entries.data, (slot[entries.row], slot[entries.col])), shape=(n, n))
+        return [placed[a:b] for a, b in pairwise(starts.tolist())]
+
+    def of_bodies(self) -> Distributed:
+        """Without what contact and loads add to it."""
+        return replace(self, beside=None)
+
+    def whole(self) -> Distributed:
+        """With all of it in PETSc's matrix; the same object where it is."""
+        if self.beside is None:
+            return self
+        kept = self.team.keep()
+        self.team.each(_add, self.kept.number, kept.number, per_rank=[(rows,) for rows in self.beside_by_process()])
+        return replace(self, kept=kept, beside=None)
 
     @contextmanager
     def with_springs(self, springs: NDArray[np.float64]) -> Iterator[None]:
         """With springs (n_free,) to the ground for a while."""
-        self.team.each(_hold, per_rank=self.layout.shares(springs))
+        self.team.each(_hold, self.kept.number, per_rank=self.layout.shares(springs))
         try:
             yield
         finally:
-            self.team.each(_release)
+            self.team.each(_release, self.kept.number)
 
 
-def reduce(store: Store, starts: NDArray[np.int64], block: int, slot: NDArray[np.int64], free: Sparse) -> None:
-    """Build and keep PETSc's matrix of the stiffness on the free displacements.
+def tell(store: Store, slot: NDArray[np.int64], free: Sparse) -> None:
+    """Keep this part's share of the change of variables. free: (dim n_points, k) of this part's points, on those k free
+    displacements that move any of them; slot: (k,) their places, ascending."""
+    store["variables"] = slot, free
 
-    starts, block: as in ``Layout``; free: (dim n_points, k) change of variables of this part's points, on those k free
-    displacements that move any of them; slot: (k,) their places, ascending. Rows at the border between
-    parts get what the others have of them. The stiffness of the part goes, to make room."""
+
+def reduce(store: Store, tangent: str | int, into: int, starts: NDArray[np.int64], block: int) -> None:
+    """Build PETSc's matrix of a tangent stiffness on the free displacements and keep it under the number ``into``.
+
+    tangent: where the part's own is; it goes, to make room. starts, block: as in ``Layout``. Rows at the border between
+    parts get what the others have of them."""
     from petsc4py import PETSc
 
-    comm, ints = PETSc.COMM_WORLD, PETSc.IntType
-    first, last, n = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1], starts[-1]))
-    rows = _own_rows(store, slot, free, block, starts // block, comm.tompi4py()).tocsr()
+    comm = PETSc.COMM_WORLD
+    slot, free = store["variables"]
+    first, last = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1]))
+    rows = _own_rows(store.pop(tangent), slot, free, block, starts // block, comm.tompi4py()).tocsr()
     if block == 1:
         rows = _with_diagonal(rows, first)
-    shape = ((last - first, n), (last - first, n))
-    csr = rows.indptr.astype(ints, copy=False), rows.indices.astype(ints, copy=False), rows.data
-    matrix = PETSc.Mat().createAIJ(shape, csr=csr, comm=comm)
+    matrix = matrix_of(rows, comm)
     matrix.setBlockSize(block)
     padding = np.ones(last - first, dtype=bool)
     padding[slot[(slot >= first) & (slot < last)] - first] = False
     _set_diagonal(matrix, np.where(padding, _largest(matrix, block), _local(matrix)))
-    store["matrix"] = matrix
+    store[into] = matrix
 
 
 def _blocks(stiffness: Sparse, slot: NDArray[np.int64], free: Sparse, block: int) -> tuple[NDArray[np.int64], Sparse]:
@@ -94,12 +133,12 @@ def _blocks(stiffness: Sparse, slot: NDArray[np.int64], free: Sparse, block: int
 
 
 def _own_rows(
-    store: Store, slot: NDArray[np.int64], free: Sparse, block: int, starts: NDArray[np.int64], comm: Foreign
+    stiffness: Sparse, slot: NDArray[np.int64], free: Sparse, block: int, starts: NDArray[np.int64], comm: Foreign
 ) -> Sparse:
     """The rows of this process, columns numbered as in the whole, BSR: what it has itself and what others have of them.
 
     starts: first block of each process."""
-    blocks, matrix = _blocks(store.pop("stiffness"), slot, free, block)
+    blocks, matrix = _blocks(stiffness, slot, free, block)
     owner = np.searchsorted(starts, blocks, side="right") - 1
     others = [rank if rank != comm.rank and (owner == rank).any() else None for rank in range(comm.size)]
     away = [None if rank is None else _rows_of(rank, matrix, blocks, starts) for rank in others]
@@ -148,25 +187,46 @@ def _set_diagonal(matrix: Foreign, values: NDArray[np.float64]) -> None:
     matrix.setDiagonal(diagonal)
 
 
-def _diagonal(store: Store) -> NDArray[np.float64]:
-    return _local(store["matrix"])
+def _diagonal(store: Store, number: int) -> NDArray[np.float64]:
+    return _local(store[number])
 
 
-def _stiffen(store: Store, springs: NDArray[np.float64]) -> None:
-    _set_diagonal(store["matrix"], _local(store["matrix"]) + springs)
+def _add(store: Store, number: int, into: int, rows: Sparse) -> None:
+    matrix = store[number]
+    block = matrix.getBlockSize()
+    whole = (own_rows(matrix).tobsr((block, block)) + rows.tobsr((block, block))).tocsr()
+    result = matrix_of(whole if block > 1 else _with_diagonal(whole, matrix.getOwnershipRange()[0]), matrix.comm)
+    result.setBlockSize(block)
+    store[into] = result
 
 
-def _hold(store: Store, springs: NDArray[np.float64]) -> None:
-    store["diagonal"] = _local(store["matrix"])
-    _set_diagonal(store["matrix"], store["diagonal"] + springs)
+def own_rows(matrix: Foreign) -> Sparse:
+    """The rows of one of PETSc's matrices that this process has, CSR."""
+    indptr, indices, values = matrix.getValuesCSR()
+    return sp.csr_matrix((values, indices, indptr), shape=(matrix.getLocalSize()[0], matrix.getSize()[1]))
 
 
-def _release(store: Store) -> None:
-    _set_diagonal(store["matrix"], store.pop("diagonal"))
+def matrix_of(rows: Sparse, comm: Foreign) -> Foreign:
+    """PETSc's square matrix that has these rows, CSR, on this process."""
+    from petsc4py import PETSc
+
+    ints, shape = PETSc.IntType, (rows.shape[0], rows.shape[1])
+    rows.sort_indices()
+    csr = rows.indptr.astype(ints, copy=False), rows.indices.astype(ints, copy=False), rows.data
+    return PETSc.Mat().createAIJ((shape, shape), csr=csr, comm=comm)
 
 
-def _product(store: Store, share: NDArray[np.float64]) -> NDArray[np.float64]:
-    matrix = store["matrix"]
+def _hold(store: Store, number: int, springs: NDArray[np.float64]) -> None:
+    store["diagonal"] = _local(store[number])
+    _set_diagonal(store[number], store["diagonal"] + springs)
+
+
+def _release(store: Store, number: int) -> None:
+    _set_diagonal(store[number], store.pop("diagonal"))
+
+
+def _product(store: Store, number: int, share: NDArray[np.float64]) -> NDArray[np.float64]:
+    matrix = store[number]
     x, y = matrix.createVecs()
     x.array[:] = share
     matrix.mult(x, y)

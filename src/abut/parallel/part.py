@@ -1,4 +1,6 @@
-"""Operations of each process on its part of the cells: stiffness, internal forces, stresses."""
+"""Operations of each process on its part of the cells: stiffness, internal forces, stresses.
+
+Cells that turn inside out are returned, not raised: the others would wait for a process that has left."""
 
 from __future__ import annotations
 
@@ -7,9 +9,12 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.bodies.assemble import internal_force, stiffness
+from abut.bodies.finite import CauchySums, Inverted, cauchy_sums, respond_finite
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import stress_sums
 from abut.parallel.team import Store
+
+InsideOut = tuple[int, str, float]  # number of a cell of the part, body, determinant of the deformation gradient
 
 
 def assemble(store: Store, part: Solids) -> None:
@@ -37,3 +42,46 @@ def stresses(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Sums of stresses (n_points, 6) over this part's cells at its points, and how many take part (n_points,)."""
     return stress_sums(store["part"], displacement, TemperatureChange(temperatures, nodal))
+
+
+def deform(
+    store: Store,
+    number: int | None,
+    temperatures: dict[str, float],
+    displacement: NDArray[np.float64],
+    nodal: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], float] | InsideOut:
+    """Nodal forces (dim n_points,) and elastic energy of this part under finite strains; its tangent is kept under
+    ``number``, None for none."""
+    part: Solids = store["part"]
+    n = part.mesh.points.size
+    if not part.mesh.n_cells:
+        if number is not None:
+            store[number] = sp.csr_matrix((n, n))
+        return np.zeros(n), 0.0
+    try:
+        response = respond_finite(part, displacement, TemperatureChange(temperatures, nodal), number is not None)
+    except Inverted as error:
+        return error.cell, error.body, error.determinant
+    if number is not None:
+        store[number] = response.tangent
+    return response.force, float(response.energy.sum())
+
+
+def product(store: Store, number: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of the tangent kept under ``number`` with values at this part's points."""
+    return np.asarray(store[number] @ values)
+
+
+def cauchy(
+    store: Store,
+    temperatures: dict[str, float],
+    coarse: frozenset[tuple[str, int, str]],
+    displacement: NDArray[np.float64],
+    nodal: NDArray[np.float64],
+) -> CauchySums | InsideOut:
+    """Of this part, as ``abut.bodies.finite.cauchy_sums``."""
+    try:
+        return cauchy_sums(store["part"], displacement, TemperatureChange(temperatures, nodal), coarse)
+    except Inverted as error:
+        return error.cell, error.body, error.determinant

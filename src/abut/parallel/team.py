@@ -9,12 +9,22 @@ from __future__ import annotations
 import signal
 import sys
 import traceback
+import weakref
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 from abut.types import Foreign
 
-Store = dict[str, Foreign]  # what a process keeps between calls
+Store = dict[str | int, Foreign]  # what a process keeps between calls
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What every process keeps under a number in its store, as long as process 0 holds this."""
+
+    number: int
 
 
 class Team:
@@ -23,6 +33,8 @@ class Team:
     def __init__(self, comm: Any) -> None:
         self.comm = comm
         self.store: Store = {}
+        self._numbers = count()
+        self._gone: list[int] = []
 
     @property
     def size(self) -> int:
@@ -35,25 +47,36 @@ class Team:
         """Call function(store, *shared, *per_rank[rank]) on every process and return the results by rank; for process 0.
 
         function: of a module, as it travels by its name; store: a dict that each process keeps for itself."""
-        self.comm.bcast((function, shared))
+        gone = [self._gone.pop() for _ in range(len(self._gone))]
+        self.comm.bcast((function, shared, gone))
         arguments = per_rank or [()] * self.size
         self.comm.scatter([None, *arguments[1:]])  # its own share does not travel, and may be what cannot be pickled
-        mine = self._done(function, (*shared, *arguments[0]))
+        mine = self._done(function, (*shared, *arguments[0]), gone)
         return [mine, *self.comm.gather(None)[1:]]
+
+    def keep(self) -> Kept:
+        """A number for something that every process will keep; it goes with the next call after nobody here holds it."""
+        kept = Kept(next(self._numbers))
+        weakref.finalize(kept, self._gone.append, kept.number)
+        return kept
 
     def serve(self) -> None:
         """Take part in what process 0 asks for until it is done; for the others."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)  # process 0 ends the run in order, after its iteration
         while (task := self.comm.bcast(None)) is not None:
-            function, shared = task
-            self.comm.gather(self._done(function, (*shared, *self.comm.scatter(None))))
+            function, shared, gone = task
+            self.comm.gather(self._done(function, (*shared, *self.comm.scatter(None)), gone))
 
     def dismiss(self) -> None:
         """Let the others go."""
         self.comm.bcast(None)
 
-    def _done(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    def _done(self, function: Callable[..., Any], arguments: tuple[Any, ...], gone: Sequence[int]) -> Any:
+        for number in gone:
+            old = self.store.pop(number, None)
+            if hasattr(old, "destroy"):
+                old.destroy()  # now, not when Python finds the time: it is PETSc's, and large
         try:
             return function(self.store, *arguments)
         except Exception:

@@ -73,7 +73,7 @@ def assemble(
     constant = model.deformable.constant
     bodies: Bodies
     if model.finite:
-        bodies = FiniteBodies(model, loaded)
+        bodies = FiniteBodies(model, loaded, backend)
     else:
         bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
@@ -88,7 +88,7 @@ def assemble(
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
-    problem = finite_problem(problem) if sliding else problem
+    problem = finite_problem(problem, backend.differentiate) if sliding else problem
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
@@ -104,8 +104,8 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         )
         if p.repeated:
             note(
-                f"contact '{p.contact.name}': equations tie displacements of its surfaces together, so that its pressure is "
-                "one of many; the smallest is taken"
+                f"contact '{p.contact.name}': equations or rigid bodies move points of its surfaces together; where its "
+                "pressure is one of many, the smallest is taken"
             )
 
 

@@ -10,28 +10,52 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.bodies.assemble import stiffness
+from abut.bodies.finite import cauchy_stress, respond_finite
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import nodal_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, differentiated
+from abut.contact.moving_normals import MovingNormals
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
 from abut.types import Operator, Sparse
 
 
-class Backend(Protocol):
-    """The bodies of a model, assembled."""
+class Tangent(Protocol):
+    """A tangent stiffness over all points."""
+
+    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Nodal forces under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
+        ...
+
+    def reduce(self, constraints: Constraints) -> Operator:
+        """The same on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
+        ...
+
+
+@dataclass(frozen=True)
+class Deformed:
+    """Bodies under finite strains. force: (dim n_points,) of the stresses; tangent: its derivative, where it was asked for;
+    energy: elastic, of all bodies (per unit thickness in 2D)."""
+
+    force: NDArray[np.float64]
+    tangent: Tangent | None
+    energy: float
+
+
+class Backend(Tangent, Protocol):
+    """The bodies of a model, assembled; as a tangent, at rest."""
 
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """Cut and integrate the interface of a contact pair, as ``abut.contact.coupling.couple``."""
         ...
 
-    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Nodal forces of stresses under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
-        ...
-
-    def reduce(self, constraints: Constraints) -> Operator:
-        """The stiffness on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """The same at current positions with its derivatives, as ``abut.contact.coupling_tangent.differentiated``."""
         ...
 
     def stress(
@@ -39,6 +63,14 @@ class Backend(Protocol):
     ) -> NDArray[np.float64]:
         """Nodal averages (n_points, 6) under displacements (n_points, dim) and nodal changes of temperature (n_points,);
         whole solids are heated by their share at ``time``."""
+        ...
+
+    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
+        """Under finite strains, at displacements (n_points, dim). Raises ``abut.bodies.finite.Inverted``."""
+        ...
+
+    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
+        """The same: nodal averages (n_points, 6) of Cauchy stresses."""
         ...
 
 
@@ -52,6 +84,13 @@ class Serial:
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
         return couple(contactor, target, degree, options)
+
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """As in ``Backend``."""
+        return differentiated(contactor, target, degree, options, load, normals)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Backend``."""
@@ -67,6 +106,16 @@ class Serial:
         """As in ``Backend``."""
         change = TemperatureChange(self.model.temperatures(time), temperature)
         return nodal_stress(self.model.deformable, displacement, change)
+
+    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
+        """As in ``Backend``."""
+        response = respond_finite(self.model.deformable, displacement, change, tangent)
+        slope = Serial(self.model, response.tangent) if tangent else None
+        return Deformed(response.force, slope, float(response.energy.sum()))
+
+    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
+        """As in ``Backend``."""
+        return cauchy_stress(self.model.deformable, displacement, change)
 
 
 def serial(model: Model) -> Serial:

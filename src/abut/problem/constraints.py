@@ -75,6 +75,15 @@ class Constraints:
         columns = (self.free + self.turns.columns(free, factors)).tocsr()
         return replace(self, free=columns, orthonormal=False)
 
+    def together(self, points: NDArray[np.int64], dim: int) -> bool:
+        """Whether a free displacement moves one of ``points`` (n,) and others with it."""
+        if not self.coupled:
+            return False
+        columns = self.free[(dim * points[:, None] + np.arange(dim)).ravel()].indices
+        entries = self.free.tocsc()[:, np.unique(columns)].tocoo()
+        moved = np.unique(np.column_stack([entries.col, entries.row // dim]), axis=0)
+        return bool(np.bincount(moved[:, 0]).max(initial=0) > 1)
+
     def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Free displacements (n_free, k) nearest to displacements of all points (dim n_points, k)."""
         moved = self.free.T @ vectors
@@ -113,17 +122,24 @@ class Constraints:
     def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
         dim = directions.shape[1]
-        rows = (dim * points[:, None] + np.arange(dim)).ravel()
-        free_columns = [self.free[rows[a::dim]] for a in range(dim)]
-        gram = np.array(
-            [[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in free_columns] for p in free_columns]
-        ).transpose(2, 0, 1)
+        gram = _gram(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
         if self.orthonormal:
             return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
         moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
         along = np.einsum("nda,nd->na", axes, directions)
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
+
+
+def _gram(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Products of the rows (n, dim) of each point with each other, (n, dim, dim)."""
+    count = free.indptr[rows + 1] - free.indptr[rows]
+    if free.nnz and count.max(initial=0) <= 1:  # supports along the axes
+        at = np.minimum(free.indptr[rows], free.nnz - 1)
+        column, value = np.where(count, free.indices[at], -1), np.where(count, free.data[at], 0.0)
+        return np.where(column[:, :, None] == column[:, None], value[:, :, None] * value[:, None], 0.0)
+    parts = [free[rows[:, a]] for a in range(rows.shape[1])]
+    return np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in parts] for p in parts]).transpose(2, 0, 1)
 
 
 def supports(model: Model) -> Constraints:

@@ -9,15 +9,17 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.contact.block_rows import added_up, block_rows, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
-from abut.contact.coupling_tangent import coupling_tangent
+from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
-from abut.contact.tangential import SlipOperators, quarter, slip_operators, turned
+from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
-from abut.problem.dual_functions import Mixture, inner_now
-from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
-from abut.problem.tangent_frames import Anchors, Frames, anchors
+from abut.problem.dual_functions import Mixed, Mixture, inner_now, mixed_part
+from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
+from abut.problem.slip_points import SlipPoints, slip_now
+from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse
 
 Array = NDArray[np.float64]
@@ -41,8 +43,8 @@ class ContactNow:
 @dataclass(frozen=True)
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
-    None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual space
-    are the ordinary ones in this step, None for nowhere."""
+    None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
+    space are the ordinary ones in this step, None for nowhere."""
 
     displacement: Array
     before: Array
@@ -53,36 +55,58 @@ class Place:
 
 @dataclass(frozen=True)
 class Current:
-    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``."""
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
+    and integrates, here or on several processes."""
 
     pair: Pair
+    differentiate: Differentiate = differentiated
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
         contactor, target = self.surfaces(place.displacement)
-        options, degree = self._options(place.displacement - place.before), self.pair.coupling.degree
-        coupling = couple(contactor, target, degree, options, across=self._across)
-        mixture = None if self.pair.space.ordinary else Mixture.of(contactor, coupling, place.inner)
-        pair = self.pair if mixture is None else _mixed(self.pair, mixture)
-        p = multipliers[pair.normal]
-        by = coupling_tangent(contactor, target, degree, options, pair.space.transfer @ p, across=self._across)
-        down, offset = pair.space.transfer.T, place.offset
-        weight = np.asarray(down @ coupling.weight)
-        slope = down @ (by.gap if offset == 0.0 or by.weight is None else by.gap + offset * by.weight)
-        bending, mixing = by.force_tangent, None
-        if mixture is not None:
-            mixing = mixture.change(contactor, by.weight)
-            slope = slope + self._differences[0].T @ sp.diags(coupling.gap + offset * coupling.weight) @ mixing
-            bending = bending + coupling.operator.T @ sp.diags(self._differences[0] @ p) @ mixing
+        options = self._options(place.displacement - place.before)
+        mixture = self._mixture(contactor, target, options, place.inner)
+        pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
+        down = self._down if mixture is None else weights_of_rows(pair.space.transfer.T)
+        normals = self._normals.at(contactor)
+        tangents = self._tangents(contactor, normals, multipliers)
+        load = _load(pair, multipliers, tangents)
+        by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
+        points, dim = len(contactor.points), contactor.dim
+        along, *places = added_up(down, by.operators, points)
+        weight = np.asarray(down @ by.weight_value)
+        slope = down @ by.slope(np.array([1.0, place.offset]))
         now = ContactNow(
             replace(
-                pair, contactor=contactor, target=target, coupling=coupling, space=replace(pair.space, weight=weight),
-                rows=(down @ coupling.operator).tocsr(),
+                pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
+                rows=block_rows((along[..., :dim], *places), points).tocsr(),
             ),
-            np.asarray(down @ coupling.gap + offset * weight), slope.tocsr(), bending,
-            np.zeros(len(pair.space), dtype=bool),
+            np.asarray(down @ by.gap_value + place.offset * weight),
+            slope.tocsr(), by.force_tangent.tocsr(), np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
-        return self._with_friction(now, place, options, multipliers, mixing) if pair.frictional else now
+        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
+        if mixed is not None:
+            p = multipliers[pair.normal]
+            now = replace(
+                now, by_position=now.by_position + mixed.gap(place.offset), bending=now.bending + mixed.pressed(p)
+            )
+        if not pair.frictional:
+            return now
+        assert place.points is not None
+        slip = slip_now(place.points, contactor, target, normals)
+        if tangents is None:
+            turned = tangents_2d(normals, *self._anchors)
+            part = self._down_along if mixture is None else weights_of_rows(pair.components[1].transfer.T)
+            made = rub_in_plane(part, by, added_up(part, by.operators, points), slip)
+            if mixed is not None:
+                made = mixed.rubbed_in_plane(made, slip, multipliers[pair.tangential])
+        else:
+            square = along[..., dim:].reshape(-1, dim, dim), *places
+            turned, made = tangents.now.tangents, rub_in_space(down, by, square, slip, tangents, contactor)
+            if mixed is not None:
+                made = mixed.rubbed_in_space(made, slip, tangents)
+        covered = pair.space.plain.T @ place.points.moments(len(contactor))
+        return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
 
     def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
         """Contactor and target at a displacement (dim n_points,)."""
@@ -91,32 +115,40 @@ class Current:
 
     def points(self, displacement: Array) -> SlipPoints:
         """The integration points at a displacement, from which the next step's slip counts."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_points=True)
-        surfaces = self.surfaces(displacement)
-        return SlipPoints.of(*surfaces, couple(*surfaces, self.pair.coupling.degree, options, across=self._across))
+        options = self._options(np.zeros_like(displacement))
+        return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
+
+    def shown(self, displacement: Array, points: bool = False) -> Coupling:
+        """With what results ask for beside it; points: integration points, too."""
+        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
+        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
 
     def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
         """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""
         contactor, target = self.surfaces(displacement)
         options = self._options(np.zeros_like(displacement))
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
-        return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], self.near)
+        return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
-    @property
-    def near(self) -> float:
-        """How far apart the surfaces may be where they are paired, a length."""
-        return NEAR * self._facet
+    def _mixture(
+        self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None
+    ) -> Mixture | None:
+        """None where no function is a dual one."""
+        if self.pair.space.ordinary:
+            return None
+        covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        return Mixture.of(contactor, covered, inner)
 
-    def shown(self, displacement: Array) -> Coupling:
-        """With what results ask for beside it."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True)
-        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+    @cached_property
+    def _differences(self) -> list[Sparse]:
+        """Dual less ordinary functions, by component, (9 n_facets, n) each."""
+        return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
 
     def _options(self, moved: Array) -> CouplingOptions:
         rule = self.pair.contact.integration
         nodes = self._nodes
         way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
-        return CouplingOptions(rule.rule, rule.points, reach=self.near + 2.0 * float(way))
+        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
 
     @cached_property
     def _across(self) -> Smoothing:
@@ -132,121 +164,62 @@ class Current:
         return float(max(facet_sizes(self.pair.contactor).max(), facet_sizes(self.pair.target).max()))
 
     @cached_property
-    def _differences(self) -> list[Sparse]:
-        """Dual less ordinary functions, by component, (9 n_facets, n) each."""
-        return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
-
-    @cached_property
-    def _anchors(self) -> Anchors:
+    def _anchors(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         return anchors(self.pair.contactor, self.pair.space)
 
     @cached_property
     def _frames(self) -> Frames:
         assert self.pair.slip is not None
-        return Frames.of(self.pair.contactor, self._anchors, self.pair.slip.tangents)
+        return Frames.of(self.pair.contactor, self.pair.space, self.pair.slip.tangents)
 
-    def _with_friction(
-        self, now: ContactNow, place: Place, options: CouplingOptions, multipliers: Array, mixing: Sparse | None
-    ) -> ContactNow:
-        """The same with slips, and forces of the tractions, theory (G4), (G6)."""
-        pair, now_pair = self.pair, now.pair
-        assert place.points is not None
-        slip = slip_now(place.points, now_pair.contactor, now_pair.target, self._across)
-        rubbed = self._in_plane if now_pair.contactor.dim == 2 else self._in_space
-        made = rubbed(now_pair, slip, options, multipliers, mixing)
-        covered = pair.space.plain.T @ place.points.moments(len(now_pair.contactor))
-        assert pair.slip is not None
-        moved = replace(pair.slip, operators=made.operators, tangents=made.tangents)
-        return ContactNow(
-            replace(now_pair, rows=sp.vstack([now_pair.rows, made.rows]).tocsr(), slip=moved),
-            np.concatenate([now.gap, made.slip]),
-            sp.vstack([now.by_position, made.by_position]).tocsr(),
-            (now.bending + made.bending).tocsr(),
-            covered < KNOWN * pair.weight[pair.normal],
-        )  # fmt: skip
+    @cached_property
+    def _normals(self) -> NormalPattern:
+        return normal_pattern(self.pair.contactor, self._across)
 
-    def _in_plane(
-        self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array, mixing: Sparse | None
-    ) -> Rubbing:
-        """2D: forces of a traction are those of a pressure, turned by a right angle at every point."""
-        part = now_pair.components[1].transfer
-        turn = quarter(len(now_pair.contactor.points))
-        traction = multipliers[self.pair.tangential]
-        along = part @ traction
-        by = coupling_tangent(
-            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, along, across=self._across
-        )
-        turned_rows = (now_pair.coupling.operator @ turn).tocsr()
-        change, bending = part.T @ slip.by_position[0], turn.T @ by.force_tangent
-        if mixing is not None:
-            change = change + self._differences[1].T @ sp.diags(slip.value[:, 0]) @ mixing
-            bending = bending + turned_rows.T @ sp.diags(self._differences[1] @ traction) @ mixing
-        return Rubbing(
-            rows=part.T @ turned_rows, slip=np.asarray(part.T @ slip.value[:, 0]), by_position=change, bending=bending,
-            tangents=turned(self._anchors.normals(now_pair.contactor, self._across))[:, None],
-            operators=SlipOperators((turned_rows,), now_pair.coupling.gap[:, None]),
-        )  # fmt: skip
+    @cached_property
+    def _down(self) -> Sparse:
+        """(n_functions, 9 n_facets)."""
+        return weights_of_rows(self.pair.space.transfer.T)
 
-    def _in_space(
-        self, now_pair: Pair, slip: SlipNow, options: CouplingOptions, multipliers: Array, mixing: Sparse | None
-    ) -> Rubbing:
-        """3D: two components along tangents that turn with the surface."""
-        pair, x = now_pair, now_pair.contactor.points
-        kept = replace(options, keep_points=True)
-        at = couple(now_pair.contactor, now_pair.target, now_pair.coupling.degree, kept, across=self._across).points
-        assert at is not None
-        operators = slip_operators(at, x)
-        fields = [pair.space.transfer.T @ along for along in operators.along]
-        value = pair.space.transfer.T @ slip.value
-        change = [pair.space.transfer.T @ by for by in slip.by_position]
-        if mixing is not None:
-            apart = self._differences[0]
-            change = [by + apart.T @ sp.diags(slip.value[:, a]) @ mixing for a, by in enumerate(change)]
-        tangents, by_tangent = self._frames.at(now_pair.contactor, self._across)
-        rows, slips, slopes, bending = [], [], [], sp.csr_matrix((x.size, x.size))
-        traction = np.zeros((len(pair.space), 3))
-        for b, by in enumerate(by_tangent):
-            has = pair.index[:, 1 + b] >= 0
-            t = np.where(has, multipliers[np.maximum(pair.index[:, 1 + b], 0)], 0.0)
-            traction += t[:, None] * tangents[:, b]
-            parts = [by[a::3] for a in range(3)]
-            rows.append(sum(sp.diags(tangents[:, b, a]) @ fields[a] for a in range(3)).tocsr()[has])
-            slips.append(np.einsum("nd,nd->n", value, tangents[:, b])[has])
-            slopes.append(
-                sum(
-                    sp.diags(tangents[:, b, a]) @ change[a] + sp.diags(value[:, a]) @ parts[a] for a in range(3)
-                ).tocsr()[has]
-            )
-            bending = bending + sum(fields[a].T @ sp.diags(t) @ parts[a] for a in range(3))
-        if mixing is not None:
-            bending = bending + sum(operators.along[a].T @ sp.diags(apart @ traction[:, a]) @ mixing for a in range(3))
-        by_force = coupling_tangent(
-            now_pair.contactor, now_pair.target, now_pair.coupling.degree, options, np.zeros(len(now_pair.coupling.gap)),
-            pair.space.transfer @ traction, across=self._across,
-        )  # fmt: skip
-        return Rubbing(
-            sp.vstack(rows),
-            np.concatenate(slips),
-            sp.vstack(slopes),
-            bending + by_force.force_tangent,
-            tangents,
-            operators,
-        )
+    @cached_property
+    def _down_along(self) -> Sparse:
+        """The same for tractions in 2D."""
+        return weights_of_rows(self.pair.components[1].transfer.T)
+
+    @cached_property
+    def _kept(self) -> NDArray[np.int64]:
+        """Of two tractions a function, in 3D, those that have multipliers."""
+        return np.concatenate([2 * np.flatnonzero(self.pair.index[:, 1 + b] >= 0) + b for b in range(2)])
+
+    def _tangents(self, contactor: Surface, normals: MovingNormals, multipliers: Array) -> Tangents | None:
+        """With their tractions; None in 2D, and without friction."""
+        if contactor.dim == 2 or not self.pair.frictional:
+            return None
+        index = self.pair.index[:, 1:]
+        along = np.where(index >= 0, multipliers[np.maximum(index, 0)], 0.0)
+        return Tangents(self._frames, self._frames.at(contactor, normals), along, self._kept)
 
 
-def _mixed(pair: Pair, mixture: Mixture) -> Pair:
-    space, *others = (mixture.space(part) for part in pair.components)
-    return replace(pair, space=space, components=(space, *others))
+def _load(pair: Pair, multipliers: Array, tangents: Tangents | None) -> ContactLoad:
+    pressure = pair.space.transfer @ multipliers[pair.normal]
+    if tangents is not None:
+        return ContactLoad(pressure, traction=pair.space.transfer @ tangents.traction)
+    if pair.frictional:
+        return ContactLoad(pressure, turned=pair.components[1].transfer @ multipliers[pair.tangential])
+    return ContactLoad(pressure)
 
 
-@dataclass(frozen=True)
-class Rubbing:
-    """What friction adds, m rows. rows: (m, dim n_points) of the forces; slip: (m,) weighted; by_position: its derivative;
-    bending: derivative of the forces; tangents: (n_functions, dim - 1, dim); operators: of the slip, facet by facet."""
-
-    rows: Sparse
-    slip: Array
-    by_position: Sparse
-    bending: Sparse
-    tangents: Array
-    operators: SlipOperators
+def _with(now: ContactNow, made: Rubbing, tangents: Array, without_history: NDArray[np.bool_]) -> ContactNow:
+    """The same with friction; tangents: (n_functions, dim - 1, dim)."""
+    assert now.pair.slip is not None
+    return ContactNow(
+        replace(
+            now.pair,
+            rows=sp.vstack([now.pair.rows, made.rows], format="csr"),
+            slip=replace(now.pair.slip, tangents=tangents),
+        ),
+        np.concatenate([now.gap, made.slip]),
+        sp.vstack([now.by_position, made.by_position], format="csr"),
+        now.bending if made.bending is None else (now.bending + made.bending.tocsr()),
+        without_history,
+    )

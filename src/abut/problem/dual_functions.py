@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
+from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling
+from abut.contact.coupling_tangent import CouplingTangent
 from abut.contact.facet_area import area_change
 from abut.contact.geometry import beside_others, full_moments
 from abut.contact.pressure_space import PressureSpace, inner_facets, partly_dual
 from abut.contact.rim import ends_on_target, goes_on, rim
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import WHOLE
+from abut.problem.contact_pairs import WHOLE, Pair
+from abut.problem.rubbing import Rubbing, Tangents
+from abut.problem.slip_points import SlipNow
 from abut.types import Sparse
 
 HALF = 0.5  # share of a facet covered by the target, from which down its functions are the ordinary ones
@@ -60,6 +65,69 @@ class Mixture:
         ratio = sp.diags(self.covered[of] / self.area[of])
         by_share = sp.diags(SLOPE / self.area[of]) @ (covered - ratio @ area_change(contactor, of))
         return (_of_facets(between, len(self.share)) @ by_share).tocsr()
+
+
+@dataclass(frozen=True)
+class Mixed:
+    """What the change of ``Mixture.share`` adds to the derivatives of a pair. change: of the share, (9 n_facets, dim
+    n_points); by: the pair's coupling; differences: dual less ordinary functions by component, (9 n_facets, n) each."""
+
+    change: Sparse
+    by: CouplingTangent
+    differences: Sequence[Sparse]
+
+    def gap(self, offset: float) -> Sparse:
+        """Of the weighted gaps, (n, dim n_points)."""
+        value = self.by.gap_value + offset * self.by.weight_value
+        return (self.differences[0].T @ sp.diags(value) @ self.change).tocsr()
+
+    def pressed(self, pressure: Array) -> Sparse:
+        """Of the forces of pressures (n,), (dim n_points, dim n_points)."""
+        return (self._along().T @ sp.diags(self.differences[0] @ pressure) @ self.change).tocsr()
+
+    def rubbed_in_plane(self, made: Rubbing, slip: SlipNow, along: Array) -> Rubbing:
+        """Of slips and of the forces of tractions (n,) in 2D."""
+        apart = self.differences[1]
+        slopes = apart.T @ sp.diags(slip.value[:, 0]) @ self.change
+        bending = (self._along(turned=True).T @ sp.diags(apart @ along) @ self.change).tocsr()
+        return replace(
+            made,
+            by_position=(made.by_position + slopes).tocsr(),
+            bending=bending if made.bending is None else made.bending.tocsr() + bending,
+        )
+
+    def rubbed_in_space(self, made: Rubbing, slip: SlipNow, tangents: Tangents) -> Rubbing:
+        """The same in 3D."""
+        apart, each = self.differences[0], tangents.now.tangents
+        moved = [apart.T @ sp.diags(slip.value[:, a]) @ self.change for a in range(3)]
+        along = [sum(sp.diags(each[:, b, a]) @ moved[a] for a in range(3)) for b in range(2)]
+        n = len(each)
+        order = np.arange(2 * n).reshape(2, n).T.ravel()  # two of a function side by side
+        slopes = sp.vstack(along).tocsr()[order][tangents.kept]
+        value, column, start = self.by.operators
+        square = block_rows((value[..., 3:].reshape(-1, 3, 3), column, start), self.by.turning.shape[1] // 3)
+        pulled = sp.diags((apart @ tangents.traction).ravel()) @ sp.kron(self.change, np.ones((3, 1)), format="csr")
+        bending = square.T.tocsr() @ pulled
+        return replace(
+            made,
+            by_position=(made.by_position + slopes).tocsr(),
+            bending=bending if made.bending is None else made.bending.tocsr() + bending,
+        )
+
+    def _along(self, turned: bool = False) -> Sparse:
+        """int H_k (N_C - N_T) N, facet by facet, (9 n_facets, dim n_points); turned: along the normal's right angle."""
+        value, column, start = self.by.operators
+        points = self.by.turning.shape[1]
+        dim = 3 if value.shape[2] in (3, 12) else 2
+        value = value[..., :dim]
+        value = np.stack([-value[..., 1], value[..., 0]], axis=-1) if turned else value
+        return block_rows((value, column, start), points // dim).tocsr()
+
+
+def mixed_part(pair: Pair, mixture: Mixture) -> Pair:
+    """A pair with the functions of a mixture."""
+    space, *others = (mixture.space(part) for part in pair.components)
+    return replace(pair, space=space, components=(space, *others))
 
 
 def _of_facets(facets: NDArray[np.int64], n: int) -> Sparse:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
@@ -26,11 +27,37 @@ BARELY = 0.01  # share of a function that must be covered for it to carry a pres
 Array = NDArray[np.float64]
 
 
+@dataclass
+class Latest:
+    """The problem near the states it was linearised at last, and the shares of its terms: a converged state is asked about
+    again."""
+
+    states: tuple[State, State] | None = None
+    system: Linearised | None = None
+    shares: Sequence[Share] = ()
+
+    def has(self, before: State, now: State) -> bool:
+        """Whether it is about these, whatever the status."""
+        if self.states is None or self.states[0] is not before:
+            return False
+        own = self.states[1]
+        return own.time == now.time and own.unknowns is now.unknowns and own.multipliers is now.multipliers
+
+    def keep(self, before: State, now: State, system: Linearised, shares: Sequence[Share]) -> None:
+        """Instead of what there was."""
+        self.states, self.system, self.shares = (before, now), system, shares
+
+    def drop(self) -> None:
+        """To give its memory back."""
+        self.states, self.system, self.shares = None, None, ()
+
+
 @dataclass(frozen=True)
 class FiniteProblem(ContactProblem):
     """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties."""
 
     moving: Sequence[Current | None] = ()
+    latest: Latest = field(default_factory=Latest, repr=False, compare=False)
 
     @property
     def constant(self) -> bool:
@@ -47,31 +74,36 @@ class FiniteProblem(ContactProblem):
         return self._marked(rest.with_closed(np.concatenate([np.zeros(0, bool), *closed])))
 
     def linearise(self, before: State, now: State) -> Linearised:
-        """As in ``Problem``."""
-        here = self.displacement(now)
-        return self._expanded(before, now, here, np.zeros_like(here))
+        """As in ``Problem``; once where the same states are asked for again."""
+        if not self.latest.has(before, now):
+            self.latest.drop()
+            here = self.displacement(now)
+            self.latest.keep(before, now, *self._expanded(before, now, here, np.zeros_like(here)))
+        assert self.latest.system is not None
+        return self.latest.system
 
     def ahead(self, before: State, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
         there, now = self.displacement(before), replace(before, time=time)
-        return self._expanded(before, now, there, self.displacement(now) - there)
+        return self._expanded(before, now, there, self.displacement(now) - there)[0]
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""
-        here = self.displacement(now)
         history = before.history
         slips = self._slips(before, now)
         if slips:
             history = history.with_term(CONTACTS, slips)
-        for term, share in zip(self.terms, self._forces(before, now.time, here)):
+        self.linearise(before, now)
+        for term, share in zip(self.terms, self.latest.shares):
             history = history.with_term(term.name, share.history)
+        self.latest.drop()
         return self._marked(replace(now, history=history))
 
     def with_ordinary_inside(self, before: State, here: Array, closed: NDArray[np.bool_]) -> State:
         """A converged state from which a step begins, with the ordinary functions of "dual-P1" inside what is ``closed``,
         (n,) multipliers, at displacements ``here`` (dim n_points,). The same object where they are there already."""
         inner, old = {}, before.history.of(INNER)
-        for kind, part in zip(self.moving, self._split(closed.astype(float))):
+        for kind, part in zip(self.moving, self.split(closed.astype(float))):
             if kind is not None and kind.pair.space.name == DUAL_P1:
                 inner[kind.pair.contact.name] = kind.inner(here, part > 0.0)
         known = {name: old.get(name, np.zeros_like(facets)) for name, facets in inner.items()}
@@ -89,7 +121,7 @@ class FiniteProblem(ContactProblem):
         }
         return replace(state, history=state.history.with_term(POINTS, points))
 
-    def _expanded(self, before: State, now: State, here: Array, change: Array) -> Linearised:
+    def _expanded(self, before: State, now: State, here: Array, change: Array) -> tuple[Linearised, list[Share]]:
         """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
         time."""
         factors = weights(self.model.histories, now.time)
@@ -101,12 +133,11 @@ class FiniteProblem(ContactProblem):
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
             whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
-        stiffness = self.springs.added_to(
-            sum(tangent.reduce(constraints) for tangent in stiff) - constraints.reduce(bending)
-        )
+        by_contact = constraints.reduce(bending)
+        stiffness = self.springs.added_to(sum(tangent.reduce(constraints) for tangent in stiff) - by_contact)
         rows = [pair_now.pair.rows for pair_now in contacts]
         if self.constraints.turns is not None:
-            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self._split(now.multipliers)))
+            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
         about = self._expansion(shares, now.unknowns, force, stiffness)
@@ -115,13 +146,16 @@ class FiniteProblem(ContactProblem):
         pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
         gap = np.concatenate([pair_now.gap + pair_now.by_position @ change for pair_now in contacts])
         load = -about.unbalanced
-        return Linearised(
+        system = Linearised(
             now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
             unit_of(stiffness), about=replace(about, symmetric=False),
             pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
+            bending=by_contact,
         )  # fmt: skip
+        return system, shares
 
-    def _split(self, values: Array) -> list[Array]:
+    def split(self, values: Array) -> list[Array]:
+        """Values of all multipliers (n,), pair by pair."""
         return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
 
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
@@ -142,7 +176,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
-        for pair, kind, part in zip(self.pairs, self.moving, self._split(at.multipliers)):
+        for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
                 continue
@@ -176,8 +210,8 @@ def _tie(pair: Pair, displacement: Array) -> ContactNow:
     return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
 
 
-def finite_problem(problem: ContactProblem) -> FiniteProblem:
-    """A problem with pairs as from ``whole_pairs`` at large displacements."""
+def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
+    """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair) for pair in problem.pairs]
+    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
     return FiniteProblem(**{**values, "stiffness": None}, moving=moving)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from abut.bodies.finite import FiniteResponse, cauchy_stress, is_symmetric, respond_finite
+from abut.bodies.finite import is_symmetric
 from abut.bodies.solids import TemperatureChange
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.backend import Serial
+from abut.problem.backend import Backend
 from abut.problem.loads import Loads
 from abut.problem.terms import Motion, Share, Vector
 
@@ -20,26 +20,22 @@ class FiniteBodies:
 
     model: Model
     loads: Loads
+    backend: Backend
     name: str = "bodies"
     constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
-        response = self._response(now)
-        return Share(
-            response.force, Serial(self.model, response.tangent), symmetric=is_symmetric(self.model.deformable)
-        )
+        deformed = self.backend.deform(*self._at(now))
+        return Share(deformed.force, deformed.tangent, symmetric=is_symmetric(self.model.deformable))
 
     def stress(self, motion: Motion) -> Vector:
         """As in ``Bodies``: Cauchy stresses."""
-        return cauchy_stress(self.model.deformable, *self._at(motion))
+        return self.backend.cauchy(*self._at(motion))
 
     def energy(self, motion: Motion) -> float:
         """Elastic energy of all bodies, force times length (per unit thickness in 2D)."""
-        return float(self._response(motion, tangent=False).energy.sum())
-
-    def _response(self, motion: Motion, tangent: bool = True) -> FiniteResponse:
-        return respond_finite(self.model.deformable, *self._at(motion), tangent)
+        return self.backend.deform(*self._at(motion), tangent=False).energy
 
     def _at(self, motion: Motion) -> tuple[Vector, TemperatureChange]:
         temperature = self.loads.temperature @ weights(self.model.histories, motion.time)

@@ -29,7 +29,9 @@ class FollowerLoads:
         points = mesh.points + now.displacement.reshape(mesh.points.shape)
         force, slope = np.zeros(points.size), sp.csr_matrix((points.size, points.size))
         for load in followers(self.model):
-            pressure = load.value * factors[self.model.histories.index(load.amplitude)]
-            pushed, by = follower_pressure(replace(mesh.surface(load.on), points=points), pressure)
-            force, slope = force + pushed, slope + by
+            surface, factor = mesh.surface(load.on), factors[self.model.histories.index(load.amplitude)]
+            pushed, by = follower_pressure(
+                replace(surface, points=points), load.value, surface.points, f"pressure on '{load.on}': value"
+            )
+            force, slope = force + factor * pushed, slope + factor * by
         return Share(-force, Serial(self.model, -slope), symmetric=not slope.nnz)

@@ -87,7 +87,7 @@ def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.fl
 def _forces(model: Model, load: Pressure | Traction | Force | NodalForce | Gravity | BodyForce) -> NDArray[np.float64]:
     mesh = model.mesh
     if isinstance(load, Pressure):
-        return pressure_load(mesh.surface(load.on), load.value)
+        return pressure_load(mesh.surface(load.on), load.value, f"pressure on '{load.on}': value")
     if isinstance(load, Traction):
         return traction_load(mesh.surface(load.on), load.value, f"traction on '{load.on}': value")
     if isinstance(load, Force):

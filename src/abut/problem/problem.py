@@ -254,8 +254,10 @@ class ContactProblem:
         """Slip of each pair with friction by name, (n, 3): in the step that ends ``now``, in all steps in contact, and what
         did not count in the step because it only came closer."""
         system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
-        result = {}
-        states = system.split(system.gap(now)), system.split(now.closed), self._approached(before)
+        result, gaps = {}, system.gap(now)
+        if system.forgotten is not None:  # what has no past has nothing to slip from
+            gaps = np.where(system.forgotten, 0.0, gaps)
+        states = system.split(gaps), system.split(now.closed), self._approached(before)
         for pair, gap, closed, approached in zip(self.pairs, *states):
             if pair.frictional:
                 step = gap / pair.weight

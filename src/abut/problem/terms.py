@@ -15,7 +15,7 @@ from abut.bodies.stress import nodal_stress
 from abut.model import History as Amplitude
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.backend import Backend, Serial
+from abut.problem.backend import Backend, Serial, Tangent
 from abut.problem.loads import Loads
 
 Vector = NDArray[np.float64]
@@ -34,11 +34,11 @@ class Motion:
 @dataclass(frozen=True)
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
-    tangent: ``Backend`` that reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
+    tangent: what reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
     the tangent."""
 
     force: Vector
-    tangent: Backend | None = None
+    tangent: Tangent | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
     symmetric: bool = True
 

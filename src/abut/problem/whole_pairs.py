@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.function_places import places
-from abut.contact.geometry import facet_sizes, full_masses, full_moments
+from abut.contact.geometry import facet_products, facet_sizes, full_moments
 from abut.contact.pressure_space import DUAL, DUAL_P1, only, pressure_space, resolve
 from abut.contact.tangential import frames, slip_operators
 from abut.model import Contact, Model
@@ -25,10 +25,11 @@ def whole_pairs(model: Model, constraints: Constraints) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
 
     Raises InputError for what goes with small displacements only."""
-    return [
+    made = [
         pair(model, contact, constraints) if contact.kind == "tied" else whole_pair(model, contact, constraints)
         for contact in model.contacts
     ]
+    return [replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim)) for each in made]
 
 
 def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:
@@ -41,7 +42,7 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
     options = CouplingOptions(rule.rule, rule.points, reach, keep_points=contact.frictional)
     coupling = couple(contactor, target, degree, options)
-    whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=full_masses(contactor, degree))
+    whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=facet_products(contactor, degree))
     space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)

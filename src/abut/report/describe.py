@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from abut.expression import Expression, Expressions
 from abut.model import Model
 from abut.types import Json
 
@@ -73,6 +74,10 @@ def _value(value: object) -> str:
         return f"{float(value):.6g}"
     if isinstance(value, str | int):
         return str(value)
+    if isinstance(value, Expression):
+        return value.text
+    if isinstance(value, Expressions):
+        return _value(value.components)
     if callable(value):
         return "a function of position"
     if is_dataclass(value):

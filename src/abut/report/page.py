@@ -17,6 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
+from abut.report.chart import Chart
 from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
@@ -40,8 +41,8 @@ def page(solution: Solution, origin: Origin) -> str:
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
-        "probes": _charts(solution),
-        "paths": _paths(solution),
+        "probes": _charts(charts(solution)),
+        "paths": _charts(paths(solution)),
     }
     parts = {
         "title": escape(origin.title),
@@ -83,6 +84,8 @@ def _head(solution: Solution, origin: Origin) -> str:
     theory = [row for row in comparison(solution, origin.expected) if not row["passed"]]
     if not solution.converged:
         good, verdict = False, f"Not converged at step {solution.steps[-1].number}: what follows is the last state."
+    elif not solution.complete:
+        good, verdict = False, f"Stopped after step {len(solution.steps)}: there are steps left."
     elif failed:
         names = ", ".join(f"{c.contact}: {c.name}" if c.contact else c.name for c in failed)
         good, verdict = False, f"Converged, but {len(failed)} of {len(solution.certificate)} checks fail: {names}."
@@ -293,7 +296,7 @@ def _friction(steps: Sequence[ContactResult]) -> Json | None:
     return None if found is None else {name: _plain(values) for name, values in found.items()}
 
 
-def _charts(solution: Solution) -> list[Json]:
+def _charts(some: Sequence[Chart]) -> list[Json]:
     return [
         {
             "title": chart.title,
@@ -301,19 +304,7 @@ def _charts(solution: Solution) -> list[Json]:
             "x": _plain(chart.x),
             "series": [{"label": name, "values": _plain(values)} for name, values in chart.series.items()],
         }
-        for chart in charts(solution)
-    ]
-
-
-def _paths(solution: Solution) -> list[Json]:
-    return [
-        {
-            "title": path.title,
-            "label": path.label,
-            "x": _plain(path.x),
-            "series": [{"label": name, "values": _plain(values)} for name, values in path.ways.items()],
-        }
-        for path in paths(solution)
+        for chart in some
     ]
 
 

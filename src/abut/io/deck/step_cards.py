@@ -8,12 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from abut.decks.cards.cards import Card, Line, key
-from abut.decks.cards.mesh_cards import MeshCards, face_number
-from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import Amplitude, Increments, Prescribed, Step
-from abut.decks.cards.supported import STEP_PROCEDURES
 from abut.errors import nearest
+from abut.io.deck.cards import Card, Line, key
+from abut.io.deck.mesh_cards import MeshCards, face_number
+from abut.io.deck.reasons import Reasons
+from abut.io.deck.record import Amplitude, Increments, Prescribed, Step
+from abut.io.deck.supported import STEP_PROCEDURES
 
 NAMED_SUPPORTS = {
     "ENCASTRE": (1, 2, 3, 4, 5, 6),

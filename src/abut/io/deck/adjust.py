@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.decks.cards.faces import connectivity
-from abut.decks.cards.groups import Groups
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Deck, Numbers, Pair
+from abut.io.deck.faces import connectivity
+from abut.io.deck.groups import Groups
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Deck, Numbers, Pair
 
 Vector = NDArray[np.float64]
 

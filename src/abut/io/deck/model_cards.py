@@ -8,11 +8,12 @@ from itertools import takewhile
 
 import numpy as np
 
-from abut.decks.cards.cards import Card, Line, as_float, as_integer, key, of
-from abut.decks.cards.contact_cards import sides
-from abut.decks.cards.mesh_cards import MeshCards
-from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import (
+from abut.errors import nearest
+from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
+from abut.io.deck.contact_cards import sides
+from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.reasons import Reasons
+from abut.io.deck.record import (
     CyclicSymmetry,
     Equation,
     Material,
@@ -22,7 +23,6 @@ from abut.decks.cards.record import (
     Section,
     Transform,
 )
-from abut.errors import nearest
 
 EMPTY = np.empty(0, np.int64)
 

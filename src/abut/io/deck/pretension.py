@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.decks.cards.faces import connectivity, free_faces, surface_rows
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Block, Deck, Equation, Numbers, PreTension
+from abut.io.deck.faces import connectivity, free_faces, surface_rows
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Block, Deck, Equation, Numbers, PreTension
 
 
 def cut(deck: Deck) -> Deck:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from abut.decks.cards.cards import Card, Line, as_float, key
-from abut.decks.cards.record import Friction
 from abut.errors import nearest
+from abut.io.deck.cards import Card, Line, as_float, key
+from abut.io.deck.record import Friction
 
 ROUGH, STICKY = "rough", 1e5  # coefficients from which on a deck means that nothing slips
 STICK_SLOPES = ("ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE")  # Abaqus' words for how soft sticking is

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.decks.cards.elements import ElementType
-from abut.decks.cards.reasons import Place
+from abut.io.deck.elements import ElementType
+from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from abut.cells import CELLS
-from abut.decks.cards.cards import Card, Line, as_integer, key
-from abut.decks.cards.elements import ELEMENTS, FACES, refusal
-from abut.decks.cards.reasons import Place, Reasons
-from abut.decks.cards.record import Block, Faces, Numbers
 from abut.errors import nearest
+from abut.io.deck.cards import Card, Line, as_integer, key
+from abut.io.deck.elements import ELEMENTS, FACES, refusal
+from abut.io.deck.reasons import Place, Reasons
+from abut.io.deck.record import Block, Faces, Numbers
 
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from abut.decks.cards.cards import Card, read_cards
-from abut.decks.cards.contact_cards import general_contact, pairs
-from abut.decks.cards.friction_cards import friction_notes, without_tied_friction
-from abut.decks.cards.mesh_cards import MeshCards, mesh_cards
-from abut.decks.cards.model_cards import (
+from abut.io.deck.cards import Card, read_cards
+from abut.io.deck.contact_cards import general_contact, pairs
+from abut.io.deck.friction_cards import friction_notes, without_tied_friction
+from abut.io.deck.mesh_cards import MeshCards, mesh_cards
+from abut.io.deck.model_cards import (
     cyclic_symmetry,
     equations,
     materials,
@@ -18,10 +18,10 @@ from abut.decks.cards.model_cards import (
     sections,
     transforms,
 )
-from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import Deck, Prescribed
-from abut.decks.cards.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
-from abut.decks.cards.supported import NEEDED, opens, sift
+from abut.io.deck.reasons import Reasons
+from abut.io.deck.record import Deck, Prescribed
+from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
+from abut.io.deck.supported import NEEDED, opens, sift
 
 MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from abut.decks.cards.reasons import DeckError, Place, Reasons, UnknownName
 from abut.errors import InputError
+from abut.io.deck.reasons import DeckError, Place, Reasons, UnknownName
 
 DEEPEST = 20  # includes within includes
 

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from abut.decks.cards.faces import FreeFaces, Rows, connectivity, element_nodes, free_faces, surface_rows
-from abut.decks.cards.reader import read_mesh_only
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Deck, Numbers, Section
 from abut.errors import InputError
+from abut.io.deck.faces import FreeFaces, Rows, connectivity, element_nodes, free_faces, surface_rows
+from abut.io.deck.reader import read_mesh_only
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Deck, Numbers, Section
 from abut.io.raw import RawMesh
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from abut.decks.cards.faces import connectivity
-from abut.decks.cards.groups import Groups
-from abut.decks.cards.reasons import DeckError, Place
-from abut.decks.cards.record import CyclicSymmetry, Deck, Numbers, Transform
-from abut.decks.cards.time_histories import Course, combine, courses, zero
+from abut.io.deck.faces import connectivity
+from abut.io.deck.groups import Groups
+from abut.io.deck.reasons import DeckError, Place
+from abut.io.deck.record import CyclicSymmetry, Deck, Numbers, Transform
+from abut.io.deck.time_histories import Course, combine, courses, zero
 
 Vector = NDArray[np.float64]
 NOTHING: Course = ((0.0, 0.0),)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
-from abut.decks.cards.cards import Card, key
-from abut.decks.cards.elements import ELEMENTS, refusal
-from abut.decks.cards.reasons import DeckError, Reasons
 from abut.errors import InputError, nearest
+from abut.io.deck.cards import Card, key
+from abut.io.deck.elements import ELEMENTS, refusal
+from abut.io.deck.reasons import DeckError, Reasons
 
 # Cards that are read, with the parameters that are read or change nothing in statics.
 READ: dict[str, tuple[str, ...]] = {

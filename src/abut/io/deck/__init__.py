@@ -2,8 +2,8 @@
 
 The parser is abut's own: meshio's reads the mesh only and is no longer maintained."""
 
-from abut.decks.cards.groups import read_abaqus
-from abut.decks.cards.reader import read_deck
-from abut.decks.cards.record import Deck
+from abut.io.deck.groups import read_abaqus
+from abut.io.deck.reader import read_deck
+from abut.io.deck.record import Deck
 
 __all__ = ["Deck", "read_abaqus", "read_deck"]

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.decks.cards.elements import FACES
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Block, Deck, Faces, Numbers
+from abut.io.deck.elements import FACES
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Block, Deck, Faces, Numbers
 
 Rows = NDArray[np.int64]  # (n, 2)
 

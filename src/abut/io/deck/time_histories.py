@@ -5,8 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
 
-from abut.decks.cards.reasons import DeckError
-from abut.decks.cards.record import Deck, Prescribed, Step
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Deck, Prescribed, Step
 
 Course = tuple[tuple[float, float], ...]  # (time, value), linear between, constant outside
 Key = tuple[float, ...]

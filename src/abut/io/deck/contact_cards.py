@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from abut.decks.cards.cards import Card, Line, as_float, key, of
-from abut.decks.cards.friction_cards import changed, changes, friction
-from abut.decks.cards.mesh_cards import MeshCards
-from abut.decks.cards.reasons import Reasons
-from abut.decks.cards.record import NO_FRICTION, Friction, GeneralContact, Numbers, Pair
 from abut.errors import nearest
+from abut.io.deck.cards import Card, Line, as_float, key, of
+from abut.io.deck.friction_cards import changed, changes, friction
+from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.reasons import Reasons
+from abut.io.deck.record import NO_FRICTION, Friction, GeneralContact, Numbers, Pair
 
 
 @dataclass(frozen=True)

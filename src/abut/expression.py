@@ -1,0 +1,158 @@
+"""Numbers over position, written as text: "0.1 + 0.2*x"."""
+
+from __future__ import annotations
+
+import ast
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+
+from abut.errors import InputError, nearest
+from abut.types import Array
+
+AXES = ("x", "y", "z")
+CONSTANTS = {"pi": math.pi}
+FUNCTIONS: Mapping[str, Callable[[Array], Array]] = {
+    "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
+    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
+}  # fmt: skip
+OF_TWO: Mapping[str, Callable[[Array, Array], Array]] = {"min": np.minimum, "max": np.maximum, "atan2": np.arctan2}
+OPERATORS: Mapping[type, Callable[[Array, Array], Array]] = {
+    ast.Add: np.add, ast.Sub: np.subtract, ast.Mult: np.multiply, ast.Div: np.divide, ast.Pow: np.power,
+    ast.Lt: np.less, ast.LtE: np.less_equal, ast.Gt: np.greater, ast.GtE: np.greater_equal,
+    ast.And: np.logical_and, ast.Or: np.logical_or,
+}  # fmt: skip
+SIGNS: Mapping[type, Callable[[Array], Array]] = {ast.UAdd: np.positive, ast.USub: np.negative, ast.Not: np.logical_not}
+LONGEST, DEEPEST = 2000, 60  # characters, and operations within each other
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A number at every point, written with x, y and z (the coordinates of the undeformed mesh; axisymmetric: x is the
+    radius, y the axis), numbers, pi, + - * / **, comparisons with "and", "or", "not", "A if CONDITION else B", and the
+    functions abs, sqrt, exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, min and max. Nothing else is
+    evaluated. Raises InputError for anything else.
+
+    >>> import numpy as np
+    >>> from abut.expression import Expression
+    >>> Expression("0.1 if x < 2 else 0.3")(np.array([[1.0, 0.0], [3.0, 0.0]]))
+    array([0.1, 0.3])
+    """
+
+    text: str
+
+    def __post_init__(self) -> None:
+        _check(_parsed(self.text))
+
+    def __call__(self, points: Array) -> Array:
+        """At points (n, dim): (n,). Raises InputError for z in two dimensions."""
+        names = {name: np.float64(value) for name, value in CONSTANTS.items()} | dict(zip(AXES, points.T))
+        with np.errstate(all="ignore"):  # whoever asks refuses what is no number, and says where
+            value = _value(_parsed(self.text), names)
+        return np.array(np.broadcast_to(np.asarray(value, dtype=float), len(points)))
+
+
+@dataclass(frozen=True)
+class Expressions:
+    """A vector at every point: an expression of each component."""
+
+    components: tuple[Expression, ...]
+
+    def __call__(self, points: Array) -> Array:
+        """At points (n, dim): (n, components)."""
+        return np.column_stack([component(points) for component in self.components])
+
+
+def _parsed(text: str) -> ast.expr:
+    if len(text) > LONGEST:
+        raise InputError(f"an expression of more than {LONGEST} characters; give a function in Python instead")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        raise InputError(f"cannot read {text!r} as an expression of x, y, z such as '0.1 + 0.2*x'") from None
+
+
+def _check(tree: ast.expr) -> None:
+    """Raises InputError for what an expression cannot hold."""
+    level = [tree]
+    for _ in range(DEEPEST):
+        level = [part for node in level for part in _parts(node)]
+        if not level:
+            return
+    raise InputError("too many operations within each other; give a function in Python instead")
+
+
+def _parts(node: ast.expr) -> list[ast.expr]:
+    """What a node is made of, if it is one that is known."""
+    if isinstance(node, ast.Constant):
+        _number(node)
+        return []
+    if isinstance(node, ast.Name):
+        if node.id not in (*AXES, *CONSTANTS):
+            raise InputError(f"unknown name {node.id!r}{nearest(node.id, (*AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO))}")
+        return []
+    if isinstance(node, ast.UnaryOp) and type(node.op) in SIGNS:
+        return [node.operand]
+    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
+        return [node.left, node.right]
+    if isinstance(node, ast.BoolOp):
+        return node.values
+    if isinstance(node, ast.Compare) and all(type(op) in OPERATORS for op in node.ops):
+        return [node.left, *node.comparators]
+    if isinstance(node, ast.IfExp):
+        return [node.test, node.body, node.orelse]
+    if isinstance(node, ast.Call):
+        return _arguments(node)
+    hint = "; powers are written with **" if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitXor) else ""
+    raise InputError(f"{ast.unparse(node)!r} is not part of an expression{hint}")
+
+
+def _arguments(node: ast.Call) -> list[ast.expr]:
+    name = ast.unparse(node.func)
+    if not isinstance(node.func, ast.Name) or name not in (*FUNCTIONS, *OF_TWO):
+        raise InputError(f"unknown function {name!r}{nearest(name, (*FUNCTIONS, *OF_TWO))}")
+    wrong = len(node.args) != 1 if name in FUNCTIONS else len(node.args) < 2 or (name == "atan2" and len(node.args) > 2)
+    if node.keywords or wrong or any(isinstance(part, ast.Starred) for part in node.args):
+        wanted = "one argument" if name in FUNCTIONS else "two arguments"
+        raise InputError(f"{ast.unparse(node)!r}: {name} takes {wanted}{' or more' if name in ('min', 'max') else ''}")
+    return node.args
+
+
+def _number(node: ast.Constant) -> np.float64:
+    if isinstance(node.value, bool) or not isinstance(node.value, (int, float)):
+        raise InputError(f"{ast.unparse(node)} is not a number")
+    try:
+        return np.float64(node.value)
+    except OverflowError:
+        return np.float64(math.inf)
+
+
+def _value(node: ast.expr, names: Mapping[str, Array]) -> Array:
+    """The value of a tree that ``_check`` has let pass; conditions are 0 or 1."""
+    if isinstance(node, ast.Constant):
+        return _number(node)  # type: ignore[return-value]
+    if isinstance(node, ast.Name):
+        if node.id not in names:
+            raise InputError("z: positions have x and y alone in two dimensions")
+        return names[node.id]
+    values = [_value(part, names) for part in _parts(node)]
+    if isinstance(node, ast.UnaryOp):
+        result = SIGNS[type(node.op)](values[0])
+    elif isinstance(node, (ast.BinOp, ast.BoolOp)):
+        result = reduce(OPERATORS[type(node.op)], values)
+    elif isinstance(node, ast.Compare):
+        pairs = zip(node.ops, values, values[1:])
+        result = reduce(np.logical_and, [OPERATORS[type(op)](left, right) for op, left, right in pairs])
+    elif isinstance(node, ast.IfExp):
+        result = np.where(values[0], values[1], values[2])
+    else:
+        assert isinstance(node, ast.Call)
+        name = ast.unparse(node.func)
+        result = FUNCTIONS[name](values[0]) if name in FUNCTIONS else reduce(OF_TWO[name], values)
+    return np.asarray(result, dtype=float)
