@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
@@ -100,7 +101,7 @@ def anchors(contactor: Surface, space: PressureSpace) -> tuple[NDArray[np.int64]
     facet, local = np.nonzero(split.nodes >= 0)
     node, first = np.unique(split.nodes[facet, local], return_index=True)
     at = first[np.searchsorted(node, np.maximum(space.side, node[0]))]
-    largest = np.asarray(abs(space.plain).argmax(axis=0)).ravel()
+    largest = np.asarray(sp.csc_matrix(abs(space.plain)).argmax(axis=0)).ravel()
     alone = space.node < 0
     facet, local = facet[at], local[at]
     return np.where(alone, largest // MAX_FACET_NODES, facet), np.where(alone, largest % MAX_FACET_NODES, local)
