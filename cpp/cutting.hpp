@@ -93,7 +93,7 @@ inline double scale_of(const Piece &piece) {
   return scale;
 }
 
-inline void cut_pieces(const Over &over, const Facet &t, Segment own, double reach, std::vector<Segment> &out) {
+inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reach, std::vector<Segment> &out) {
   const Piece &mine = over.piece(own.mine), &theirs = over.piece(own.theirs);
   Polygon subject;
   for (int i = 0; i < mine.size; ++i)
@@ -104,7 +104,7 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, double rea
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
-  if (!(std::abs(at.look(t, own.finished.middle())) <= reach))
+  if (!reach.has(at.look(t, own.finished.middle())))
     return;
   double y[3], tangent[2][3], facing[3];
   t.position.at(at.other.xi, y, tangent);
@@ -170,7 +170,7 @@ struct Asked {
   int subdivide;
 };
 
-inline void cut_facet(const Over &over, const Facet &t, const Asked &asked, double reach, Carried &carried,
+inline void cut_facet(const Over &over, const Facet &t, const Asked &asked, Reach reach, Carried &carried,
                       std::vector<Segment> &out) {
   const Contactor3 &c = over.c;
   const std::size_t before = over.theirs.size();
@@ -262,6 +262,11 @@ private:
     });
   }
 
+  Reach reach(std::size_t f, int t) const {
+    const double far = both_.options.reach;
+    return {far, std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
+  }
+
   // Says what each segment is for.
   void cast(std::size_t f) {
     for (Segment &own : segments_)
@@ -270,7 +275,7 @@ private:
 
   void cut_all(std::size_t f, const Facet &c) {
     for (int t : found_)
-      cut_line(c, both_.targets[t], t, both_.options.reach, segments_);
+      cut_line(c, both_.targets[t], t, reach(f, t), segments_);
     cast(f);
     if (!both_.options.hidden)
       find_hidden(c, both_.targets, both_.target.surface.nodes, segments_);
@@ -280,7 +285,7 @@ private:
     const Planned &target = both_.target;
     carried_.begin();
     for (int t : found_)
-      cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, both_.options.reach,
+      cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, reach(f, t),
                 carried_, segments_);
     cast(f);
     if (!both_.options.hidden)

@@ -6,7 +6,7 @@
 namespace abut {
 
 constexpr double TOUCHING = 1e-12; // of the contactor facet: common parts below are none
-constexpr double EDGE_ON = 1e-9;   // cosine of normals: facets that the contactor sees edge-on do not face it
+constexpr double EDGE_ON = 0.1;    // cosine of normals: facets that the contactor sees nearly edge-on do not face it
 constexpr int MANY_CORNERS = 12;   // polygons with more are halved before they are cut again
 
 // What a segment is for: contact, or only to hide others: those of the same pair seen the other way round hide all that

@@ -4,6 +4,8 @@
 
 namespace abut {
 
+constexpr double LEVEL = 1e-9; // of a distance: what is less above a facet lies level with it
+
 // Whether a facet is one of the body seen through its own material, by theory (G11): each lies behind the other in the
 // undeformed body, no further away than either's depth.
 inline bool through_body(const double *a, const double *b) {
@@ -14,12 +16,18 @@ inline bool through_body(const double *a, const double *b) {
   }
   length = std::sqrt(length);
   const double depth = std::max(a[6], b[6]);
-  return length <= depth && from < -EDGE_ON * length && to > EDGE_ON * length;
+  return length <= depth && from < -LEVEL * length && to > LEVEL * length;
 }
 
 inline bool may_touch(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {
   return !contactor.kin || contactor.kin[KIN * c] != target.kin[KIN * t] ||
          !adjacent(contactor.facet_nodes(c), target.facet_nodes(t));
+}
+
+// How deep two facets may lie in each other: what is seen at a greater depth is seen through a body.
+inline double deepest(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {
+  constexpr double most = 0.75; // of the thickness
+  return contactor.kin ? most * std::min(contactor.kin[KIN * c + 9], target.kin[KIN * t + 9]) : HUGE_VAL;
 }
 
 inline Role role_of(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {

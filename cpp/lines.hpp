@@ -64,7 +64,7 @@ struct Sight2 {
   }
 };
 
-inline void cut_line(const Facet &c, const Facet &t, int number, double reach, std::vector<Segment> &out) {
+inline void cut_line(const Facet &c, const Facet &t, int number, Reach reach, std::vector<Segment> &out) {
   Segment own;
   own.target = number;
   own.begin = sees(c, t.x[1]), own.end = sees(c, t.x[0]); // the target runs the other way
@@ -72,7 +72,7 @@ inline void cut_line(const Facet &c, const Facet &t, int number, double reach, s
     return;
   // The middle decides whether the two face each other within reach.
   Sight2 at(c);
-  if (!at.look(t, 0.5 * (own.begin + own.end)) || std::abs(at.gap) > reach)
+  if (!at.look(t, 0.5 * (own.begin + own.end)) || !reach.has(at.gap))
     return;
   double y[3], slope[2][3];
   t.position.at(at.other.xi, y, slope);

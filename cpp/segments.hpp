@@ -6,8 +6,14 @@
 
 namespace abut {
 
-// Of each facet: number of its body, rank, and of the undeformed body its middle, normal and depth.
-constexpr std::size_t KIN = 9;
+// Of each facet: number of its body, rank, and of the undeformed body its middle, normal, depth and thickness.
+constexpr std::size_t KIN = 10;
+
+// How far away what a facet sees may lie, outside of the body and behind.
+struct Reach {
+  double out, in;
+  bool has(double gap) const { return gap <= out && gap >= -in; }
+};
 
 struct SurfaceView {
   int dim;

@@ -1,9 +1,12 @@
-"""Writes the tables of docs/verification/benchmarks.md: python docs/make/benchmarks.py (a few minutes)."""
+"""Writes the tables of docs/verification/benchmarks.md: python docs/make/benchmarks.py (a few minutes), or of some benchmarks:
+python docs/make/benchmarks.py NAME ..."""
 
 from __future__ import annotations
 
+import argparse
+
 from abut.benchmarks import BENCHMARKS, Outcome, run
-from page import DOCS, error, write_table
+from page import DOCS, error, read_table, write_table
 
 PAGE = DOCS / "verification" / "benchmarks.md"
 
@@ -21,12 +24,20 @@ def row(outcome: Outcome) -> list[str]:
 
 
 def main() -> None:
-    outcomes = [outcome for benchmark in BENCHMARKS.values() for outcome in run(benchmark)]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run; left out: all, else other rows stay")
+    chosen = parser.parse_args().names or list(BENCHMARKS)
+    outcomes = [outcome for name in chosen for outcome in run(BENCHMARKS[name])]
     header = ["name", "problem", "quantity", "value", "reference", "error", "limit", "rate (theory)"]
-    write_table(PAGE, "benchmarks", header, [row(outcome) for outcome in outcomes])
-    sources = {}
-    for outcome in outcomes:
-        sources.setdefault(outcome.reference.source, []).append(outcome.benchmark)
+    of_name: dict[str, list[list[str]]] = {}
+    for line in read_table(PAGE, "benchmarks"):
+        of_name.setdefault(line["name"].strip("`"), []).append(list(line.values()))
+    of_name |= {name: [row(outcome) for outcome in outcomes if outcome.benchmark == name] for name in chosen}
+    write_table(PAGE, "benchmarks", header, [line for name in BENCHMARKS for line in of_name.get(name, [])])
+    sources: dict[str, list[str]] = {}
+    for name, benchmark in BENCHMARKS.items():
+        for reference in benchmark.references.values():
+            sources.setdefault(reference.source, []).append(name)
     rows = [[source, ", ".join(f"`{name}`" for name in dict.fromkeys(names))] for source, names in sources.items()]
     write_table(PAGE, "sources", ["source", "used by"], rows)
     failed = [outcome for outcome in outcomes if not outcome.passed]

@@ -16,7 +16,8 @@ from abut.benchmarks.finite_contact import ironing
     "name",
     [
         "shallow-ironing", "crushed-ring", "gears", "die-drawn-hex8",
-        *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-tet10", "die-drawn-hex20", "wires")),
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-hex20", "wires")),
+        pytest.param("die-drawn-tet10", marks=pytest.mark.exhaustive),
     ],
 )  # fmt: skip
 def test_known_answer(name: str) -> None:

@@ -180,6 +180,11 @@ def test_swapped_contacts_are_refused() -> None:
     [
         (lambda: abut.Amplitude(()), "at least one pair"),
         (lambda: abut.Amplitude(((0.0, 1.0), (0.0, 2.0))), "times must increase"),
+        (
+            lambda: abut.Amplitude(((0.0, 0.0), (10.0, 1.0))),
+            "runs from 0 to 1 over all load steps, but there is a point at 10;",
+        ),
+        (lambda: abut.Amplitude(((-0.5, 0.0), (1.0, 1.0))), "there is a point at -0.5;"),
         (lambda: abut.Amplitude(((0.0, float("nan")),)), "finite number"),
         (lambda: abut.Amplitude((1.0, 2.0)), "pairs of time and factor"),
         (lambda: abut.Support("top", x=0, amplitude=2.0), "expected an Amplitude"),

@@ -236,6 +236,27 @@ def test_what_friction_no_longer_holds_is_said() -> None:
         assert f"'{name}' carries" in remedy.reason
 
 
+def test_what_friction_never_held_is_said() -> None:
+    """The first step failed, so that nothing is known but that loads push what supports leave free."""
+    solution = abut.solve(pulled(40.0))
+    step = replace(solution.steps[0], converged=False)
+    (remedy,) = remedies(replace(solution, steps=(step,)))
+    assert remedy.reason == "loads may push along what friction alone holds, in contact 'under', 'over'"
+
+
+def test_rubber_is_advised_for_the_body_that_gives_way() -> None:
+    """Of both, the one that the reason names, as both bear large stresses; neither where stresses are small."""
+    solution = abut.solve(replace(pulled(1.0), contacts=[], loads=[], kinematics="finite", supports=[
+        abut.Support(f"{body}.{side}", x=0, y=0.0 if side == "bottom" else -0.2)
+        for body in ("plate", "block", "lid") for side in ("bottom", "top")
+    ]))  # fmt: skip
+    step = replace(solution.steps[-1], converged=False, reason="cell 9 of body 'lid' turns inside out")
+    ends = remedies(replace(solution, steps=(step,)))
+    assert "of body 'lid'" in ends[0].action
+    gentle = replace(step, stress=0.1 * step.stress)
+    assert not [remedy for remedy in remedies(replace(solution, steps=(gentle,))) if "neo-hooke" in remedy.action]
+
+
 def test_friction_at_its_limit_is_no_reason_where_supports_hold() -> None:
     model = pulled(40.0, supports=[abut.Support("block.left", x=-0.5, y=0)])
     solution = abut.solve(model)

@@ -10,7 +10,7 @@ import pytest
 from abut.cli import main
 from fuzz.harness import SEEDS, make, run_all
 
-FAST, MANY = 300, 10_000
+FAST, MANY, ALL = 300, 1_500, 10_000
 
 
 def check(numbers: range, folder: Path) -> None:
@@ -30,6 +30,11 @@ def test_some_damaged_inputs(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_many_damaged_inputs(tmp_path: Path) -> None:
     check(range(FAST, MANY), tmp_path)
+
+
+@pytest.mark.exhaustive
+def test_all_damaged_inputs(tmp_path: Path) -> None:
+    check(range(MANY, ALL), tmp_path)
 
 
 @pytest.mark.parametrize("number", [1461, 3007])

@@ -84,7 +84,7 @@ def iterations(mesh: Mesh) -> int:
     held = (3 * mesh.nodes_of("bottom")[:, None] + np.arange(3)).ravel()
     free = sp.identity(n, format="csc")[:, np.setdiff1d(np.arange(n), held)]
     matrix = (free.T @ stiffness(Solids(mesh, {"body": STEEL})) @ free).tocsr()
-    levels = hierarchy(matrix, free, rigid_modes(mesh).together, mesh.points)
+    levels = hierarchy(matrix, free, free.T @ rigid_modes(mesh).together, mesh.points)
     count: list[NDArray[np.float64]] = []
     cycle = spla.LinearOperator(matrix.shape, matvec=levels.cycle, dtype=float)
     load = np.random.default_rng(3).standard_normal(matrix.shape[0])

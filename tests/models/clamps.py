@@ -16,6 +16,7 @@ from abut.mesh.mesh import Mesh
 ARM, RADIUS, THICKNESS, DEPTH = 1.2, 0.4, 0.3, 0.2
 NOSE, PLACE, WIDTH = 0.18, 0.9, 0.45  # of the bulge inside of each arm
 GAP = 2.0 * (RADIUS - 0.5 * THICKNESS - NOSE)  # between the noses
+OUTER, INNER = 1.0, 0.75  # radii of the tube
 RUBBER = abut.NeoHooke(young=100.0, poisson=0.3)
 Array = NDArray[np.float64]
 
@@ -35,7 +36,10 @@ def bowed(points: Array) -> Array:
 
 
 def clamp(
-    cell: str, closing: float = 0.15, sides: tuple[Names, Names] = ("body", "body"), cells: tuple[int, int] = (24, 1),
+    cell: str,
+    closing: float = 0.15,
+    sides: tuple[Names, Names] = ("body", "body"),
+    cells: tuple[int, int] = (24, 1),
     **contact: Any,
 ) -> abut.Model:
     """The arms are pressed together where they are outside, the upper one moved along a little as well; in 3D between
@@ -62,3 +66,36 @@ def _where(mesh: Mesh, surface: str, chosen: Any) -> NDArray[np.int64]:
     """Facets of a surface all of whose points are chosen by their place (n, dim)."""
     rows = mesh.surfaces[surface]
     return rows[[bool(chosen(mesh.points[nodes[nodes >= 0]]).all()) for nodes in mesh.facets(rows).nodes]]
+
+
+def tube(cell: str, closing: float = 0.1, sides: tuple[Names, Names] = ("body", "body"), cells: int = 24) -> abut.Model:
+    """A thick tube, pressed together where it is outside at the top and the bottom until its inside touches itself."""
+    solid = cell in SOLID_CELLS
+    lines = [np.linspace(0.0, 1.0, cells + 1), np.array([0.0, 1.0])]
+    made = _joined(grid([*lines, np.array([0.0, DEPTH])] if solid else lines, cell, _round))
+    inside, outside = ("back", "front") if solid else ("top", "bottom")
+    width = 0.3 * OUTER
+    mesh = replace(made, surfaces={
+        "upper": _where(made, inside, lambda x: x[:, 1] > -1e-9), "lower": _where(made, inside, lambda x: x[:, 1] < 1e-9),
+        "below": _where(made, outside, lambda x: (x[:, 1] < 0.0) & (np.abs(x[:, 0]) < width)),
+        "above": _where(made, outside, lambda x: (x[:, 1] > 0.0) & (np.abs(x[:, 0]) < width)),
+        **{name: made.surfaces[name] for name in (("bottom", "top") if solid else ())},
+    })  # fmt: skip
+    between = [abut.Support("bottom", z=0.0), abut.Support("top", z=0.0)] if solid else []
+    middle = [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.0, y=-2.0 * INNER - closing)]
+    return abut.Model(
+        mesh, [abut.Solid("body", RUBBER)], [*middle, *between], contacts=[abut.Contact(*sides, name="inside")],
+        plane=None if solid else "strain", kinematics="finite",
+    )  # fmt: skip
+
+
+def _round(points: Array) -> Array:
+    angle, radius = 2.0 * np.pi * points[:, 0], OUTER - (OUTER - INNER) * points[:, 1]
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), points[:, 2:]])
+
+
+def _joined(mesh: Mesh) -> Mesh:
+    """With one point where several lie at a place."""
+    _, first, number = np.unique(np.round(mesh.points, 9), axis=0, return_index=True, return_inverse=True)
+    blocks = tuple(replace(b, nodes=number.ravel()[b.nodes].astype(np.int32)) for b in mesh.blocks)
+    return replace(mesh, points=mesh.points[first], blocks=blocks)

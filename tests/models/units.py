@@ -34,7 +34,8 @@ def in_units(model: abut.Model, units: Units) -> abut.Model:
     def load(own: Any) -> Any:
         if isinstance(own, abut.Pressure):
             return replace(own, value=own.value * pressure)
-        share = units.force / thick if isinstance(own, abut.Force) else pressure / length
+        per_area = pressure if isinstance(own, abut.Traction) else pressure / length  # else per volume
+        share = units.force / thick if isinstance(own, abut.Force) else per_area
         return replace(own, value=tuple(share * v for v in own.value))
 
     assert all(not any((s.x, s.y, s.z)) for s in model.supports)

@@ -148,6 +148,10 @@ CASES: dict[str, Callable[[], Any]] = {
     "one-cell": lambda: patch("hex8", "hex8", ((1, 1, 1), (6, 6, 6))),
     "two-cells": lambda: patch("hex8", "hex8", ((1, 1, 1), (1, 1, 1))),
     "press": press,
+    "press-smooth": lambda: press(law="constraint-function"),
+    "rubbed-smooth": lambda: replace(
+        rubbed(), contacts=[replace(c, law="constraint-function") for c in rubbed().contacts]
+    ),
     "press-tet10": lambda: press(3, "tet10"),
     "tower": lambda: press(3, height=4.0),
     "larger": lambda: press(11),
@@ -162,7 +166,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "lifted": lifted,
     "loose": loose,
     "pin-lug": lambda: example("pin-lug/job.toml"),
-    **{name: partial(finite, name) for name in ("beam", "slid", "cushion", "punch", "turned")},
+    **{name: partial(finite, name) for name in ("beam", "folds", "slid", "cushion", "punch", "pad", "turned")},
 }
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import abut
 from abut.mesh.make import box, join, rectangle
+from models.folding import accordion
 from models.sliding import SOFT, THEN, arched, pressed_in_space
 
 RUBBER = abut.NeoHooke(100.0, 0.45)
@@ -48,6 +49,19 @@ def punch() -> abut.Model:
     )  # fmt: skip
 
 
+def pad() -> abut.Model:
+    """3D: a rigid pad that may tilt both ways, drawn into a block and along it with friction."""
+    mesh = join({
+        "block": box([0, 2], [0, 1.5], [0, 1], cells=[4, 3, 2], cell="hex8"),
+        "pad": box([0.5, 1.4], [0.3, 1.1], [1, 1.3], cells=[2, 2, 1], cell="hex8"),
+    })  # fmt: skip
+    return abut.Model(
+        mesh, [abut.Solid("block", RUBBER)], [abut.Support("block.bottom", x=0.0, y=0.0, z=0.0)],
+        rigid=[abut.Rigid("pad", x=0.1, y=0.03, z=-0.08, rz=0.1)],
+        contacts=[abut.Contact("block.top", "pad", friction=0.2)], kinematics="finite",
+    )  # fmt: skip
+
+
 def turned() -> abut.Model:
     """A surface turned about an axis, and a tie: the lower block is twisted, the upper one is tied to it."""
     mesh = join({
@@ -63,4 +77,9 @@ def turned() -> abut.Model:
     )  # fmt: skip
 
 
-MODELS = {"beam": beam, "slid": slid, "cushion": cushion, "punch": punch, "turned": turned}
+def folds() -> abut.Model:
+    """A strip whose folds meet: contact with itself."""
+    return accordion(shortening=0.6, cells=40, friction=0.2)
+
+
+MODELS = {"folds": folds, "beam": beam, "slid": slid, "cushion": cushion, "punch": punch, "pad": pad, "turned": turned}

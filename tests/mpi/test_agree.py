@@ -56,11 +56,28 @@ def test_friction(mpirun: Run, n: int, option: str) -> None:
     assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
 
 
-def test_friction_is_not_symmetric(mpirun: Run) -> None:
-    """MINRES would not converge to the solution: it is refused by its name."""
-    result = mpirun(2, "pushed", "-ksp_type", "minres", program=(PROGRAM,))
+@pytest.mark.parametrize("n", [1, 2])
+def test_the_constraint_function_by_multigrid(mpirun: Run, n: int) -> None:
+    """Its rows look at points: where it is all closed, and where contact ends within a facet."""
+    for row in compared(mpirun, n, ["smooth", "press-smooth"], "-pc_type", "gamg").values():
+        assert "gamg" in row["solver"]
+
+
+def test_the_constraint_function_with_friction_is_for_factors(mpirun: Run) -> None:
+    result = mpirun(2, "rubbed-smooth", "-pc_type", "gamg", program=(PROGRAM,))
     assert result.returncode != 0
-    assert "-ksp_type minres is for symmetric matrices" in result.stderr
+    assert "PETSc's iterations know friction by Coulomb's law alone" in result.stderr
+
+
+SYMMETRIC = [("pushed", "friction"), ("smooth", "the constraint function"), ("beam", "finite kinematics")]
+
+
+@pytest.mark.parametrize(("case", "why"), SYMMETRIC)
+def test_what_is_not_symmetric(mpirun: Run, case: str, why: str) -> None:
+    """MINRES would not converge to the solution: it is refused by its name."""
+    result = mpirun(2, case, "-ksp_type", "minres", program=(PROGRAM,))
+    assert result.returncode != 0
+    assert f"-ksp_type minres is for symmetric matrices, which {why} does not leave" in result.stderr
 
 
 def test_other_solvers(mpirun: Run) -> None:

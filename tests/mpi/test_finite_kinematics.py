@@ -20,7 +20,7 @@ from abut.cli import main
 from models.steps import job, stop_in
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
-MODELS = ["beam", "slid", "cushion", "punch", "turned"]
+MODELS = ["beam", "slid", "folds", "cushion", "punch", "pad", "turned"]
 SLID = """
 schema = 1
 [mesh.bodies.plate]
@@ -65,8 +65,9 @@ friction = 0.3
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_states_and_steps(mpirun: Run, n: int) -> None:
-    """In the plane and in space: F-bar under a pressure that follows it, sliding with friction, a rigid body that tilts, a
-    surface that turns, a tie. Iterations are the same, so that load steps are, whose ends are compared too."""
+    """In the plane and in space: F-bar under a pressure that follows it, sliding with friction, a body that touches itself,
+    rigid bodies that tilt, a surface that turns, a tie. Iterations are the same, so that load steps are, whose ends are
+    compared too."""
     for row in compared(mpirun, n, MODELS, timeout=400.0).values():
         assert "mumps" in row["solver"]
         assert row["solutions"] == row["alone"]
@@ -77,11 +78,32 @@ def test_one_analysis_serves_many_iterations(mpirun: Run) -> None:
     """As long as contact meets no new nodes: PETSc counts them."""
     result = mpirun(2, "punch", "-log_view", program=(PROGRAM,))
     assert result.returncode == 0, result.stderr
-    symbolic, numeric = (
-        int(re.search(rf"^MatLUFactor{kind} +(\d+)", result.stdout, re.MULTILINE)[1]) for kind in ("Sym", "Num")
-    )
+    symbolic, numeric = (counted(result.stdout, f"MatLUFactor{kind}") for kind in ("Sym", "Num"))
     assert numeric >= sum(json.loads(result.stdout.splitlines()[0])["solutions"])
     assert symbolic < numeric / 2
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_multigrid_of_the_tangent(mpirun: Run, n: int) -> None:
+    """Newton's method asks for no more accuracy than it needs, and is done when a billionth of the forces is left."""
+    for row in compared(mpirun, n, ["beam", "cushion", "turned"], "-pc_type", "gamg", timeout=400.0).values():
+        assert "gamg" in row["solver"]
+
+
+def test_multigrid_is_set_up_once_a_step(mpirun: Run) -> None:
+    """PETSc counts how often; an iteration takes a few dozen Krylov iterations, however much contact has changed."""
+    result = mpirun(2, "turned", "-pc_type", "gamg", "-log_view", program=(PROGRAM,))
+    assert result.returncode == 0, result.stderr
+    assert counted(result.stdout, r"PCSetUp_GAMG\+") == 2
+    row = json.loads(result.stdout.splitlines()[0])
+    assert int(row["note"].split()[0]) < 30 * sum(row["solutions"])
+
+
+def counted(log: str, event: str) -> int:
+    """How often an event took place, by PETSc's -log_view."""
+    found = re.search(rf"^ *{event} +(\d+)", log, re.MULTILINE)
+    assert found is not None
+    return int(found[1])
 
 
 def summary(folder: Path) -> dict[str, Any]:

@@ -232,7 +232,7 @@ def test_no_traction_across_a_plane_of_symmetry() -> None:
     ("options", "words"),
     [
         ({"friction": -0.1}, "friction: expected a coefficient >= 0"),
-        ({"friction": "smooth"}, 'a coefficient >= 0, "rough", or pairs'),
+        ({"friction": "smooth"}, 'a coefficient >= 0, .* "rough", or pairs'),
         ({"friction": 0.2, "kind": "tied"}, "a tie holds in all directions"),
         ({"friction": 0.2, "method": "node-to-segment"}, "method segment-to-segment"),
     ],

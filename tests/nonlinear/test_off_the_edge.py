@@ -15,8 +15,9 @@ GO = abut.Amplitude(((0.0, 0.0), (0.2, 0.0), (0.6, 1.0), (1.0, 0.0)))
 FAR = 1.5
 
 
-def over_the_edge(dim: int, friction: float) -> abut.Model:
-    """A rounded block pressed on a wider one, moved 1.5 along it, beyond its end, and back."""
+def over_the_edge(dim: int, friction: float, aside: float = 0.0) -> abut.Model:
+    """A rounded block pressed on a wider one, moved 1.5 along it, beyond its end, and back; in 3D ``aside`` as well, over a
+    corner."""
     if dim == 2:
         lower, upper = make.rectangle([0, 1.5], [0, 1], (5, 3)), make.rectangle([0.2, 1.2], [1, 1.6], (5, 2))
     else:
@@ -29,7 +30,7 @@ def over_the_edge(dim: int, friction: float) -> abut.Model:
         rise = 0.5 * (top - x[:, up]) / (top - low) * (x[:, 0] - 0.7) ** 2
         return x + rise[:, None] * np.eye(dim)[up]
 
-    held = [abut.Support("upper.top", y=0.0)] if dim == 3 else []
+    held = [abut.Support("upper.top", y=aside, amplitude=GO)] if dim == 3 else []
     return abut.Model(
         make.join({"lower": lower, "upper": bent(upper, rounded)}), plane="strain" if dim == 2 else None,
         kinematics="finite", solids=[abut.Solid("lower", SOFT), abut.Solid("upper", SOFT)],
@@ -41,12 +42,12 @@ def over_the_edge(dim: int, friction: float) -> abut.Model:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("dim", "friction"), [(2, 0.0), (2, 0.3), (3, 0.0)])
-def test_off_the_edge_and_back(dim: int, friction: float) -> None:
+@pytest.mark.parametrize(("dim", "friction", "aside"), [(2, 0.0, 0.0), (2, 0.3, 0.0), (3, 0.0, 0.0), (3, 0.3, 0.7)])
+def test_off_the_edge_and_back(dim: int, friction: float, aside: float) -> None:
     """The force never rises on the way out (by more than 1 %, as nodes pass), and nothing is left of it beyond the end.
     Without friction the state is the same again at the place where it began; with friction no traction is beyond the cone
     after the way back."""
-    model, states = over_the_edge(dim, friction), list[State]()
+    model, states = over_the_edge(dim, friction, aside), list[State]()
     assert abut.solve(model, on_step=lambda _, saved: states.append(saved.state)).converged
     problem = finite(model)
 

@@ -6,6 +6,7 @@ import json
 import pickle
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from abut.output.fields import write_fields
 from abut.output.parallel import Pieces
 from abut.output.results import is_written, write
 from abut.parallel.partition import pieces
+from abut.parallel.team import Kept
 from abut.solution import Solution
 from abut.solution.grids import field_grid
 from models.pieces import names, probe, read, volume
@@ -32,6 +34,10 @@ class Team:
         self.size = size
         self.stores: list[dict[str, Any]] = [{} for _ in range(size)]
         self.store = self.stores[0]
+        self.numbers = count()
+
+    def keep(self) -> Kept:
+        return Kept(next(self.numbers))
 
     def each(
         self, function: Callable[..., Any], *shared: Any, per_rank: list[tuple[Any, ...]] | None = None

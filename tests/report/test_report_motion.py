@@ -55,9 +55,9 @@ def test_forces_are_those_of_the_supports() -> None:
     """Drawn out and half of it back: two ways over the same displacement, the force of theory (D3) on both."""
     (path,) = paths(abut.solve(stretched()))
     assert path.title == "bar.right: force along x over displacement"
-    assert list(path.ways) == ["time 0 to 0.5", "time 0.5 to 1"]
+    assert list(path.series) == ["time 0 to 0.5", "time 0.5 to 1"]
     assert path.x == pytest.approx([0.0, 0.5, 0.5, 0.75, 1.0, 1.0])
-    for values, count in zip(path.ways.values(), (3, 3), strict=True):
+    for values, count in zip(path.series.values(), (3, 3), strict=True):
         own = ~np.isnan(values)
         assert own.sum() == count
         stretch = 1.0 + path.x[own] / 2.0

@@ -37,13 +37,15 @@ NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after
 class Surroundings:
     """What else a pair's checks are judged by. reference: its largest pressure of the steps before; beside: that of all
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
-    side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load."""
+    side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
+    moving: the sides may meet anywhere, so that what has no target opposite now is no sign of wrong surfaces."""
 
     reference: float = 0.0
     beside: float = 0.0
     overlap: NDArray[np.float64] | None = None
     free: NDArray[np.bool_] | None = None
     elsewhere: NDArray[np.float64] | None = None
+    moving: bool = False
 
 
 def certificate(
@@ -79,7 +81,7 @@ def certificate(
 class _Case:
     """A pair with its pressure. areas: (n_facets,); cover: (n_facets,) covered share of them; loaded: (n_facets,) bool;
     hidden: (n_facets,) overlap over what the pressure presses in; largest: pressure of the pair; matters: pressure that
-    errors are compared with."""
+    errors are compared with; pressing: the one that ``hidden`` is relative to."""
 
     pair: Pair
     values: NDArray[np.float64]
@@ -92,6 +94,7 @@ class _Case:
     hidden: NDArray[np.float64]
     largest: float
     matters: float
+    pressing: float
 
     @classmethod
     def of(
@@ -110,10 +113,13 @@ class _Case:
         hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / pressed_in
         loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
-        return cls(pair, values, nodal, share, around, areas, cover, loaded, hidden, largest, matters)
+        pressing = pressed_in * np.pi / pair.compliance if pair.compliance > 0.0 else 0.0
+        return cls(pair, values, nodal, share, around, areas, cover, loaded, hidden, largest, matters, pressing)
 
-    def check(self, what: str, value: float, limit: float, meaning: str, last: bool = False) -> Check:
-        return Check(self.pair.contact.name, what, float(value), limit, meaning, last)
+    def check(
+        self, what: str, value: float, limit: float, meaning: str, last: bool = False, pressure: float = 0.0
+    ) -> Check:
+        return Check(self.pair.contact.name, what, float(value), limit, meaning, last, pressure)
 
 
 def _balanced(case: _Case, errors: tuple[float, float]) -> Iterator[Check]:
@@ -130,17 +136,20 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
         "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
     )
     yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
-        "largest penetration at a point, over what the largest pressure indents between nodes")  # fmt: skip
+        "largest penetration at a point, over what the largest pressure indents between nodes",
+        pressure=case.pressing)  # fmt: skip
     shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
     yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
-        "pressure caused by faceting of curved surfaces, over the largest pressure")  # fmt: skip
+        "pressure caused by faceting of curved surfaces, over the largest pressure", pressure=case.matters)  # fmt: skip
 
 
 def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     """What is wrong with the pressure itself, and how many facets carry it."""
     pair, largest = case.pair, case.largest
     tension = max(0.0, -float(np.nanmin(case.nodal, initial=0.0))) / largest
-    yield case.check("tension", tension, TENSION, "largest negative pressure over the largest pressure")
+    yield case.check(
+        "tension", tension, TENSION, "largest negative pressure over the largest pressure", pressure=largest
+    )
     yield case.check(
         "complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure"
     )
@@ -149,7 +158,8 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)
     alternating = oscillation(pair, case.values, pressure, support, largest) * largest / case.matters
     yield case.check("oscillation", alternating, OSCILLATION,
-        "largest alternating part of the pressure inside the contact over the largest pressure")  # fmt: skip
+        "largest alternating part of the pressure inside the contact over the largest pressure",
+        pressure=case.matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, pressure, support, largest) if counts else 0.0
     yield case.check("resolution", facets, RESOLUTION,
@@ -165,9 +175,10 @@ def _cover(case: _Case) -> Iterator[Check]:
     yield case.check(
         "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
     )
-    total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
-    yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
-        "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
+    if not case.around.moving:
+        total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
+        yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
+            "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
     # Where a layer behind is counted as well, the gap in the mean may stay open though the one in front is cut into.
     counts = loaded if pair.tied else loaded | (case.hidden > OVERLAP)
     every = (cover + others[:, 1])[counts]

@@ -74,7 +74,8 @@ def misfit(pair: Pair) -> Misfit | None:
     moments = _moments(pair, at, point)
     space, node = pair.space, np.full(len(pair.contactor.points), np.nan)
     if space.continuous:
-        node[space.node] = (space.transfer.T @ moments) / space.weight
+        seen = space.weight > 0.0
+        node[space.node[seen]] = (space.transfer.T @ moments)[seen] / space.weight[seen]
     else:  # functions of single facets: the mean under the corner functions of all facets at a node stands for them
         facet, local = np.nonzero(pair.contactor.nodes >= 0)
         here, row = pair.contactor.nodes[facet, local], MAX_FACET_NODES * facet + (local if pair.coupling.degree else 0)

@@ -13,7 +13,6 @@ from abut.model import Model
 from abut.problem.backend import Backend, serial
 from abut.problem.clock import Clock
 from abut.problem.problem import ContactProblem
-from abut.problem.rigid_modes import near_null
 from abut.solution import Observer, Phase
 
 if TYPE_CHECKING:
@@ -48,16 +47,11 @@ def solver_kind(problem: ContactProblem, team: Team | None) -> str:
 
 def linear_solver(kind: str, problem: ContactProblem, team: Team | None) -> LinearSolver:
     """kind: as from ``solver_kind``."""
-    motions = near_null(problem.model.mesh, problem.restraint.rigid)
     if team is None:
-        return (
-            Direct()
-            if kind == "direct"
-            else Multigrid(problem.constraints.free, motions, problem.model.mesh.points, Count())
-        )
+        return Direct() if kind == "direct" else Multigrid(problem, Count())
     from abut.parallel.linear import PetscDirect, PetscIterations
 
-    return PetscDirect() if kind == "direct" else PetscIterations(problem.constraints.free.T @ motions, Count())
+    return PetscDirect() if kind == "direct" else PetscIterations(problem, Count())
 
 
 def setting_up(solver: LinearSolver, problem: ContactProblem) -> tuple[str, float]:

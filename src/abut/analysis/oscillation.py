@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, split_at_creases
+from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
@@ -25,14 +26,19 @@ def oscillation(
     Of discontinuous spaces, whose average may hide what alternates, also that of the facets' means and jumps."""
     surface, _ = split_at_creases(pair.contactor)
     nodes = Graph.of_nodes(surface)
-    worst = _alternating(nodes, pressure, _excluded(nodes, share), largest)
+    inside = _inside(nodes, pressure > CLOSED * largest)
+    if pair.space.continuous and pair.space.name not in (DUAL, DUAL_P1):  # of those coefficients are reported
+        inside &= _inside(nodes, _inside(nodes, _carrying(nodes, surface, values, largest)))
+    worst = _alternating(nodes, pressure, inside, _excluded(nodes, share), largest)
     if not pair.space.continuous:
         facets = Graph.of_facets(surface)
         total = pair.coupling.weight.reshape(-1, MAX_FACET_NODES).sum(axis=1)
         load = (pair.coupling.weight * values).reshape(-1, MAX_FACET_NODES).sum(axis=1)
         mean = np.where(total > 0.0, load / np.where(total > 0.0, total, 1.0), 0.0)
         worst = max(
-            worst, _alternating(facets, mean, total <= 0.0, largest), _jumps(pair, surface, values, pressure, largest)
+            worst,
+            _alternating(facets, mean, _inside(facets, mean > CLOSED * largest), total <= 0.0, largest),
+            _jumps(pair, surface, values, pressure, largest),
         )
     return worst
 
@@ -94,9 +100,20 @@ def _excluded(graph: Graph, share: NDArray[np.float64]) -> NDArray[np.bool_]:
     return near | graph.any_of(near)
 
 
-def _closed_inside(graph: Graph, pressure: NDArray[np.float64], largest: float) -> NDArray[np.bool_]:
-    closed = pressure > CLOSED * largest
+def _inside(graph: Graph, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(closed & graph.all_of(closed))
+
+
+def _carrying(graph: Graph, surface: Surface, values: NDArray[np.float64], largest: float) -> NDArray[np.bool_]:
+    """Corner points (n_points,) whose multiplier carries pressure, and those between such points. Averages reach one facet
+    further: the kink at the edge of contact is in those of the outermost."""
+    corner = surface.nodes >= 0
+    facet, local = np.nonzero(corner)
+    most = np.zeros(len(surface.points))
+    np.maximum.at(most, surface.nodes[facet, local], values.reshape(-1, MAX_FACET_NODES)[facet, local])
+    closed = (most > CLOSED * largest) & (graph.degree > 0)
+    near = closed | graph.any_of(closed)
+    return np.asarray(near & graph.all_of(near))
 
 
 def _edges(graph: Graph, pressure: NDArray[np.float64], inside: NDArray[np.bool_], largest: float) -> float:
@@ -107,10 +124,12 @@ def _edges(graph: Graph, pressure: NDArray[np.float64], inside: NDArray[np.bool_
     return float(np.sqrt(np.maximum(-product, 0.0).max(initial=0.0))) / largest
 
 
-def _alternating(graph: Graph, pressure: NDArray[np.float64], excluded: NDArray[np.bool_], largest: float) -> float:
+def _alternating(
+    graph: Graph, pressure: NDArray[np.float64], inside: NDArray[np.bool_], excluded: NDArray[np.bool_], largest: float
+) -> float:
     closed = pressure > CLOSED * largest
     used = graph.degree > 0
-    ripple = _edges(graph, pressure, _closed_inside(graph, pressure, largest) & ~excluded, largest)
+    ripple = _edges(graph, pressure, inside & ~excluded, largest)
     single = used & closed & ~graph.any_of(closed) & ~excluded
     hole = used & ~closed & graph.all_of(closed) & ~excluded
     alone = float(pressure[single].max(initial=0.0)) / largest

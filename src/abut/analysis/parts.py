@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields, replace
 
-from abut.solution import Check, ContactResult, Energy, Step
+from abut.solution import ContactResult, Energy, Step
+from abut.solution.contacts import worst
 
 
 def whole(parts: Sequence[Step]) -> Step:
@@ -21,7 +22,9 @@ def whole(parts: Sequence[Step]) -> Step:
 
 def _contact(parts: Sequence[ContactResult]) -> ContactResult:
     last, rubbed = parts[-1], [part.friction for part in parts if part.friction is not None]
-    checks = tuple(_worst(check, [other for part in parts for other in part.checks]) for check in last.checks)
+    checks = tuple(
+        worst([other for part in parts for other in part.checks if other.name == check.name]) for check in last.checks
+    )
     if not rubbed:
         return replace(last, checks=checks)
     friction = replace(
@@ -31,14 +34,6 @@ def _contact(parts: Sequence[ContactResult]) -> ContactResult:
         work_per_area=sum((result.work_per_area for result in rubbed[:-1]), rubbed[-1].work_per_area),
     )
     return replace(last, checks=checks, friction=friction)
-
-
-def _worst(check: Check, others: Sequence[Check]) -> Check:
-    if check.last:
-        return check
-    return max(
-        (other for other in others if other.name == check.name), key=lambda candidate: candidate.value / candidate.limit
-    )
 
 
 def _energy(parts: Sequence[Energy | None]) -> Energy | None:

@@ -199,9 +199,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     around = []
     for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
         constant, varying = offsets(model, pair.contact)
-        moved = np.zeros_like(end.nodal) if system.pushing is not None and not pair.tied else end.nodal
+        moving = system.pushing is not None and not pair.tied
+        moved = np.zeros_like(end.nodal) if moving else end.nodal
         overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
-        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere))
+        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere, moving))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(

@@ -198,8 +198,12 @@ class Run:
         self.clock.mark("writing")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
+        direct = linear_solver("direct", self.assembled.problem, self.team)
+        if isinstance(self.assembled.problem, FiniteProblem):
+            self.told.note(f"step {number}: {reason}: the direct solver takes this step")
+            return direct
         self.told.note(f"step {number}: {reason}: going on with the direct solver")
-        self.solver, self.kind = linear_solver("direct", self.assembled.problem, self.team), "direct"
+        self.solver, self.kind = direct, "direct"
         return self.solver
 
 

@@ -24,10 +24,7 @@ STICK = WIDTH * float(np.sqrt(1.0 - ALONG / (COEFFICIENT * DOWN)))  # half of wh
 HALF, DEPTH = 6.0, 8.0  # of the blocks cut from the half planes
 CATTANEO = "Cattaneo 1938, Mindlin 1949 (Johnson 1985, section 7.2)"
 CELLS = {"quad4": 8, "quad8": 10}  # over half of what sticks
-BEYOND = {
-    "quad4": 1.0125,
-    "quad8": 1.03,
-}  # times half of what sticks: there a node slips, near the peak of the traction
+BEYOND = {"quad4": 1.0125, "quad8": 1.03}  # times half of what sticks: there is a node near the peak, theory (R19)
 NEAR = 1.1  # of half the contact: as far as tractions are compared
 
 

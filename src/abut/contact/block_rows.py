@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -34,6 +36,16 @@ def added_up(down: Sparse, parts: CompressedRows, columns: int) -> CompressedRow
     whole = block_rows((value.reshape(-1, 1, r * c), column, start), columns)
     result = down @ whole
     return result.data.reshape(-1, r, c), result.indices, result.indptr
+
+
+def interleaved(parts: Sequence[CompressedRows]) -> CompressedRows:
+    """Rows of which each has blocks in one part at most."""
+    if len(parts) == 1:
+        return parts[0]
+    value, column = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    counts = [np.diff(part[2]) for part in parts]
+    order = np.argsort(np.concatenate([row_numbers(part[2]) for part in parts]), kind="stable")
+    return value[order], column[order], np.concatenate([[0], np.cumsum(np.sum(counts, axis=0))])
 
 
 def row_numbers(start: Array) -> Array:

@@ -12,6 +12,7 @@ from abut.contact.geometry import CREASE, by_kind, corner_functions, split_at_cr
 from abut.mesh.surface import Surface
 
 NO_TILT = 1e-9  # between the normals of the two sides: rounding
+POINTS = 3  # for each direction of a segment, so that the mean on curved facets is the same however segments are cut
 Array = NDArray[np.float64]
 
 
@@ -22,7 +23,9 @@ def common_normals(
     turned by ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by
     more than at a crease. outward, other: of contactor and target, as from ``nodal_normals``; reach: length, as for
     ``couple``."""
-    at = couple(contactor, target, 1, CouplingOptions(points=1, reach=reach, keep_points=True, normals=outward)).points
+    at = couple(
+        contactor, target, 1, CouplingOptions(points=POINTS, reach=reach, keep_points=True, normals=outward)
+    ).points
     if share == 0.0 or at is None or not len(at.weight):
         return outward
     tilt = _opposite(target, other, at) - at.normal

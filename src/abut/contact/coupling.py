@@ -246,7 +246,7 @@ def cutting_arguments(
 
 def _kin(contactor: Surface, target: Surface) -> Json:
     """What facets are to each other; nothing where not both sides say so."""
-    none = np.zeros((0, 9))
+    none = np.zeros((0, 10))
     mine, other = contactor.kin, target.kin
     both = mine is not None and other is not None
     return {

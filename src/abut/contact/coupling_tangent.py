@@ -7,8 +7,10 @@ numbers of integration points and subdivisions, creases.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import add
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 
 from abut._core import couple_tangent
 from abut.cells import MAX_FACET_NODES
-from abut.contact.block_rows import CompressedRows, block_rows, in_place
+from abut.contact.block_rows import CompressedRows, block_rows, in_place, interleaved
 from abut.contact.coupling import CouplingOptions, check_pair, cutting_arguments, point_columns
 from abut.contact.geometry import Smoothing
 from abut.contact.moving_normals import MovingNormals, normal_pattern
@@ -109,6 +111,23 @@ def differentiated(
     only: NDArray[np.bool_] | None = None,
 ) -> CouplingTangent:
     """The same, unchecked, with the contactor's normals as they are now."""
+    raw = of_facets(contactor, target, degree, options, load, normals, only)
+    return assembled([raw], normals.turning(point_columns(contactor, target)[1]))
+
+
+Differentiate = Callable[[Surface, Surface, int, CouplingOptions, ContactLoad, MovingNormals], CouplingTangent]
+
+
+def of_facets(
+    contactor: Surface,
+    target: Surface,
+    degree: int,
+    options: CouplingOptions,
+    load: ContactLoad,
+    normals: MovingNormals,
+    only: NDArray[np.bool_] | None = None,
+) -> Json:
+    """What some facets of the contactor, or all, have in it, for ``assembled``: nearly all of the work."""
     facets = np.arange(len(contactor)) if only is None else np.flatnonzero(only)
     offset, n_points = point_columns(contactor, target)
     raw = couple_tangent(
@@ -122,15 +141,26 @@ def differentiated(
         n_points=n_points,
         tangential=load.traction is not None,
     )
-    raw = raw if len(facets) == len(contactor) else _among_all(raw, facets, len(contactor))
-    turning = normals.turning(n_points)
-    force = np.zeros((n_points, contactor.dim))
-    np.add.at(force, raw["loaded"], raw["load"])
-    by_normals = block_rows(raw["force_by_normals"], turning.shape[0] // contactor.dim)
+    return raw if len(facets) == len(contactor) else _among_all(raw, facets, len(contactor))
+
+
+def assembled(parts: Sequence[Json], turning: Sparse) -> CouplingTangent:
+    """The whole from what disjoint facets have in it. turning: as in ``CouplingTangent``."""
+    dim = parts[0]["load"].shape[1]
+    points, normals = turning.shape[1] // dim, turning.shape[0] // dim
+    force = np.zeros((points, dim))
+    for part in parts:
+        np.add.at(force, part["loaded"], part["load"])
+    by_points, by_normals = (
+        reduce(add, [block_rows(part[name], columns) for part in parts])
+        for name, columns in (("force_by_points", points), ("force_by_normals", normals))
+    )
+    operators, of_points, of_normals = (
+        interleaved([part[name] for part in parts]) for name in ("operators", "moment_by_points", "moment_by_normals")
+    )
     return CouplingTangent(
-        raw["gap"], raw["weight"], raw["operators"], force.ravel(),
-        (block_rows(raw["force_by_points"], n_points) + by_normals @ turning).tocsr(),
-        raw["moment_by_points"], raw["moment_by_normals"], turning,
+        sum(part["gap"] for part in parts), sum(part["weight"] for part in parts), operators, force.ravel(),
+        (by_points + by_normals @ turning).tocsr(), of_points, of_normals, turning,
     )  # fmt: skip
 
 

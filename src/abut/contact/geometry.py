@@ -303,6 +303,19 @@ def full_moments(surface: Surface, degree: int) -> NDArray[np.float64]:
     return moments
 
 
+def facet_products(surface: Surface, degree: int) -> NDArray[np.float64]:
+    """int H_k H_l over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
+    result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))
+    for kind, facets in by_kind(surface):
+        cell = CELLS[pressure_kind(kind, degree)]
+        xi, weights = gauss_rule(kind, 6)
+        _, _, area = facet_measure(surface, kind, facets, xi)
+        values, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+        block = np.einsum("fq,qk,ql->fkl", area * weights, values, values, optimize=True)
+        result[facets[:, None, None], np.arange(cell.nodes)[:, None], np.arange(cell.nodes)] = block
+    return result
+
+
 def facet_stiffness(surface: Surface, degree: int) -> NDArray[np.float64]:
     """int grad H_k . grad H_l along the surface over the whole of each facet, (n_facets, 9, 9), for degree 1 or 2."""
     result = np.zeros((len(surface), MAX_FACET_NODES, MAX_FACET_NODES))

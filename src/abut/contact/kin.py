@@ -21,15 +21,24 @@ ASLANT = np.array([1.0, 0.764, 0.583])  # to the axes, so that hardly any two fa
 OPEN = 0.05  # share of what is aslant in the direction of ranks
 BENEATH = 2.0  # facets below its middle that a facet is ranked: those opposite each other are that much further apart
 APART = 1e3  # in extents: ranks of different bodies do not mix
-BODY, RANK, MIDDLE, NORMAL, REACH = 0, 1, slice(2, 5), slice(5, 8), 8  # columns of ``Surface.kin``
+BODY, RANK, MIDDLE, NORMAL, REACH, THICKNESS, WIDTH = (
+    0,
+    1,
+    slice(2, 5),
+    slice(5, 8),
+    8,
+    9,
+    10,
+)  # columns of ``Surface.kin``
 
 
-def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, Surface]:
-    """Both surfaces with what ``Surface.kin`` says, where they have a body in common; else as they are."""
+def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -> tuple[Surface, Surface]:
+    """Both surfaces with what ``Surface.kin`` says, where they have a body in common or go ``all_round`` one; else as they
+    are."""
     both = contactor.cells, target.cells
     bodies = _bodies(mesh)
     relatives, other = (bodies[cells] for cells in both)
-    if not np.isin(relatives, other).any():
+    if not all_round and not np.isin(relatives, other).any():
         return contactor, target
     codes = [8 * side.cells + side.local for side in (contactor, target)]
     _, first, number = np.unique(np.concatenate(codes), return_index=True, return_inverse=True)
@@ -50,12 +59,12 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface) -> tuple[Surface, 
 
 
 def _kin(surface: Surface, body: NDArray[np.int64]) -> Array:
-    """(n_facets, 9) of an undeformed surface."""
+    """(n_facets, WIDTH) of an undeformed surface."""
     dim = surface.dim
     used = surface.nodes >= 0
     middle = np.where(used[:, :, None], surface.points[surface.nodes], 0.0).sum(axis=1) / used.sum(axis=1)[:, None]
     extent = float(np.ptp(surface.points[surface.node_ids], axis=0).max())
-    result = np.zeros((len(surface), 9))
+    result = np.zeros((len(surface), WIDTH))
     result[:, BODY] = body
     normal, size = mean_normals(surface), facet_sizes(surface)
     sights = _sights(surface, body, extent)
@@ -64,7 +73,8 @@ def _kin(surface: Surface, body: NDArray[np.int64]) -> Array:
     result[:, RANK] = APART * np.unique(body, return_inverse=True)[1].ravel() + ranked
     result[:, MIDDLE][:, :dim] = middle
     result[:, NORMAL][:, :dim] = normal
-    result[:, REACH] = DEPTH * _thickness(len(surface), sights) + 2.0 * size
+    result[:, THICKNESS] = _thickness(len(surface), sights)
+    result[:, REACH] = DEPTH * result[:, THICKNESS] + 2.0 * size
     return result
 
 
@@ -83,9 +93,7 @@ def _sights(surface: Surface, body: NDArray[np.int64], extent: float) -> _Sights
     at = couple(surface, surface, 0, options).points
     assert at is not None
     own = body[at.facet] == body[at.target_facet]
-    return _Sights(
-        at.facet[own].astype(np.int64), at.target_facet[own].astype(np.int64), at.gap[own], at.weight[own]
-    )
+    return _Sights(at.facet[own].astype(np.int64), at.target_facet[own].astype(np.int64), at.gap[own], at.weight[own])
 
 
 def _thickness(n_facets: int, sights: _Sights) -> Array:

@@ -74,8 +74,10 @@ def bodies_of(mesh: Mesh, side: Names) -> set[str]:
 
 def moving_sides(mesh: Mesh, contactor: Names, target: Names) -> Sides:
     """The surfaces of both sides of bodies that may move anywhere and fold: a body stands for its whole outside."""
-    rows, other = (_rows(mesh, side, _outside_asked(mesh, side))[0] for side in (contactor, target))
-    return with_kin(mesh, mesh.facets(rows, label(contactor)), mesh.facets(other, label(target)))
+    outside = [_outside_asked(mesh, side) for side in (contactor, target)]
+    rows, other = (_rows(mesh, side, of_body)[0] for side, of_body in zip((contactor, target), outside))
+    all_round = any(of_body is not None for of_body in outside)
+    return with_kin(mesh, mesh.facets(rows, label(contactor)), mesh.facets(other, label(target)), all_round)
 
 
 def find_sides(mesh: Mesh, contactor: Names, target: Names, moved: float = 0.0) -> Sides:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
 
@@ -17,7 +17,7 @@ from abut.materials.elastic import LinearElastic
 from abut.model import LAWS, METHODS, SolveOptions
 from abut.problem.constraints import supports
 from abut.problem.restraint import restraint
-from abut.solution import FrictionResult, Solution, Step
+from abut.solution import ContactResult, Solution, Step
 
 COUNT = 3
 STATUSES = ("open", "sticking", "slipping")
@@ -135,7 +135,7 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
     """Of all contacts at once: what one of them does moves the others."""
     smooth = [contact for contact in solution.model.contacts if contact.law == LAWS[1] and contact.kind != "tied"]
     if smooth:
-        names = ", ".join(f"'{contact.name}'" for contact in smooth)
+        names = _listed([contact.name for contact in smooth])
         yield Remedy(
             f'contact{"s" if len(smooth) > 1 else ""} {names}: law = "complementarity"',
             f"the constraint function with epsilon = {smooth[0].epsilon:g} is too sharp for Newton's method here; the "
@@ -145,28 +145,37 @@ def _by_law(solution: Solution) -> Iterator[Remedy]:
 
 def _by_sliding(solution: Solution) -> Iterator[Remedy]:
     """Of bodies that supports leave free and loads push along, where friction gave all that it can in the last state that
-    converged."""
+    converged, or where none did."""
     model, steps = solution.model, [step for step in solution.steps if step.converged]
-    spent = [c for c in steps[-1].contacts if c.friction is not None and _spent(c.friction)] if steps else []
-    if not (spent and model.loads):
+    rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None]
+    if not (rubbing and model.loads):
         return
     free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)
     loose = free.reshape(-1, model.dim).max(axis=1) > LOOSE
-    some = [
-        f"contact '{c.name}' carries {rub.force_by_area:.4g} of at most {rub.force_limit:.4g}"
-        for c in spent
-        if (rub := c.friction) is not None and (loose[c.contactor.node_ids].any() or loose[c.target.node_ids].any())
-    ]
-    if some:
+    names = [c.name for c in rubbing if loose[c.contactor.node_ids].any() or loose[c.target.node_ids].any()]
+    action = "a support, a prescribed displacement in place of the load, or more friction or pressure"
+    if names and not steps:
+        yield Remedy(action, f"loads may push along what friction alone holds, in contact {_listed(names)}")
+    elif spent := [c for c in steps[-1].contacts if c.name in names and _spent(c)] if steps else []:
+        some = [
+            f"contact '{c.name}' carries {rub.force_by_area:.4g} of at most {rub.force_limit:.4g}"
+            for c in spent
+            if (rub := c.friction)
+        ]
         yield Remedy(
-            "a support, a prescribed displacement in place of the load, or more friction or pressure",
+            action,
             f"friction reaches its limit, and what it alone holds slides: {', '.join(some)}, at time "
             f"{steps[-1].factor:.4g}",
         )
 
 
-def _spent(friction: FrictionResult) -> bool:
-    return friction.force_by_area >= SPENT * friction.force_limit > 0.0
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def _spent(contact: ContactResult) -> bool:
+    rub = contact.friction
+    return rub is not None and rub.force_by_area >= SPENT * rub.force_limit > 0.0
 
 
 def _by_deformation(solution: Solution) -> Iterator[Remedy]:
@@ -174,7 +183,7 @@ def _by_deformation(solution: Solution) -> Iterator[Remedy]:
     model, step = solution.model, solution.steps[-1]
     if not model.finite:
         return
-    for solid in model.solids:
+    for solid in sorted(model.solids, key=lambda solid: f"'{solid.body}'" not in step.reason):
         at = model.mesh.nodes_of(solid.body)
         if (
             isinstance(solid.material, LinearElastic)

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import chosen
-from abut.linear.cost_model import LARGE, LARGE_ON_MANY, MEMORY, effort, seconds
+from abut.linear.cost_model import LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds
 from abut.linear.direct import available_memory
 from abut.model import Model
 from abut.problem.constraints import Constraints
@@ -33,8 +33,9 @@ def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Fo
     """What a run will need: seconds mostly within a factor of two, memory of two or three."""
     n = int(constraints.free.shape[1])
     petsc = model.solve.linear == "petsc"
-    sizes = LARGE_ON_MANY if petsc else LARGE
-    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, constraints.coupled, sizes)
+    sizes = LARGE_ON_MANY if petsc else LARGE_FINITE if model.finite else LARGE
+    coupled = petsc and constraints.coupled
+    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, coupled, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]
     return Foreseen(solver, seconds(effort(model, n, pairs), solver), memory.megabytes(n))

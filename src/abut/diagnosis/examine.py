@@ -21,6 +21,7 @@ from abut.mesh.exterior import exterior
 from abut.model import Contact, Model
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pair
+from abut.problem.whole_pairs import whole_pair
 
 
 def check(model: Model) -> Report:
@@ -56,6 +57,14 @@ def _why(model: Model, contact: Contact, supported: Constraints, error: AbutErro
     return from_error(error, f"contact '{contact.name}'")
 
 
+def _facing(model: Model, one: Pair) -> list[Finding]:
+    """Of sides that do not face each other at the outset, which finite kinematics allows: units that do not match."""
+    if one.coupling.covered.any():
+        return []
+    finding = not_facing(model, one.contact, InputError(""))
+    return [finding] if MIXED in finding.what else []
+
+
 def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Finding]]:
     """The contact pairs that can be built, and findings on all of them."""
     built: list[Pair] = []
@@ -63,10 +72,14 @@ def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Findi
     outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
     for contact in model.contacts:
         try:
-            one = pair(model, contact, supported)
+            sliding = model.finite and contact.kind != "tied"
+            one = whole_pair(model, contact, supported) if sliding else pair(model, contact, supported)
         except AbutError as error:
             findings.append(_why(model, contact, supported, error))
             continue
         built.append(one)
-        findings += [*interface(model, one, outside), *sides(model, contact), *constraints(model, one, supported)]
+        if contact.contactor != contact.target:  # a body that may come to touch itself
+            findings += _facing(model, one) or [*interface(model, one, outside), *sides(model, contact)]
+        if one.coupling.covered.any():
+            findings += constraints(model, one, supported)
     return built, findings

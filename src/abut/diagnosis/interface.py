@@ -182,6 +182,16 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
                 _more(pair.contact),
             )
         ]
+    if share == 0.0:
+        return [
+            Finding(
+                "advice",
+                where,
+                f"no facet of {words(pair.contact.contactor)} faces {words(pair.contact.target)} at the outset: they touch "
+                "only once they have moved there",
+                "if that is not meant, check the names, the distance, and that both normals point out of their bodies",
+            )
+        ]
     if share < LITTLE:
         return [
             Finding(

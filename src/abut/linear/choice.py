@@ -11,8 +11,9 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.linear.cost_model import LARGE
+from abut.linear.cost_model import LARGE, LARGE_FINITE
 from abut.linear.direct import solver_name
+from abut.linear.multigrid import wide
 from abut.linear.repeated import Repeated
 from abut.linear.saddle_point import SaddlePoint
 from abut.linear.schur_preconditioner import foresight, half_spaces, interfaces
@@ -23,27 +24,23 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem, Problem
 
+MANY = 200  # displacements that move many points each, from which on multigrid no longer pays
+
 
 def choose(linear: str, problem: ContactProblem) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. Raises InputError
     where "amg" cannot serve the problem."""
-    if problem.model.finite:
-        if linear == "amg":
-            raise InputError('solve.linear: "amg" is for kinematics "small"; choose "direct" or "auto"')
-        return "direct"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, problem.constraints.coupled)
+    sizes = LARGE_FINITE if problem.model.finite else LARGE
+    constraints, mesh = problem.constraints, problem.model.mesh
+    many = constraints.coupled and int(wide(constraints.free, mesh.dim).sum()) > MANY
+    return chosen(linear, problem.n_free, problem.pairs, mesh, many, sizes)
 
 
 def chosen(
     linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool, sizes: Mapping[int, int] = LARGE
 ) -> str:
-    """The same from the number of free displacements and the contact pairs; coupled: free displacements belong to several
-    points at once; sizes: from where on multigrid wins."""
-    if linear == "amg" and coupled:
-        raise InputError(
-            'solve.linear: "amg" takes the unknowns point by point, but equations or components left free of a rigid body '
-            'couple points; choose "direct" or "auto"'
-        )
+    """The same from the number of free displacements and the contact pairs; coupled: too many free displacements belong to
+    several points at once; sizes: from where on multigrid wins."""
     smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
     if linear == "amg" and smooth:
         raise InputError(

@@ -43,6 +43,7 @@ FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins 
 KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
 START = 0.005
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
+LARGE_FINITE = {1: 5_000, 2: 10_000}  # the same with kinematics "finite": unsymmetric factors in every iteration
 LARGE_ON_MANY = {1: 5_000, 2: 5_000}  # the same on several processes: MUMPS factorises at every iteration
 
 

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, soft_inverse
+from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, selection, soft_inverse
 from abut.linear.sliding_rows import Reduced, reduced
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Rows
@@ -44,17 +44,24 @@ class Conditions:
         return np.asarray(self.fixed + self.push.T @ x)
 
 
-def conditions(law: Rows, operator: Sparse, pressures: PressureBlock, pairs: Sequence[Pair]) -> Conditions:
-    """Of the rows that are not decoupled. operator: (n, n_free) B."""
+def conditions(
+    law: Rows, operator: Sparse, pressures: PressureBlock, pairs: Sequence[Pair], columns: Sparse | None = None
+) -> Conditions:
+    """Of the rows that are not decoupled. operator: (n, n_free) B; columns: (n, n_free) transposed the forces, B where left
+    out."""
     if not law.symmetric:
         few = reduced(law, pairs)
-        return _general(law, operator, pressures) if few is None else _sliding(few, operator, pressures)
+        return (
+            _general(law, operator, pressures)
+            if few is None
+            else _sliding(few, operator, operator if columns is None else columns, pressures)
+        )
     coupled = ~law.decoupled
-    corner, forces, push = sp.csr_matrix(law.by_pressure)[coupled][:, coupled], operator[coupled], _selection(coupled)
+    corner, forces, push = sp.csr_matrix(law.by_pressure)[coupled][:, coupled], operator[coupled], selection(coupled)
     soft = -corner.diagonal()
     if not soft.any():
         sizes = np.full(len(soft), pressures.scale)
-        inverse = schur_inverse(pressures.parts, coupled)
+        inverse = schur_inverse(pressures.parts, push)
     else:
         diagonal = pressures.diagonal
         sizes = np.sqrt(pressures.unit / (diagonal[coupled] + soft))  # residuals are measured in the root of energy
@@ -62,33 +69,40 @@ def conditions(law: Rows, operator: Sparse, pressures: PressureBlock, pairs: Seq
     return Conditions(-forces, forces, corner, law.residual[coupled], sizes, sizes, inverse, push, law.fixed)
 
 
-def _selection(chosen: NDArray[np.bool_]) -> Sparse:
-    return sp.identity(len(chosen), format="csr")[chosen]
-
-
-def _sliding(few: Reduced, operator: Sparse, pressures: PressureBlock) -> Conditions:
+def _sliding(few: Reduced, operator: Sparse, columns: Sparse, pressures: PressureBlock) -> Conditions:
     """Rows with slip eliminated."""
-    diagonal, soft = few.pull.multiply(few.pull) @ pressures.diagonal, np.abs(few.corner.diagonal())
+    pull = few.pull if pressures.covered is None else few.pull @ sp.diags(pressures.covered)
+    diagonal, soft = pull.multiply(pull) @ pressures.diagonal, np.abs(few.corner.diagonal())
     sizes = np.where(soft > 0.0, np.sqrt(pressures.unit / (diagonal + soft)), pressures.scale)
     return Conditions(
-        -(few.pull @ operator).tocsr(), (few.push @ operator).tocsr(), few.corner, few.residual, sizes, sizes,
-        _parted_inverse(few, diagonal, pressures), few.push, few.fixed, few.symmetric,
+        -(few.pull @ operator).tocsr(), (few.push @ columns).tocsr(), few.corner, few.residual, sizes, sizes,
+        _parted_inverse(few, pull.tocsr(), diagonal, pressures), few.push, few.fixed,
+        few.symmetric and operator is columns,
     )  # fmt: skip
 
 
-def _parted_inverse(few: Reduced, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
-    """That of pull S push^T - corner, theory (V24): what is closed or sticks component by component, springs across the slip
-    by themselves; where laws are soft, all by Krylov iterations to ``ACCURACY``. diagonal: (m,) of pull S push^T."""
-    m = int(few.single.sum())
+def _parted_inverse(few: Reduced, pull: Sparse, diagonal: NDArray[np.float64], pressures: PressureBlock) -> Apply:
+    """That of pull S push^T - corner, theory (V24): what is closed, sticks, or has springs softer than S (pressures and
+    tractions apart), other springs by themselves; where laws are soft, all by Krylov iterations to ``ACCURACY``. pull: that
+    of ``few`` in multipliers of S; diagonal: (m,) of pull S push^T."""
+    m, soft = int(few.single.sum()), -few.corner.diagonal()
     if few.corner[:m].data.any():
 
         def multiply(q: NDArray[np.float64]) -> NDArray[np.float64]:
             return np.asarray(few.pull @ pressures.forward(few.push.T @ q) - few.corner @ q)
 
         return _roughly(multiply, spla.splu((sp.diags(diagonal) - few.corner).tocsc()).solve, len(diagonal))
-    by_gap = schur_inverse(pressures.parts, few.single)
-    springs = diagonal[m:] - few.corner.diagonal()[m:]
-    return lambda r: np.concatenate([by_gap(r[:m]), r[m:] / springs])
+    together = soft <= diagonal
+    share = np.sqrt(np.where(together, 1.0 + soft / diagonal, 0.0))  # so that the diagonal is that of the sum
+    by_gap = schur_inverse(pressures.parts, _without_zeros(sp.diags(share) @ pull))
+    alone = np.where(together, 0.0, 1.0 / (diagonal + soft))
+    return lambda r: by_gap(r) + alone * r
+
+
+def _without_zeros(matrix: Sparse) -> Sparse:
+    matrix = matrix.tocsr()
+    matrix.eliminate_zeros()
+    return matrix
 
 
 def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Conditions:
@@ -106,7 +120,7 @@ def _general(law: Rows, operator: Sparse, pressures: PressureBlock) -> Condition
     columns = np.sqrt(pressures.unit / (diagonal + np.abs(corner.diagonal()) / looks))
     return Conditions(
         lower, operator, corner, residual, columns, columns / looks, _mixed_inverse(share, corner, coupled, pressures),
-        _selection(coupled), fixed, False,
+        selection(coupled), fixed, False,
     )  # fmt: skip
 
 
@@ -119,7 +133,7 @@ def _mixed_inverse(
     closed = np.abs(share) * pressures.diagonal[coupled] > np.abs(corner.diagonal())
     shut = np.zeros(len(coupled), dtype=bool)
     shut[places[closed]] = True
-    by_gap = schur_inverse(pressures.parts, shut)
+    by_gap = schur_inverse(pressures.parts, selection(shut))
     beside = corner[closed][:, ~closed]
     by_pressure = spla.splu(corner[~closed][:, ~closed].tocsc()).solve if (~closed).any() else None
 

@@ -3,26 +3,31 @@ an approximate Schur complement for the pressures, which alone changes with the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.geometry import facet_products, full_moments
 from abut.errors import SingularModelError
+from abut.linear.bodies_now import bodies_now
 from abut.linear.interface_conditions import Conditions, conditions
 from abut.linear.krylov import fgmres
+from abut.linear.loose_motions import Loose, loose
 from abut.linear.multigrid import Hierarchy, hierarchy
 from abut.linear.schur_preconditioner import Apply, Predict, PressureBlock, foresight, pressure_block
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
 from abut.linear.static_condensation import UNBALANCED, UNBALANCED_LOADS
+from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
-from abut.problem.problem import Problem
-from abut.types import Sparse
+from abut.problem.problem import ContactProblem, Problem
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
 LOOSE = 1e-9  # resistance of contact to a motion, over the largest, below which it is none: the motion rests
 FAILED = "multigrid does not converge on this model"
+COVERED = 0.01  # least share of a function that counts as covered
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,7 @@ class Iterative:
 
     system: Linearised
     hierarchy: Hierarchy
+    loose: Loose
     pressures: PressureBlock
     predict: Predict
     count: Count
@@ -39,9 +45,11 @@ class Iterative:
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``, preconditioned by theory (V11)."""
-        interface = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
+        system = self.system
+        interface = conditions(rows, system.operator, self.pressures, system.pairs, system.columns)
         operator, n = interface.forces, len(residual)
-        coarse = self._rigid(interface, residual - self.system.operator.T @ interface.fixed)
+        force = residual - system.columns.T @ interface.fixed
+        coarse = self._rigid(interface, force)
 
         def multiply(x: NDArray[np.float64]) -> NDArray[np.float64]:
             u, p = x[:n], interface.columns * x[n:]
@@ -57,9 +65,7 @@ class Iterative:
             r = x[:n] + operator.T @ p
             return np.concatenate([self.hierarchy.cycle(r) + coarse(r), p / interface.columns])
 
-        rhs = np.concatenate(
-            [-residual + self.system.operator.T @ interface.fixed, -interface.rows * interface.residual]
-        )
+        rhs = np.concatenate([-force, -interface.rows * interface.residual])
         solution, iterations, done = fgmres(multiply, precondition, rhs, accuracy, RESTART, CYCLES)
         self.count.iterations += iterations
         if not done or not np.isfinite(solution).all():
@@ -77,8 +83,8 @@ class Iterative:
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As in ``Prepared``, to ``RESPONSE`` or as near as it gets."""
-        motions = self.system.motions
-        small = np.linalg.pinv(motions.T @ (springs[:, None] * motions))
+        motions = self.loose.motions
+        small = np.linalg.pinv(self.loose.stiffness + motions.T @ (springs[:, None] * motions))
         answer, iterations, _ = fgmres(
             lambda u: self.hierarchy.product(u) + springs * u,
             lambda r: self.hierarchy.cycle(r) + motions @ (small @ (motions.T @ r)),
@@ -88,13 +94,16 @@ class Iterative:
         return answer
 
     def _rigid(self, interface: Conditions, force: Vector) -> Apply:
-        """What multigrid misses: rigid motions of bodies that only contact holds. Raises SingularModelError where nothing
-        does, and ``force`` (n_free,) moves them."""
-        motions = self.system.motions
+        """What multigrid misses: rigid motions of bodies that only contact holds, and displacements of many points. Raises
+        SingularModelError where nothing holds a body that ``force`` (n_free,) moves; at large displacements iterations fail
+        there."""
+        motions = self.loose.motions
         if not motions.shape[1]:
             return lambda r: np.zeros_like(r)
-        small = compliance(interface.forces @ motions, interface.inverse, -np.asarray(interface.lower @ motions))
-        require_held(motions, small, force, float(np.abs(self.system.forces).sum()))
+        seen = -np.asarray(interface.lower @ motions)
+        small = compliance(interface.forces @ motions, interface.inverse, seen, self.loose.stiffness)
+        if self.system.about is None:
+            require_held(motions, small, force, float(np.abs(self.system.forces).sum()))
         return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
 
 
@@ -108,22 +117,23 @@ def require_held(motions: NDArray[np.float64], small: NDArray[np.float64], force
 
 
 def compliance(
-    moved: NDArray[np.float64], inverse: Apply, seen: NDArray[np.float64] | None = None
+    moved: NDArray[np.float64],
+    inverse: Apply,
+    seen: NDArray[np.float64] | None = None,
+    stiffness: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.float64]:
-    """How far rigid motions yield (m, m) that only contact resists. moved: (n, m) weighted gaps by unit motions; inverse: of
-    the pressures' preconditioner; seen: (n, m) what the rows give for unit motions, the gaps where left out."""
+    """How far motions yield (m, m) that contact resists. moved: (n, m) weighted gaps by unit motions; inverse: of the
+    pressures' preconditioner; seen: (n, m) what the rows give for unit motions, the gaps where left out; stiffness: (m, m)
+    what bodies resist, none to rigid motions."""
     answers = np.column_stack([inverse(column) for column in (moved if seen is None else seen).T])
-    return np.asarray(np.linalg.pinv(moved.T @ answers, rcond=LOOSE))
+    return np.asarray(np.linalg.pinv(moved.T @ answers + stiffness, rcond=LOOSE))
 
 
 @dataclass(frozen=True)
 class Multigrid:
-    """As ``abut.linear.solver.LinearSolver``. free: (dim n_points, n_free) change of variables; near_null: (dim n_points, m)
-    motions that strain bodies least; points: (n_points, dim)."""
+    """As ``abut.linear.solver.LinearSolver``, for a problem."""
 
-    free: Sparse
-    near_null: NDArray[np.float64]
-    points: NDArray[np.float64]
+    problem: ContactProblem
     count: Count
     name: str = "multigrid (PyAMG)"
 
@@ -132,17 +142,70 @@ class Multigrid:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too."""
-        if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness:
-            if previous.system.operator is system.operator:
-                return replace(previous, system=system)
-            levels = previous.hierarchy
+        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at
+        large displacements both stay for a load step."""
+        if system.about is not None:
+            return self._at_state(system, previous)
+        known = previous if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness else None
+        if known is not None and known.system.operator is system.operator:
+            return replace(known, system=system)
+        if known is None:
+            bodies = bodies_now(self.problem, system)
+            levels = hierarchy(system.stiffness, bodies.free, bodies.near_null, bodies.points)
+            beside = loose(system, bodies, levels, self.count)
         else:
-            levels = hierarchy(system.stiffness, self.free, self.near_null, self.points)
+            levels, beside = known.hierarchy, known.loose
+        return self._with_pressures(system, levels, beside)
+
+    def _at_state(self, system: Linearised, previous: Prepared | None) -> Iterative:
+        """At large displacements. Multigrid is for the bodies' own stiffness, its symmetric part: contact terms tie bodies
+        together that are to be aggregated apart."""
+
+        def product(values: Vector) -> Vector:
+            return np.asarray(system.stiffness @ values)
+
+        covered = covered_shares(system.pairs)
+        if isinstance(previous, Iterative) and previous.system.time == system.time:
+            levels, pressures = (
+                replace(previous.hierarchy, product=product),
+                replace(previous.pressures, covered=covered),
+            )
+            return replace(previous, system=system, hierarchy=levels, pressures=pressures)
+        bodies = bodies_now(self.problem, system)
+        elastic = system.stiffness if system.bending is None else system.stiffness + system.bending
+        levels = hierarchy((0.5 * (elastic + elastic.T)).tocsr(), bodies.free, bodies.near_null, bodies.points)
+        beside = loose(system, bodies, levels, self.count)
+        made = self._with_pressures(
+            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]), replace(levels, product=product), beside
+        )
+        return replace(made, system=system, pressures=replace(made.pressures, covered=covered))
+
+    def _with_pressures(self, system: Linearised, levels: Hierarchy, beside: Loose) -> Iterative:
         pressures = pressure_block(system.pairs, system.operator, system.stiffness.diagonal())
         predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
-        return Iterative(system, levels, pressures, predict, self.count)
+        return Iterative(system, levels, beside, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""
         return prepared.hierarchy.summary if isinstance(prepared, Iterative) else self.name
+
+
+def wholly_covered(pair: Pair) -> Pair:
+    """With products of functions over the whole contactor, whatever is opposite."""
+    if pair.tied:
+        return pair
+    mass = facet_products(pair.contactor, pair.coupling.degree)
+    return replace(pair, coupling=replace(pair.coupling, mass=mass))
+
+
+def covered_shares(pairs: Sequence[Pair]) -> Vector:
+    """(n,) share of every multiplier's function that is opposite the target, of all pairs."""
+    return np.concatenate([np.zeros(0), *map(_covered, pairs)])
+
+
+def _covered(pair: Pair) -> Vector:
+    """(n,) share of every multiplier's function that is opposite the target."""
+    if pair.tied:
+        return np.ones(len(pair))
+    whole = pair.space.transfer.T @ full_moments(pair.contactor, pair.coupling.degree).ravel()
+    return pair.of_functions(np.maximum(pair.space.weight / whole, COVERED))

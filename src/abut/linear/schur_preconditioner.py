@@ -9,7 +9,7 @@ solutions on the interface only.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.contact.geometry import facet_stiffness
+from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
 from abut.problem.contact_pairs import Pair
 from abut.types import Sparse
@@ -35,9 +36,9 @@ Apply = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Interface:
-    """One pair (or one component of a tied one): its rows in the system, L + M / l^2 and M of ordinary functions, what these
-    integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of ordinary functions M itself), kappa,
-    1 / l^2."""
+    """One pair's pressures, or its tractions (of a tied one those along one axis): their rows in the system, L + M / l^2 and
+    M of ordinary functions, what these integrate to against its own, C = int psi_k N_l (of a dual space diagonal, of
+    ordinary functions M itself), kappa, 1 / l^2."""
 
     rows: NDArray[np.int64]
     full: Sparse
@@ -51,16 +52,19 @@ def interfaces(pairs: Sequence[Pair]) -> list[Interface]:
     """Everything about the interfaces that stays the same over all active sets."""
     result, first = [], 0
     for pair in pairs:
-        for component, space in enumerate(pair.components):
+        spaces, start = (pair.space,) if pair.frictional else pair.components, first
+        for space in spaces:
             if len(space):
-                result.append(_interface(pair, component, first + np.arange(len(space))))
-            first += len(space)
+                result.append(_interface(pair, space, start + np.arange(len(space))))
+            start += len(space)
+        first += len(pair)
+        if first > start:
+            result.append(_tangential(pair, result[-1], start + np.arange(first - start)))
     return result
 
 
-def _interface(pair: Pair, component: int, rows: NDArray[np.int64]) -> Interface:
+def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Interface:
     """Of one component of the pair's multipliers."""
-    space = pair.components[component]
     extent = float(np.ptp(pair.contactor.points[pair.contactor.node_ids], axis=0).max())
     lowest = (2.0 / extent) ** 2
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
@@ -73,18 +77,40 @@ def _interface(pair: Pair, component: int, rows: NDArray[np.int64]) -> Interface
     coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
     laplacian = (plain.T @ slopes @ plain).tocsr()
-    compliance = (ALONG if component and pair.frictional else 1.0) * pair.compliance
-    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, compliance, lowest)
+    return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest)
 
 
-def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Apply:
-    """The inverse of S on the active rows, (n_active,) -> (n_active,)."""
-    position = np.cumsum(active) - 1
+def _tangential(pair: Pair, normal: Interface, rows: NDArray[np.int64]) -> Interface:
+    """Of tractions, as vectors: tangents of neighbouring functions may point anywhere on the surface. normal: of the pair's
+    pressures."""
+    assert pair.slip is not None
+    there = pair.index[:, 1:] >= 0
+    column = pair.index[:, 1:][there] - len(pair.space)
+    shape = len(pair.space), len(rows)
+    axes = [
+        sp.csr_matrix((along[there], (np.nonzero(there)[0], column)), shape=shape)
+        for along in np.moveaxis(pair.slip.tangents, 2, 0)
+    ]
+
+    def vectors(matrix: Sparse) -> Sparse:
+        return sum(axis.T @ matrix @ axis for axis in axes).tocsr()
+
+    mass = vectors(normal.mass)
+    coupled = mass if normal.coupled is normal.mass else vectors(normal.coupled)
+    return replace(
+        normal, rows=rows, full=vectors(normal.full), mass=mass, coupled=coupled, compliance=ALONG * normal.compliance
+    )
+
+
+def schur_inverse(parts: Sequence[Interface], rows: Sparse) -> Apply:
+    """The inverse of R S R^T, (m,) -> (m,). rows R: (m, n) sparse, each row in multipliers of one part alone; those without
+    entries are left at zero."""
     blocks = []
     for part in parts:
-        here = np.flatnonzero(active[part.rows])
+        mine = rows[:, part.rows]
+        here = np.flatnonzero(np.diff(mine.indptr))
         if len(here):
-            blocks.append((position[part.rows[here]], _inverse(part, here)))
+            blocks.append((here, _inverse(part, mine[here])))
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:
         pressure = np.zeros_like(gap)
@@ -93,6 +119,11 @@ def schur_inverse(parts: Sequence[Interface], active: NDArray[np.bool_]) -> Appl
         return pressure
 
     return apply
+
+
+def selection(chosen: NDArray[np.bool_]) -> Sparse:
+    """(n_chosen, n): picks what is chosen of n."""
+    return sp.identity(len(chosen), format="csr")[chosen]
 
 
 @dataclass(frozen=True)
@@ -173,12 +204,14 @@ def soft_inverse(forward: Apply, diagonal: NDArray[np.float64], softness: NDArra
 @dataclass(frozen=True)
 class PressureBlock:
     """What preconditions pressures. diagonal: of S on all rows; scale: of pressures, theory (V2); unit: size of the
-    stiffness' entries."""
+    stiffness' entries; covered: (n,) share of each function that is opposite the target now, None where the interfaces
+    are covered parts themselves."""
 
     parts: Sequence[Interface]
     diagonal: NDArray[np.float64]
     scale: float
     unit: float
+    covered: NDArray[np.float64] | None = None
 
     @cached_property  # not before it is needed: what is closed all over has no next active set
     def half_spaces(self) -> HalfSpaces:
@@ -310,11 +343,14 @@ def _largest(full: Sparse, mass: Sparse, lowest: float) -> float:
     return 10.0 * max(float((np.asarray(abs(full).sum(axis=1)).ravel() / rows).max()), lowest)
 
 
-def _inverse(part: Interface, rows: NDArray[np.int64]) -> Apply:
-    full, mass = part.full[rows][:, rows], part.mass[rows][:, rows]
+def _inverse(part: Interface, rows: Sparse) -> Apply:
+    def seen(matrix: Sparse) -> Sparse:
+        return (rows @ matrix @ rows.T).tocsr()
+
+    full, mass = seen(part.full), seen(part.mass)
     shifts, weights = inverse_root(part.lowest, _largest(full, mass, part.lowest), ACCURACY)
     solves = [spla.splu((full + s * mass).tocsc()).solve for s in shifts]
-    undo = spla.splu(part.coupled[rows][:, rows].tocsc()).solve
+    undo = spla.splu(seen(part.coupled).tocsc()).solve
     ordinary = part.coupled is part.mass
 
     def apply(gap: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -47,12 +47,18 @@ def reduced(rows: Rows, pairs: Sequence[Pair]) -> Reduced | None:
         if pair.frictional:
             found.append(_slips(rows, by_gap, by_multiplier, np.where(pair.index >= 0, pair.index + first, -1)))
         first += len(pair)
-    slips = _joined(found)
     n, coupled = len(rows.residual), ~rows.decoupled
-    coupled[slips.number[slips.number >= 0]] = False
+    slips = _joined(found) if found else None
+    if slips is not None:
+        coupled[slips.number[slips.number >= 0]] = False
     plain, corner = np.flatnonzero(coupled), by_multiplier[coupled][:, coupled]
     if (by_gap.diagonal()[coupled] != -1.0).any():
         return None
+    if slips is None:
+        select = sp.identity(n, format="csr")[coupled]
+        there = np.ones(len(plain), dtype=bool)
+        residual = rows.residual[coupled]
+        return Reduced(residual, select, select, corner, rows.fixed, there, _negative_diagonal(corner))
     m, across = len(plain), slips.across
     place = np.cumsum(coupled) - 1
     fixed = rows.fixed

@@ -20,6 +20,9 @@ COMPONENTS = ("x", "y", "z")
 TURNS = ("rx", "ry", "rz")
 
 
+SLIGHTLY = 1e-9  # beyond the end is rounding
+
+
 @dataclass(frozen=True)
 class Amplitude:
     """A history: factor over time as ``points`` (time, factor), times increasing; linear between, constant outside.
@@ -46,6 +49,12 @@ class Amplitude:
         for (before, _), (after, _) in pairwise(points):
             if not before < after:
                 raise InputError(f"amplitude: times must increase, but {after:g} follows {before:g}")
+        first, last = points[0][0], points[-1][0]
+        if first < -SLIGHTLY or last > 1.0 + SLIGHTLY:
+            raise InputError(
+                f"amplitude: time runs from 0 to 1 over all load steps, but there is a point at "
+                f"{last if last > 1.0 else first:g}; divide the times by that of the end"
+            )
         object.__setattr__(self, "points", points)
 
     def __call__(self, time: float) -> float:

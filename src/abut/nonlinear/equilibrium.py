@@ -9,6 +9,7 @@ import numpy as np
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import Prepared
+from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.iteration import Found, active_laws, largest_force
 from abut.nonlinear.newton import BALANCED, ROUNDING, Task
 from abut.problem.linearised import Linearised
@@ -24,14 +25,15 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
     problem, before, prepared = task.problem, task.before, previous
     if not isinstance(problem, ContactProblem):
         raise TypeError("finite deformation needs all displacements")
-    state, rows, error, reason = replace(before, time=time), list[Iteration](), np.inf, ""
+    state, rows, error, last, reason = replace(before, time=time), list[Iteration](), np.inf, np.inf, ""
     system = problem.begin(before, time)
     known = _error(system, state, task)
     while len(rows) < task.limit:
         start = clock.perf_counter()
         try:
             prepared = task.solver.prepare(system, prepared)
-            change, _ = prepared.solve(system.rows([]), system.unbalanced(state), state.multipliers, 0.0)
+            accuracy = forcing(error, last, BALANCED) if np.isfinite(error) else FINE
+            change, _ = prepared.solve(system.rows([]), system.unbalanced(state), state.multipliers, accuracy)
             trial = replace(state, unknowns=state.unknowns + change)
             system = problem.linearise(before, trial)
         except (Unsound, SingularModelError) as failure:

@@ -94,7 +94,7 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
     seen: set[bytes] = set()
     fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
     tolerance, accuracy = tolerated(course.solver), ROUGH
-    foresees, last = False, 0
+    foreseen_other, last = False, 0
     for _ in range(limit):
         clock = time.perf_counter()
         following = advanced(course.solver, state, friction_laws, course.increment, accuracy)
@@ -112,10 +112,12 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
         before = left if not changed else np.inf
         accuracy = ROUGH if changed else max(0.3 * tolerance / left, STRIDE)
         seen.add(wanted.tobytes())
-        foresees = changed > 0 and not (foresees and changed >= last)  # not twice in a row where it misled
+        misled, foreseen_other = foreseen_other and changed >= last, False
         last = changed
-        if foresees:
-            state = state.with_status(foreseen(course.solver, following, wanted))
+        if changed and not misled:
+            status = foreseen(course.solver, following, wanted)
+            foreseen_other = not np.array_equal(status, wanted)
+            state = state.with_status(status)
     return None
 
 

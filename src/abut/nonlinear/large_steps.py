@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from abut.linear.solver import LinearSolver
+from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
@@ -25,21 +25,26 @@ def march_finite(
 ) -> Iterator[Attempt]:
     """Load step after load step. done: the converged states so far, from the start on; pace: after the last of them.
 
-    A failed attempt is yielded only where no other follows it."""
+    A failed attempt is yielded only where no other follows it; where a linear solver fails, another one solves that step."""
     before, cuts = done[-1], 0
+    stands_in: LinearSolver | None = None
     earlier = done[-2] if len(done) > 1 else None
-    number = len(done)
-    control.prepared(f"{solver.name}, unsymmetric, new in every iteration")
+    number, limit = len(done), min(MOST, control.limit)
+    control.prepared(f"{solver.name}, unsymmetric, new in every {'iteration' if solver.count is None else 'step'}")
     while (time := pace.end) is not None:
-        if cuts == 0:
+        if cuts == 0 and stands_in is None:
             control.begins(number, time)
-        guess = None if cuts or pace.turned or earlier is None else extrapolated(problem, earlier, before, time)
+        begins = cuts or pace.turned or earlier is None or let_go(problem, earlier, before)
+        guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
-        step = Step(
-            problem, before, solver, increment, min(MOST, control.limit), control.observe, careful=cuts >= CAREFUL
-        )
-        attempt = _ended(step, solve_finite(step, guess, time), time)
+        step = Step(problem, before, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
+        try:
+            attempt = _ended(step, solve_finite(step, guess, time), time)
+        except NotConverged as reason:
+            stands_in = control.fallback(number, reason)
+            continue
         if attempt.converged:
+            stands_in = None
             pace.take(len(attempt.iterations))
             yield attempt
             earlier, before, number, cuts = before, attempt.state, number + 1, 0
@@ -50,6 +55,12 @@ def march_finite(
             yield attempt
             return
         control.halves(attempt, pace.end or time)
+
+
+def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
+    """Whether a contact has ended between two states: bodies that have sprung back do not go on as they came."""
+    parts = zip(problem.pairs, problem.split(earlier.closed), problem.split(before.closed))
+    return any(was[pair.normal].any() and not now[pair.normal].any() for pair, was, now in parts if not pair.tied)
 
 
 def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:

@@ -12,7 +12,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
-from abut.linear.solver import LinearSolver
+from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.forcing import FINE, forcing
+from abut.nonlinear.apart import thrown_apart
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
@@ -25,6 +27,7 @@ from abut.solution.state import CLOSED, OPEN, Largest, State
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
 ROUNDING = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
+NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
 Vector = NDArray[np.float64]
 
@@ -48,8 +51,8 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. done: its
-    iterations, which grow; failed: why it ended without a solution."""
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. prepared:
+    the linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
 
     problem: FiniteProblem
     before: State
@@ -58,8 +61,14 @@ class Step:
     limit: int
     observe: Callable[[Iteration], None]
     careful: bool = False
+    prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
+
+    def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
+        """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
+        self.prepared = self.solver.prepare(system, self.prepared)
+        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
@@ -71,6 +80,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     except (SingularModelError, Unsound) as reason:
         step.failed = str(reason)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
+    step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
 
 
@@ -79,6 +89,8 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
     here = _balance(step, _carried(step, time) if guess is None else guess)
     if guess is None:
         begun = _report(step, here, begun)
+    if guess is not None or not _balanced(here, before):
+        here = _kept(step, here)
     while guess is not None or not _balanced(here, before):
         if len(step.done) >= step.limit:
             step.failed = (
@@ -86,7 +98,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _advanced(step, here.system, here.state, here.laws))
+        there = _balance(step, step.advanced(here.system, here.state, here.laws, forcing(here.error, before, BALANCED)))
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -109,12 +121,27 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return _advanced(step, system, state, laws_of(system, state))
+    return step.advanced(system, state, laws_of(system, state), FINE)
 
 
-def _advanced(step: Step, system: Linearised, state: State, laws: Sequence[LawRows]) -> State:
-    """One Newton iteration."""
-    return smallest(system, advance(step.solver.prepare(system, None), state, yielding(system, laws)))
+def _kept(step: Step, here: Balance) -> Balance:
+    """A guess in which a contact has come off that was closed before: what is nearest stays closed for an iteration, which
+    tells whether it pulls. Without it bodies would spring back, and from there far into each other."""
+    wanted, gaps, idle = here.state.status.copy(), here.system.gap(here.state), _bare(here.system)
+    first = 0
+    for pair in here.system.pairs:
+        own = slice(first, first := first + len(pair))
+        closed, before = here.state.closed[own][pair.normal], step.before.closed[own][pair.normal]
+        if pair.tied or closed.any() or not before.any():
+            continue
+        clearance = (gaps[own] / (pair.weight * pair.size))[pair.normal]
+        clearance = np.where(idle[own][pair.normal], np.inf, clearance)
+        near = np.isfinite(clearance) & (clearance <= clearance.min() + NEAREST)
+        wanted[own] = np.where(pair.of_functions(near), CLOSED, wanted[own])
+    if np.array_equal(wanted, here.state.status):
+        return here
+    state = here.state.with_status(wanted)
+    return replace(here, state=state, laws=laws_of(here.system, state))
 
 
 def laws_of(system: Linearised, state: State) -> list[LawRows]:

@@ -13,11 +13,13 @@ from abut.bodies.finite import Inverted
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import averaged
 from abut.contact.coupling import Coupling, CouplingOptions
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
+from abut.contact.moving_normals import MovingNormals
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
-from abut.parallel.interface import couple
+from abut.parallel.interface import couple, differentiate
 from abut.parallel.matrix import Distributed, reduce, tell
 from abut.parallel.partition import Layout, Piece, layout, owners, pieces, point_owners
 from abut.parallel.team import Kept, Team
@@ -52,6 +54,13 @@ class DistributedBodies:
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """Every facet of the contactor by the process that has its cell."""
         return couple(self.team, self.owner[contactor.cells], contactor, target, degree, options)
+
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """As in ``Backend``; facets of the contactor are dealt out in turn."""
+        return differentiate(self.team, contactor, target, degree, options, load, normals)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``abut.problem.backend.Backend``."""

@@ -43,6 +43,8 @@ def multigrid(store: Store, number: int, motions: Vector) -> None:
     solver.setFromOptions()
     solver.setUp()
     solver.getPC().setReusePreconditioner(True)  # while springs are in the matrix
+    if "stiffness solver" in store:
+        store["stiffness solver"].destroy()
     store["stiffness solver"] = solver
 
 
@@ -55,11 +57,12 @@ def iterate(
     share: Vector,
     unconstrained: Vector,
     conditions: Conditions | None,
+    definite: bool = True,
 ) -> Answer:
     """Solve by Krylov iterations until the residual is ``accuracy`` times the right-hand side.
 
     number: of the stiffness in the store; n: how many pressures; share: of the right-hand side; unconstrained: (n_own, m)
-    share of rigid motions that multigrid does not see, small: (m, m) inverse of their resistance."""
+    share of motions that multigrid does not see, small: (m, m) inverse of their resistance; definite: the stiffness."""
     from petsc4py import PETSc
 
     matrix = store[number]
@@ -73,7 +76,7 @@ def iterate(
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(operator)
-    solver.setType("fgmres" if n else "cg")
+    solver.setType("cg" if definite and not n else "fgmres")
     solver.setGMRESRestart(RESTART)
     solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
     solver.setFromOptions()

@@ -9,11 +9,13 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import InputError, SingularModelError
+from abut.linear.bodies_now import BodiesNow, bodies_now
 from abut.linear.choice import chosen
 from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
 from abut.linear.interface_conditions import conditions
-from abut.linear.iterative import RESPONSE, compliance, require_held
+from abut.linear.iterative import RESPONSE, compliance, covered_shares, require_held, wholly_covered
+from abut.linear.loose_motions import Loose
 from abut.linear.saddle_point import saddle
 from abut.linear.schur_preconditioner import (
     Predict,
@@ -43,10 +45,11 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class Iterative:
     """As ``abut.linear.iterative.Iterative``, with everything as large as the volume on all processes. matrix: the
-    stiffness."""
+    stiffness, all of it in PETSc's."""
 
     system: Linearised
     matrix: Distributed
+    loose: Loose
     pressures: PressureBlock
     predict: Predict
     count: Count
@@ -66,20 +69,22 @@ class Iterative:
         """Solve theory (V1), preconditioned by theory (V11), to a residual ``accuracy`` times the present one.
 
         Raises NotConverged."""
-        interface = conditions(rows, self.system.operator, self.pressures, self.system.pairs)
-        motions, layout, inverse = self.system.motions, self.matrix.layout, interface.inverse
+        system, layout, loose = self.system, self.matrix.layout, self.loose
+        interface = conditions(rows, system.operator, self.pressures, system.pairs, system.columns)
+        inverse, force = interface.inverse, residual - system.columns.T @ interface.fixed
         small = np.zeros((0, 0))
-        if motions.shape[1]:
-            small = compliance(interface.forces @ motions, inverse, -np.asarray(interface.lower @ motions))
-            left = residual - self.system.operator.T @ interface.fixed
-            require_held(motions, small, left, float(np.abs(self.system.forces).sum()))
+        if loose.motions.shape[1]:
+            seen = -np.asarray(interface.lower @ loose.motions)
+            small = compliance(interface.forces @ loose.motions, inverse, seen, loose.stiffness)
+            if system.about is None:
+                require_held(loose.motions, small, force, float(np.abs(system.forces).sum()))
         by_column, by_row = sp.diags(interface.columns), sp.diags(interface.rows)
         beside = Conditions(
             spread(by_column @ interface.forces, layout), spread(by_row @ interface.lower, layout),
             (by_row @ interface.corner @ by_column).tocsr(), -interface.rows * interface.residual,
             lambda gap: inverse(gap / interface.rows) / interface.columns if len(gap) else gap,
         )  # fmt: skip
-        answers = self._solve(accuracy, -residual + self.system.operator.T @ interface.fixed, small, beside)
+        answers = self._solve(accuracy, -force, small, beside)
         solution = displacement(answers, layout)
         if answers[0].reason < 0 or not np.isfinite(solution).all():
             raise NotConverged(f"PETSc's iterations do not converge on this model (reason {answers[0].reason})")
@@ -87,17 +92,18 @@ class Iterative:
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As ``abut.linear.iterative.Iterative.respond``."""
-        motions = self.system.motions
-        small = np.asarray(np.linalg.pinv(motions.T @ (springs[:, None] * motions)))
+        motions = self.loose.motions
+        small = np.asarray(np.linalg.pinv(self.loose.stiffness + motions.T @ (springs[:, None] * motions)))
         with self.matrix.with_springs(springs):
             return displacement(self._solve(RESPONSE, force, small, None), self.matrix.layout)
 
     def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
         n = 0 if beside is None else len(beside.rhs)
-        shares = self.matrix.layout.shares(np.column_stack([rhs, self.system.motions]))
+        shares = self.matrix.layout.shares(np.column_stack([rhs, self.loose.motions]))
+        definite = self.system.about is None
         answers: list[Answer] = self.matrix.team.each(
             iterate, self.matrix.kept.number, accuracy, n, small,
-            per_rank=[(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)],
+            per_rank=[(v[:, 0], v[:, 1:], None if rank else beside, definite) for rank, (v,) in enumerate(shares)],
         )  # fmt: skip
         self.count.iterations += answers[0].iterations
         return answers
@@ -183,10 +189,9 @@ class Direct:
 
 @dataclass(frozen=True)
 class PetscIterations:
-    """As ``abut.linear.solver.LinearSolver``. motions: (n_free, m) rigid motions of the bodies, which multigrid must
-    reproduce."""
+    """As ``abut.linear.solver.LinearSolver``, for a problem."""
 
-    motions: Vector
+    problem: ContactProblem
     count: Count
 
     @property
@@ -198,38 +203,66 @@ class PetscIterations:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``. Raises InputError for the constraint function, whose rows the preconditioner does not
-        know."""
+        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for laws or
+        Krylov methods that do not go with it."""
+        known = previous if isinstance(previous, Iterative) else None
+        if known is not None and known.system.same_matrices(system):
+            return replace(known, system=system)
+        _require_general(system)
+        if system.about is not None:
+            return self._at_state(system, known)
+        if known is not None and known.system.stiffness is system.stiffness:
+            return self._with_pressures(system, known.matrix, known.loose)
+        whole = system.stiffness.whole()
+        self._set_up(whole, bodies_now(self.problem, system))
+        return self._with_pressures(system, whole, Loose(system.motions, np.zeros((system.motions.shape[1],) * 2)))
+
+    def _at_state(self, system: Linearised, known: Iterative | None) -> Iterative:
+        """At large displacements. Multigrid is for the bodies' own stiffness: contact terms tie bodies together that are to
+        be aggregated apart."""
         matrix: Distributed = system.stiffness
-        if isinstance(previous, Iterative) and previous.system.same_matrices(system):
-            return replace(previous, system=system)
-        smooth = [pair.contact.name for pair in system.pairs if pair.smooth]
-        if smooth:
-            raise InputError(
-                f"multigrid does not know the constraint function of contact '{smooth[0]}'; choose law = "
-                '"complementarity", or leave the option -pc_type out'
-            )
-        rubs = [pair.contact.name for pair in system.pairs if pair.frictional]
-        if rubs and krylov_method() in SYMMETRIC:
-            raise InputError(
-                f"-ksp_type {krylov_method()} is for symmetric matrices, which friction does not leave (contact "
-                f"'{rubs[0]}'): leave the option out"
-            )
-        if isinstance(previous, Iterative) and previous.system.stiffness is matrix:
-            whole = previous.matrix
-        else:
-            whole = matrix.whole()
-            shares = whole.layout.shares(np.linalg.qr(self.motions)[0])
-            whole.team.each(multigrid, whole.kept.number, per_rank=shares)
-        pressures = pressure_block(system.pairs, system.operator, whole.diagonal())
+        whole, shares = matrix.whole(), covered_shares(system.pairs)
+        if known is not None and known.system.time == system.time:
+            return replace(known, system=system, matrix=whole, pressures=replace(known.pressures, covered=shares))
+        bodies = bodies_now(self.problem, system)
+        self._set_up(matrix.of_bodies(), bodies)
+        motions = np.linalg.qr(bodies.motions)[0]
+        made = self._with_pressures(
+            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]), whole,
+            Loose(motions, motions.T @ (whole @ motions)),
+        )  # fmt: skip
+        return replace(made, system=system, pressures=replace(made.pressures, covered=shares))
+
+    def _set_up(self, matrix: Distributed, bodies: BodiesNow) -> None:
+        """Multigrid for a stiffness."""
+        motions = matrix.layout.shares(np.linalg.qr(bodies.near_null)[0])
+        matrix.team.each(multigrid, matrix.kept.number, per_rank=motions)
+
+    def _with_pressures(self, system: Linearised, matrix: Distributed, loose: Loose) -> Iterative:
+        pressures = pressure_block(system.pairs, system.operator, matrix.diagonal())
         predict = foresight(lambda: pressures.half_spaces, np.asarray(system.operator @ system.motions))
-        return Iterative(system, whole, pressures, predict, self.count)
+        return Iterative(system, matrix, loose, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""
         if not isinstance(prepared, Iterative):
             return self.name
         return f"{self.name}, {_processes(prepared.matrix.team)}"
+
+
+def _require_general(system: Linearised) -> None:
+    """Raises InputError for Krylov methods of symmetric matrices where the laws do not leave such."""
+    if krylov_method() not in SYMMETRIC:
+        return
+    bends = [
+        f"{what} does not leave (contact '{pair.contact.name}')"
+        for pair in system.pairs
+        for what, is_so in (("friction", pair.frictional), ("the constraint function", pair.smooth))
+        if is_so
+    ]
+    if bends or system.about is not None:
+        why = bends[0] if bends else "finite kinematics does not leave"
+        raise InputError(f"-ksp_type {krylov_method()} is for symmetric matrices, which {why}: leave the option out")
 
 
 @dataclass(frozen=True)
@@ -275,6 +308,14 @@ def choose(problem: ContactProblem) -> str:
             "PETSc's options ask for iterations, but equations or components left free of a rigid body couple points, "
             "which multigrid cannot: leave -ksp_type and -pc_type out"
         )
+    smooth = [pair.contact.name for pair in problem.pairs if pair.smooth and pair.frictional]
+    if wants_iterations() and smooth:
+        raise InputError(
+            f"PETSc's iterations know friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
+            'function for it; choose law = "complementarity", or leave -ksp_type and -pc_type out'
+        )
+    if smooth:
+        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 

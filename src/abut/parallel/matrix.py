@@ -40,6 +40,8 @@ class Distributed:
         return own if self.beside is None else own + self.beside.diagonal()
 
     def __matmul__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        if values.ndim > 1:
+            return np.stack([self @ column for column in values.T], axis=1) if values.size else values
         if not values.any():  # as at the state that a problem is linearised about
             return np.zeros_like(values)
         own = self.layout.values(self.team.each(_product, self.kept.number, per_rank=self.layout.shares(values)))
@@ -62,6 +64,10 @@ class Distributed:
         slot, n = self.layout.slot, int(starts[-1])
         placed = sp.csr_matrix((entries.data, (slot[entries.row], slot[entries.col])), shape=(n, n))
         return [placed[a:b] for a, b in pairwise(starts.tolist())]
+
+    def of_bodies(self) -> Distributed:
+        """Without what contact and loads add to it."""
+        return replace(self, beside=None)
 
     def whole(self) -> Distributed:
         """With all of it in PETSc's matrix; the same object where it is."""

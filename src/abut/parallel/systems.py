@@ -60,10 +60,19 @@ def solve(solver: Foreign, operator: Foreign, share: Vector, rhs: Vector) -> Ans
     miss.axpy(-1.0, b)
     values = np.array(x.array_r)
     error = miss.norm() / size if size > 0.0 else float(np.nan_to_num(x.norm(), nan=np.inf))
+    clean_up(operator.comm)
     return Answer(
         values[: len(share)], values[len(share) :], solver.getIterationNumber(), error, solver.getConvergedReason(),
         ran_out(solver.getPC()),
     )  # fmt: skip
+
+
+def clean_up(comm: Foreign) -> None:
+    """Give back what Python has let go of: where several processes share it, PETSc waits until all are told to."""
+    from petsc4py import PETSc
+
+    if hasattr(PETSc, "garbage_cleanup"):  # from 3.18 on; earlier ones do not wait
+        PETSc.garbage_cleanup(comm)
 
 
 def ran_out(preconditioner: Foreign) -> bool:

@@ -88,7 +88,7 @@ def assemble(
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
-    problem = finite_problem(problem) if sliding else problem
+    problem = finite_problem(problem, backend.differentiate) if sliding else problem
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

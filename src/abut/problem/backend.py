@@ -14,6 +14,8 @@ from abut.bodies.finite import cauchy_stress, respond_finite
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import nodal_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, differentiated
+from abut.contact.moving_normals import MovingNormals
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
@@ -49,6 +51,13 @@ class Backend(Tangent, Protocol):
         """Cut and integrate the interface of a contact pair, as ``abut.contact.coupling.couple``."""
         ...
 
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """The same at current positions with its derivatives, as ``abut.contact.coupling_tangent.differentiated``."""
+        ...
+
     def stress(
         self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
     ) -> NDArray[np.float64]:
@@ -75,6 +84,13 @@ class Serial:
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
         return couple(contactor, target, degree, options)
+
+    def differentiate(
+        self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
+        normals: MovingNormals,
+    ) -> CouplingTangent:  # fmt: skip
+        """As in ``Backend``."""
+        return differentiated(contactor, target, degree, options, load, normals)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Backend``."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
-from abut.contact.coupling_tangent import ContactLoad, differentiated
+from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
@@ -52,9 +52,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Current:
-    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``."""
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
+    and integrates, here or on several processes."""
 
     pair: Pair
+    differentiate: Differentiate = differentiated
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
@@ -64,7 +66,7 @@ class Current:
         normals = self._normals.at(contactor)
         tangents = self._tangents(contactor, normals, multipliers)
         load = self._load(multipliers, tangents)
-        by = differentiated(contactor, target, pair.coupling.degree, options, load, normals)
+        by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]

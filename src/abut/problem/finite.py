@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.contact_pairs import Pair
@@ -118,12 +119,11 @@ class FiniteProblem(ContactProblem):
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
             whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
-        stiffness = self.springs.added_to(
-            sum(tangent.reduce(constraints) for tangent in stiff) - constraints.reduce(bending)
-        )
+        by_contact = constraints.reduce(bending)
+        stiffness = self.springs.added_to(sum(tangent.reduce(constraints) for tangent in stiff) - by_contact)
         rows = [pair_now.pair.rows for pair_now in contacts]
         if self.constraints.turns is not None:
-            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self._split(now.multipliers)))
+            pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
         about = self._expansion(shares, now.unknowns, force, stiffness)
@@ -136,10 +136,12 @@ class FiniteProblem(ContactProblem):
             now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
             unit_of(stiffness), about=replace(about, symmetric=False),
             pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
+            bending=by_contact,
         )  # fmt: skip
         return system, shares
 
-    def _split(self, values: Array) -> list[Array]:
+    def split(self, values: Array) -> list[Array]:
+        """Values of all multipliers (n,), pair by pair."""
         return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
 
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
@@ -160,7 +162,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, result = before.history.of(POINTS), []
-        for pair, kind, part in zip(self.pairs, self.moving, self._split(at.multipliers)):
+        for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
                 continue
@@ -193,8 +195,8 @@ def _tie(pair: Pair, displacement: Array) -> ContactNow:
     return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
 
 
-def finite_problem(problem: ContactProblem) -> FiniteProblem:
-    """A problem with pairs as from ``whole_pairs`` at large displacements."""
+def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
+    """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair) for pair in problem.pairs]
+    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
     return FiniteProblem(**{**values, "stiffness": None}, moving=moving)

@@ -63,7 +63,8 @@ class Linearised:
     theory (V4), else None; motions: (n_free, m) rigid motions that supports leave free; restraint: what holds bodies where
     contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation;
     about: under finite deformation, else None; B q is then B (q - at). Contact forces may have other columns than gaps have
-    rows: F^T p with ``pushing`` F (n, n_free); forgotten: (n,) multipliers of friction without a past, which carry nothing.
+    rows: F^T p with ``pushing`` F (n, n_free); bending: (n_free, n_free) their derivative, which K has with opposite sign;
+    forgotten: (n,) multipliers of friction without a past, which carry nothing.
     """
 
     time: float
@@ -81,6 +82,7 @@ class Linearised:
     about: Expansion | None = None
     pushing: Operator | None = None
     forgotten: NDArray[np.bool_] | None = None
+    bending: Operator | None = None
 
     def __len__(self) -> int:
         """Number of multipliers."""

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.model.conditions import weights
+from abut.report.chart import Chart
 from abut.solution import Solution
 
 Vector = NDArray[np.float64]
 TURNS = ("rx", "ry", "rz")
 
 
-@dataclass(frozen=True)
-class Path:
-    """One plot. x: (n,) motion, rising; ways: by name (n,) forces, NaN where a way, there or back, has no point."""
-
-    title: str
-    label: str
-    x: Vector
-    ways: dict[str, Vector]
-
-
-def paths(solution: Solution) -> list[Path]:
+def paths(solution: Solution) -> list[Chart]:
     """Of all supports and rigid bodies that are moved, from the state without loads on; none of a single step."""
     if len(solution.steps) < 2:
         return []
@@ -72,7 +62,7 @@ def _moved(title: str, label: str, times: Vector, x: Vector, y: Vector) -> Itera
         yield title, label, times[first:], x[first:], y[first:]
 
 
-def _path(title: str, label: str, times: Vector, x: Vector, y: Vector) -> Path:
+def _path(title: str, label: str, times: Vector, x: Vector, y: Vector) -> Chart:
     """A curve cut where the motion turns back, so that along each way x rises or falls."""
     way = np.sign(np.diff(x))
     cuts, ahead = [0], 0.0
@@ -89,4 +79,4 @@ def _path(title: str, label: str, times: Vector, x: Vector, y: Vector) -> Path:
     names = [f"time {times[a]:.4g} to {times[b]:.4g}" for a, b in zip(cuts, ends)]
     names = names if len(parts) > 1 else [title.partition(": ")[2].partition(" over ")[0]]
     ways = {name: np.where(of_part[sort] == i, y[order][sort], np.nan) for i, name in enumerate(names)}
-    return Path(title, label, x[order][sort], ways)
+    return Chart(title, label, x[order][sort], ways)

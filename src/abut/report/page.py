@@ -17,6 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
+from abut.report.chart import Chart
 from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
@@ -40,8 +41,8 @@ def page(solution: Solution, origin: Origin) -> str:
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
-        "probes": _charts(solution),
-        "paths": _paths(solution),
+        "probes": _charts(charts(solution)),
+        "paths": _charts(paths(solution)),
     }
     parts = {
         "title": escape(origin.title),
@@ -295,7 +296,7 @@ def _friction(steps: Sequence[ContactResult]) -> Json | None:
     return None if found is None else {name: _plain(values) for name, values in found.items()}
 
 
-def _charts(solution: Solution) -> list[Json]:
+def _charts(some: Sequence[Chart]) -> list[Json]:
     return [
         {
             "title": chart.title,
@@ -303,19 +304,7 @@ def _charts(solution: Solution) -> list[Json]:
             "x": _plain(chart.x),
             "series": [{"label": name, "values": _plain(values)} for name, values in chart.series.items()],
         }
-        for chart in charts(solution)
-    ]
-
-
-def _paths(solution: Solution) -> list[Json]:
-    return [
-        {
-            "title": path.title,
-            "label": path.label,
-            "x": _plain(path.x),
-            "series": [{"label": name, "values": _plain(values)} for name, values in path.ways.items()],
-        }
-        for path in paths(solution)
+        for chart in some
     ]
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.probing.table import columns, peaks
+from abut.report.chart import Chart
 from abut.report.describe import Table
 from abut.solution import ProbeResult, Solution
 
@@ -22,16 +22,6 @@ PLANE = ("stress_yz", "stress_zx")  # zero in two dimensions
 OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
 ROUNDING = 1e-9  # of a gap, over the length of the line
 PEAK = "value farthest from zero"
-
-
-@dataclass(frozen=True)
-class Chart:
-    """title, label of the axis, x (n,), series by name (n,), NaN where a line is broken."""
-
-    title: str
-    label: str
-    x: NDArray[np.float64]
-    series: dict[str, NDArray[np.float64]]
 
 
 def probe_table(solution: Solution) -> Table | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isnan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ from abut.mesh.surface import Surface
 @dataclass(frozen=True)
 class Check:
     """One line of the certificate: a dimensionless error of a contact, its limit, and its meaning.
-    last: it counts in the last step only, since it fails while loads are small."""
+    last: it counts in the last step only, since it fails while loads are small. pressure: what the value is relative to, 0
+    where it is relative to something else."""
 
     contact: str
     name: str
@@ -22,11 +24,22 @@ class Check:
     limit: float
     meaning: str
     last: bool = False
+    pressure: float = 0.0
 
     @property
     def passed(self) -> bool:
         """Whether the value is within its limit; what is no number is not."""
         return self.value <= self.limit
+
+
+def worst(checks: Sequence[Check]) -> Check:
+    """Of one line at several states in turn, the worst; what is no number is. Errors relative to a pressure become relative
+    to the largest one: where contact has just begun they matter as little as the pressure does."""
+    if checks[-1].last:
+        return checks[-1]
+    largest = max(check.pressure for check in checks)
+    of_all = [replace(c, value=c.value * c.pressure / largest, pressure=largest) if largest else c for c in checks]
+    return max(of_all, key=lambda check: inf if isnan(check.value) else check.value / check.limit)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from math import isnan
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.offset import smallest_offset
-from abut.solution.contacts import Check, ContactResult
+from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.progress import Iteration
 from abut.solution.state import State
@@ -195,7 +194,7 @@ class Solution:
     @property
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
-        worst: dict[tuple[str, str], Check] = {}
+        lines: dict[tuple[str, str], list[Check]] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
         for step in self.steps:
@@ -216,10 +215,8 @@ class Solution:
                                    "work of loads and supports less what is stored and what friction takes, over the "
                                    "work of all nodal forces by size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
-                key = check.contact, check.name
-                if check.last or key not in worst or _worse(check, worst[key]):
-                    worst[key] = check
-        return tuple(worst.values())
+                lines.setdefault((check.contact, check.name), []).append(check)
+        return tuple(worst(checks) for checks in lines.values())
 
     @property
     def displacement(self) -> NDArray[np.float64]:
@@ -237,11 +234,6 @@ class Solution:
         import abut
 
         return abut.plot(self, what, **options)
-
-
-def _worse(check: Check, other: Check) -> bool:
-    """Whether a line is further beyond its limit than one of another step; what is no number is worst."""
-    return not isnan(other.value) and not check.value / check.limit <= other.value / other.limit
 
 
 def _driven(model: Model) -> bool:

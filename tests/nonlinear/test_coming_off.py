@@ -1,0 +1,51 @@
+"""How a load step begins where a contact comes off, or seems to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from abut.linear.choice import Direct
+from abut.nonlinear.iteration import Increment
+from abut.nonlinear.large_steps import let_go
+from abut.nonlinear.semismooth import Step, solve_finite
+from abut.solution.state import CLOSED, OPEN, State
+from models.sliding import arched, finite
+
+
+def test_a_contact_that_has_ended() -> None:
+    problem = finite(arched(0.0))
+    rest = problem.start()
+    n = len(rest.status)
+    touching = rest.with_closed(np.arange(n) == 2)
+    apart = rest.with_closed(np.zeros(n, dtype=bool))
+    assert let_go(problem, touching, apart)
+    assert not let_go(problem, apart, touching)
+    assert not let_go(problem, touching, touching)
+    assert not let_go(problem, apart, apart)
+
+
+def test_a_guess_that_comes_off_does_not_let_go() -> None:
+    """Bodies pressed together, and a guess in which they are apart though they touch: the first iteration holds them by the
+    nearest points, so that none of them springs back, and ends where it would have from the last state."""
+    problem = finite(arched(0.0))
+    start, most = problem.start(), 25
+
+    def solved(before: State, guess: State | None, time: float) -> tuple[State, list[float]]:
+        step = Step(problem, before, Direct(), Increment(1, before.largest), most, lambda row: depths.append(row.penetration))
+        depths: list[float] = []
+        found = solve_finite(step, guess, time)
+        assert found.converged
+        return problem.accepted(before, replace(found.state, time=time)), depths
+
+    pressed, _ = solved(start, None, 0.2)
+    assert (pressed.status == CLOSED).any()
+    held, _ = solved(pressed, None, 0.21)
+    away = np.zeros((len(problem.model.mesh.points), 2))
+    away[problem.model.mesh.nodes_of("upper.bottom"), 1] = 0.02
+    apart = replace(pressed, time=0.21, unknowns=pressed.unknowns + problem.constraints.free.T @ away.ravel())
+    apart = replace(apart, multipliers=0.0 * apart.multipliers, status=np.full_like(apart.status, OPEN))
+    again, depths = solved(pressed, apart, 0.21)
+    assert np.abs(again.unknowns - held.unknowns).max() < 1e-9
+    assert max(depths) < 0.05
