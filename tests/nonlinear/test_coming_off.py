@@ -33,11 +33,10 @@ def test_a_guess_that_comes_off_does_not_let_go() -> None:
     start, most = problem.start(), 25
 
     def solved(before: State, guess: State | None, time: float) -> tuple[State, list[float]]:
-        step = Step(problem, before, Direct(), Increment(1, before.largest), most, lambda row: depths.append(row.penetration))
-        depths: list[float] = []
+        step = Step(problem, before, Direct(), Increment(1, before.largest), most, lambda _: None)
         found = solve_finite(step, guess, time)
         assert found.converged
-        return problem.accepted(before, replace(found.state, time=time)), depths
+        return problem.accepted(before, replace(found.state, time=time)), [row.penetration for row in found.iterations]
 
     pressed, _ = solved(start, None, 0.2)
     assert (pressed.status == CLOSED).any()

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 import abut
@@ -24,8 +23,6 @@ from abut.mesh.make import box, join, rectangle
 from abut.nonlinear import load_step, stepping
 from abut.nonlinear.stepping import Control, march
 from abut.output.restart import load_steps, save_step
-from abut.problem.kinematics import Frozen, Jump
-from abut.problem.problem import ContactProblem
 from abut.verify import law_tangents, material_tangent
 from models.friction import rubbed
 from models.oracle import assembled
@@ -273,80 +270,3 @@ def test_newton_converges_quadratically(monkeypatch: pytest.MonkeyPatch) -> None
     first = errors[: next(i for i, error in enumerate(errors) if error < newton.BALANCED) + 1]
     before, last, rounding = first[-3:]
     assert np.log(rounding / last) / np.log(last / before) > 1.7
-
-
-@dataclass(frozen=True)
-class Bowed:
-    """Gaps that also grow with the square of one displacement, as if the target were bowed: value = frozen + w c q_k^2."""
-
-    frozen: Frozen
-    column: int
-    bow: float
-    constant: bool = False
-
-    def at(self, unknowns: NDArray[np.float64], factors: NDArray[np.float64], multipliers: NDArray[np.float64]) -> Jump:
-        plain = self.frozen.at(unknowns, factors, multipliers)
-        weight, q, n = self.frozen.pair.weight, unknowns[self.column], len(unknowns)
-        column = sp.csr_matrix(
-            (2.0 * self.bow * q * weight, (np.arange(len(weight)), [self.column] * len(weight))), (len(weight), n)
-        )
-        second = sp.csr_matrix(([2.0 * self.bow * float(weight @ multipliers)], ([self.column], [self.column])), (n, n))
-        return Jump(plain.value + weight * self.bow * q * q, (plain.operator + column).tocsr(), second)
-
-    def of(self, pair: Any) -> Bowed:
-        return replace(self, frozen=Frozen(pair))
-
-
-def bowed() -> ContactProblem:
-    problem = assembled(blocks(1, pressure="P1"))
-    pressed = int(np.argmax(np.abs(problem.linearise(problem.start(), replace(problem.start(), time=1.0)).load)))
-    return replace(problem, kinematics=[Bowed(Frozen(problem.pairs[0]), pressed, 1e3)])
-
-
-def test_kinematics_that_change_are_linearised_exactly() -> None:
-    """Stiffness (with the second derivatives) and operator against differences of balance and gaps."""
-    problem = bowed()
-    rng = np.random.default_rng(0)
-    at = replace(problem.start(), time=1.0)
-    at = replace(
-        at, unknowns=1e-3 * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0, 100, len(at.status))
-    )
-    system, way = problem.linearise(at, at), rng.standard_normal(problem.n_free)
-
-    def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        state = replace(at, unknowns=at.unknowns + step * way)
-        near = problem.linearise(at, state)
-        return near.unbalanced(state), near.gap(state)
-
-    (force, gap), (force_back, gap_back) = there(1e-6), there(-1e-6)
-    forces, gaps = (force - force_back) / 2e-6, (gap - gap_back) / 2e-6
-    assert np.abs(forces - system.stiffness @ way).max() < 1e-7 * np.abs(forces).max()
-    assert np.abs(gaps - system.operator @ way).max() < 1e-7 * np.abs(gaps).max()
-
-
-def test_kinematics_that_change_are_solved() -> None:
-    """Newton's outer iterations end with the true gaps closed and forces in balance; frozen kinematics come out as
-    before."""
-    problem = bowed()
-
-    def none(*_: object) -> None:
-        return None
-
-    def never(number: int, reason: NotConverged) -> Direct:
-        raise reason
-
-    control = Control(50, none, none, none, none, never, none)
-    (attempt,) = march(problem, problem.start(), stepping.Fixed([1.0]), Direct(), control)
-    assert attempt.converged
-    assert len(attempt.iterations) > 2
-    system = problem.linearise(attempt.state, attempt.state)
-    pressure = attempt.state.largest.pressure
-    gaps = system.gap(attempt.state) / system.scale
-    assert np.abs(gaps[attempt.state.closed]).max() < 1e-7 * pressure
-    assert gaps[~attempt.state.closed].min(initial=0.0) > -1e-7 * pressure
-    assert np.abs(system.unbalanced(attempt.state)).max() < 1e-8 * attempt.state.largest.force
-    frozen = replace(problem, kinematics=[Frozen(problem.pairs[0])])
-    plain = replace(problem, kinematics=())
-    (one,), (two,) = (list(march(p, p.start(), stepping.Fixed([1.0]), Direct(), control)) for p in (frozen, plain))
-    assert (one.state.unknowns == two.state.unknowns).all()
-    assert np.abs(one.state.unknowns - attempt.state.unknowns).max() > 1e-6 * np.abs(one.state.unknowns).max()

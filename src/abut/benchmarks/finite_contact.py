@@ -18,6 +18,7 @@ from abut.solution import Solution
 DIE, RADIUS, GAP = (1.2, 1.2), 0.75, 0.2  # of the die: width and height, of its arc; to the slab at the outset
 PRESS = Amplitude(((0.0, 0.0), (1 / 6, 0.5), (1 / 3, 1.0), (1.0, 1.0)))
 SLIDE = Amplitude(((0.0, 0.0), (1 / 3, 0.0), (2 / 3, 0.5), (1.0, 1.0)))
+PLATEAU = (0.5, 0.8)  # times between which the die slides from 2.5 to 7 of 10, away from the slab's ends
 RING, DEPTH = (0.085, 0.090, 0.095), 0.07  # radii; how far the ring's ends go down
 MESH = (
     "two or three digits; the prototype's die mesh is not known, and dies of 6 to 24 facets differ by 2 %, 1 %, 0.8 %"
@@ -54,12 +55,14 @@ def ironing(level: int) -> Model:
 
 
 def _forces(solution: Solution) -> Mapping[str, float]:
-    """On the die, at the times that the amplitudes name."""
-    at = {round(step.factor, 9): step.reactions["die.top"] for step in solution.steps}
-    half, down, along = (at[round(time, 9)] for time in (1 / 6, 1 / 3, 2 / 3))
+    """On the die: at the times that the amplitude names, and in the mean over ``PLATEAU``."""
+    times = [step.factor for step in solution.steps]
+    x, y = np.array([step.reactions["die.top"] for step in solution.steps]).T
+    half, down = np.interp([1 / 6, 1 / 3], times, y)
+    along, on = (float(np.interp(np.linspace(*PLATEAU, 91), times, force).mean()) for force in (x, y))
     return {
-        "force half down": -half[1], "force down": -down[1], "force along the slab": along[0],
-        "force on the slab": -along[1], **_effort(solution),
+        "force half down": -half, "force down": -down, "force along the slab": along, "force on the slab": -on,
+        **_effort(solution),
     }  # fmt: skip
 
 
@@ -108,7 +111,9 @@ BENCHMARKS = (
             "force half down": Reference(0.94e8, 0.01, SOURCE, MESH),
             "force down": Reference(3.17e8, 0.01, SOURCE, MESH),
             "force on the slab": Reference(4.04e8, 0.01, SOURCE, MESH),
-            "force along the slab": Reference(1.31e8, 0.015, SOURCE, MESH + "; the force swings by 1 % from facet to facet"),
+            "force along the slab": Reference(
+                1.31e8, 0.01, SOURCE, MESH + "; mean from 2.5 to 7 of 10, where it rises and falls by 1 %"
+            ),
             "iterations": _few(300.0, "linear solutions"),
             "steps": _few(60.0, "load steps"),
         },

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -140,7 +141,7 @@ class FiniteProblem(ContactProblem):
         )  # fmt: skip
         return system, shares
 
-    def split(self, values: Array) -> list[Array]:
+    def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers (n,), pair by pair."""
         return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
 

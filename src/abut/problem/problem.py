@@ -16,7 +16,6 @@ from abut.problem.approach import approach_slip
 from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import FreeModeSprings
-from abut.problem.kinematics import Kinematics
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Expansion, Linearised
 from abut.problem.restraint import Restraint
@@ -70,7 +69,7 @@ class ContactProblem:
     terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
     (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
     (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
-    unit: size of the stiffness' entries, where it is constant; kinematics: of each pair, ``Frozen`` where left out.
+    unit: size of the stiffness' entries, where it is constant.
     """
 
     model: Model
@@ -83,16 +82,11 @@ class ContactProblem:
     stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
-    kinematics: Sequence[Kinematics] = ()
 
     @property
     def constant(self) -> bool:
         """As in ``Problem``."""
-        return self.stiffness is not None and self._frozen
-
-    @property
-    def _frozen(self) -> bool:
-        return all(kinematics.constant for kinematics in self.kinematics)
+        return self.stiffness is not None
 
     @property
     def n_free(self) -> int:
@@ -101,7 +95,7 @@ class ContactProblem:
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
-        _, offset, _ = self._contact(rest, np.zeros(len(self.model.histories)))
+        offset = self._offset(np.zeros(len(self.model.histories)))
         first, closed = 0, np.zeros(len(offset), dtype=bool)
         for pair in self.pairs:
             here = slice(first, first := first + len(pair))
@@ -134,18 +128,16 @@ class ContactProblem:
         there = factors if prescribed is None else weights(self.model.histories, before.time)
         constraints = self.constraints.near(at, there)
         force = constraints.free.T @ whole
-        operator, offset, bending = self._contact(now, factors, slipped)
         if self.constant:
             stiffness, load = self.stiffness, -force
         else:
             stiffness = self._tangent(shares, constraints)
             if self.constraints.turns is not None:
                 stiffness = stiffness + self.constraints.turns.bending(at, there, whole)
-            stiffness = stiffness if bending is None else stiffness - bending
             load = stiffness @ at - force - self.springs.forces(at)
         return Linearised(
-            now.time, factors, stiffness, load, self.pairs, operator, offset, self.motions, self.restraint, load,
-            self.unit or unit_of(stiffness), about=self._expansion(shares, at, force, stiffness),
+            now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
+            self.restraint, load, self.unit or unit_of(stiffness), about=self._expansion(shares, at, force, stiffness),
         )  # fmt: skip
 
     def _expansion(
@@ -189,8 +181,7 @@ class ContactProblem:
         ]
         if all(new is old for new, old in zip(pairs, self.pairs)):
             return self
-        kinematics = [kind.of(pair) for kind, pair in zip(self.kinematics, pairs)]
-        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free), kinematics=kinematics)
+        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free))
 
     def displacement(self, state: State) -> NDArray[np.float64]:
         """Of all points, (dim n_points,)."""
@@ -204,20 +195,6 @@ class ContactProblem:
             if pair.frictional:
                 gap[pair.tangential] -= before
         return np.concatenate(gaps) if gaps else np.zeros(0)
-
-    def _contact(
-        self, now: State, factors: NDArray[np.float64], slipped: Sequence[NDArray[np.float64]] = ()
-    ) -> tuple[Operator, NDArray[np.float64], Operator]:
-        """Operator B and offset g0 of the gaps B q + g0 near ``now``, and their second derivatives times the multipliers;
-        the same operator comes back where all kinematics are constant."""
-        if self._frozen:
-            return self.operator, self._offset(factors, slipped), None
-        multipliers = np.split(now.multipliers, np.cumsum([len(pair) for pair in self.pairs])[:-1])
-        jumps = [kind.at(now.unknowns, factors, part) for kind, part in zip(self.kinematics, multipliers)]
-        operator = sp.vstack([jump.operator for jump in jumps]).tocsr()
-        value = np.concatenate([jump.value for jump in jumps])
-        bending = [jump.bending for jump in jumps if jump.bending is not None]
-        return operator, value - operator @ now.unknowns, sum(bending[1:], bending[0]) if bending else None
 
     def _tangent(self, shares: Sequence[Share], constraints: Constraints) -> Operator:
         """The stiffness on the free displacements. constraints: near the state."""

@@ -1,0 +1,42 @@
+"""Quadratic convergence of every load step at large sliding: the last three residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+import abut
+from abut.benchmarks.finite_contact import _crushed, ironing
+from models.sliding import arched, pressed_in_space
+
+ROUNDING = 1e-10  # of forces and pressures: less may be left by chance
+ORDER, FACTOR = 1.7, 10.0  # what is left is at most FACTOR times the ORDER-th power of what was left before
+
+
+def _ironed() -> abut.Model:
+    """In steps of at most a sixtieth."""
+    return replace(ironing(0), solve=abut.SolveOptions(steps=60))
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        pytest.param(lambda: arched(0.3), id="friction"),
+        pytest.param(lambda: arched(0.0, "quad8"), id="quadratic cells"),
+        pytest.param(lambda: pressed_in_space(0.3), id="in space, with friction"),
+        pytest.param(lambda: _crushed(0.5), id="half ring"),
+        pytest.param(_ironed, id="ironing", marks=pytest.mark.long),
+    ],
+)
+def test_the_last_residuals_fall_quadratically(model: Callable[[], abut.Model]) -> None:
+    solution = abut.solve(model())
+    assert solution.converged
+    pairs = []
+    for step in solution.steps:
+        rows = step.iterations[-3:]
+        left = [max(row.residual, row.contact_residual) for row in rows]
+        pairs += [(a, b) for a, b, row in zip(left, left[1:], rows) if not row.changed]
+    assert len(pairs) >= len(solution.steps)
+    assert [(a, b) for a, b in pairs if b > max(ROUNDING, FACTOR * a**ORDER)] == []
