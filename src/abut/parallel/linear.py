@@ -312,8 +312,6 @@ def choose(problem: ContactProblem) -> str:
             f"PETSc's iterations know friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
             'function for it; choose law = "complementarity", or leave -ksp_type and -pc_type out'
         )
-    if smooth:
-        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 
