@@ -19,7 +19,7 @@ FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a
 
 def sticking(problem: ContactProblem, system: Linearised, state: State) -> State:
     """The state for an iteration: where a body could slip away since all that touches it slips, all of it sticks, which
-    tells the tractions that it takes. Theory (G11)."""
+    tells the tractions that it takes."""
     if system.restraint.by_supports or not _all_slips(system, state):
         return state
     rigid, supports = _now(problem, system)

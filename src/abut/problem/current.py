@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.block_rows import added_up, block_rows, weights_of_rows
+from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, smoothing
@@ -68,13 +68,14 @@ class Current:
         load = self._load(multipliers, tangents)
         by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
         points, dim = len(contactor.points), contactor.dim
-        along, *places = added_up(down, by.operators, points)
+        operators = added_up(down, by.operators, points)
+        along = operators[0]
         weight = np.asarray(down @ by.weight_value)
         slope = down @ by.slope(np.array([1.0, place.offset]))
         now = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
-                rows=block_rows((along[..., :dim], *places), points).tocsr(),
+                rows=block_rows(in_place(along[..., :dim], operators), points).tocsr(),
             ),
             np.asarray(down @ by.gap_value + place.offset * weight),
             slope.tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
@@ -87,7 +88,7 @@ class Current:
             turned = tangents_2d(normals, *self._anchors)
             made = rub_in_plane(self._down_along, by, added_up(self._down_along, by.operators, points), slip)
         else:
-            square = along[..., dim:].reshape(-1, dim, dim), *places
+            square = in_place(along[..., dim:].reshape(-1, dim, dim), operators)
             turned, made = tangents.now.tangents, rub_in_space(down, by, square, slip, tangents, contactor)
         covered = pair.space.plain.T @ place.points.moments(len(contactor))
         return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
