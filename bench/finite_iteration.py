@@ -3,8 +3,8 @@ direct solver on one thread; processor time of its stages, and memory beside a r
 
     python bench/finite_iteration.py [--facets 50] [--layers 8] [--iterations 3]
 
-The block has facets^2 contact facets, and layers of cells; 50 and 8 make 146 000 degrees of freedom. Each run is a process of
-its own, and ends after some iterations: the first is without contact forces.
+The block has facets^2 contact facets, and layers of cells; 50 and 8 make 146 000 degrees of freedom. Each run is a process
+of its own, and ends after some iterations: the first is without contact forces.
 """
 
 from __future__ import annotations
@@ -94,7 +94,14 @@ def main() -> None:
         return
     runs = {}
     for kinematics in ("small", "finite"):
-        size = ["--facets", str(arguments.facets), "--layers", str(arguments.layers), "--iterations", str(arguments.iterations)]
+        size = [
+            "--facets",
+            str(arguments.facets),
+            "--layers",
+            str(arguments.layers),
+            "--iterations",
+            str(arguments.iterations),
+        ]
         command = [sys.executable, __file__, "--own", kinematics, *size]
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
         done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)

@@ -21,6 +21,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,7 @@ def files(case: abut.Model, folder: Path, steps: int) -> None:
 def _prescribed(part: str, support: abut.Support) -> Iterator[dict[str, Any]]:
     """One process for each straight part of the support's history."""
     history = support.amplitude.points if support.amplitude is not None else ((0.0, 1.0), (1.0, 1.0))
-    for (start, first), (end, last) in zip(history, history[1:]):
+    for (start, first), (end, last) in pairwise(history):
         factor = f"({first!r}+({last!r}-{first!r})*(t-{start!r})/({end!r}-{start!r}))"
         values = [support.x, support.y, support.z]
         yield {

@@ -8,7 +8,7 @@ namespace abut {
 // The values of a CSR matrix with sorted rows in a pattern with sorted rows, zero where it has none, and how
 // many have no place in it.
 static nb::tuple values_in(Vector<std::int32_t> indptr, Vector<std::int32_t> indices, Vector<std::int32_t> own_indptr,
-                            Vector<std::int32_t> own_indices, Vector<double> own) {
+                           Vector<std::int32_t> own_indices, Vector<double> own) {
   const std::size_t rows = indptr.shape(0) - 1;
   if (own_indptr.shape(0) != rows + 1 || own_indices.shape(0) != own.shape(0))
     throw nb::value_error("matrix and pattern disagree");
@@ -45,9 +45,8 @@ static nb::tuple joined_pattern(Vector<std::int32_t> indptr, Vector<std::int32_t
     std::vector<std::int32_t> row, own;
     for (std::size_t i = 0; i < rows; ++i) {
       row.clear(), own.clear();
-      std::set_union(indices.data() + indptr(i), indices.data() + indptr(i + 1),
-                     other_indices.data() + other_indptr(i), other_indices.data() + other_indptr(i + 1),
-                     std::back_inserter(own));
+      std::set_union(indices.data() + indptr(i), indices.data() + indptr(i + 1), other_indices.data() + other_indptr(i),
+                     other_indices.data() + other_indptr(i + 1), std::back_inserter(own));
       const std::int32_t diagonal = std::int32_t(i);
       std::set_union(own.begin(), own.end(), &diagonal, &diagonal + 1, std::back_inserter(row));
       columns.insert(columns.end(), row.begin(), row.end());

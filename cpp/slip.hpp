@@ -5,8 +5,8 @@
 
 namespace abut {
 
-// n points, facet by facet: numbers of both facets, areas, and values of the pressure functions and of both facets' shape
-// functions, MAX_FACET_NODES each; nodal normals out of the contactor, MAX_FACET_NODES a facet.
+// n points, facet by facet: numbers of both facets, areas, and values of the pressure functions and of both facets'
+// shape functions, MAX_FACET_NODES each; nodal normals out of the contactor, MAX_FACET_NODES a facet.
 struct SlipView {
   std::size_t n;
   const std::int32_t *facet, *target_facet;

@@ -4,8 +4,8 @@
 
 namespace abut {
 
-// Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each, and in
-// 2D those along the turned normal (none: null) one.
+// Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each, and
+// in 2D those along the turned normal (none: null) one.
 struct Load {
   const double *pressure, *traction, *turned;
 };
@@ -27,13 +27,14 @@ struct Derivative {
   Blocks by_points, by_normals;
 };
 
-// Values of an entry of the operators: dim along the normal, and where tangential ones are wanted dim x dim of the rest.
+// Values of an entry of the operators: dim along the normal, and where tangential ones are wanted dim x dim of the
+// rest.
 inline std::size_t operator_width(std::size_t dim, bool tangential) { return tangential ? dim + dim * dim : dim; }
 
 void append(Derivative &to, Derivative &from); // which is empty afterwards, or of no use
 
-// Rows of `moment` and `operators` are MAX_FACET_NODES f + k, values dim of the gap and dim of the weight; those of `force`
-// are points, values dim x dim.
+// Rows of `moment` and `operators` are MAX_FACET_NODES f + k, values dim of the gap and dim of the weight; those of
+// `force` are points, values dim x dim.
 struct TangentLists {
   Derivative moment, force;
   Blocks operators;

@@ -1,5 +1,5 @@
-"""Writes the tables of docs/verification/benchmarks.md: python docs/make/benchmarks.py (a few minutes), or of some benchmarks:
-python docs/make/benchmarks.py NAME ..."""
+"""Writes the tables of docs/verification/benchmarks.md: python docs/make/benchmarks.py (a few minutes); or the rows of some
+benchmarks: python docs/make/benchmarks.py NAME ..."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def row(outcome: Outcome) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run; left out: all, else other rows stay")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="benchmarks to run; left out: all, else other rows stay"
+    )
     chosen = parser.parse_args().names or list(BENCHMARKS)
     outcomes = [outcome for name in chosen for outcome in run(BENCHMARKS[name])]
     header = ["name", "problem", "quantity", "value", "reference", "error", "limit", "rate (theory)"]

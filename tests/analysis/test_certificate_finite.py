@@ -88,7 +88,8 @@ def rippled(raw: NDArray[np.float64]) -> float:
     mesh = join({name: rectangle((0, 1), y, (16, 1), "quad4") for name, y in sides.items()})
     model = abut.Model(
         mesh, [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
-        [abut.Support("lower.bottom", x=0, y=0)], contacts=[abut.Contact("lower.top", "upper.bottom", pressure="P1")], plane="strain",
+        [abut.Support("lower.bottom", x=0, y=0)], plane="strain",
+        contacts=[abut.Contact("lower.top", "upper.bottom", pressure="P1")],
     )  # fmt: skip
     own = pair(model, model.contacts[0], supports(model))
     surface = own.contactor

@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 from tests.models.sheets import chain, sheet, together, turn
 
-from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair
+from abut.contact.block_rows import block_rows
+from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent, normal_derivative
 from abut.contact.geometry import Smoothing, nodal_normals, smoothing
+from abut.contact.moving_normals import normal_pattern
+from abut.contact.tangential import slip_operators
 from abut.errors import InputError
 from abut.mesh.surface import Surface
+from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
 from abut.types import Array
 
 LINES = ("line2", "line3")
@@ -194,6 +198,48 @@ def test_matching_meshes(kind: str, curve: float) -> None:
         middle = np.array([target.points[nodes[nodes >= 0]].mean(axis=0)[:2] for nodes in target.nodes])
         keep = np.all(np.abs(middle - 0.5) < 0.25, axis=1)
     assert error((turn(target.part(keep)), replace(target, points=target.points.copy())), step=1e-7) < 1e-5
+
+
+@pytest.mark.parametrize("kinds", [("line3", "line2"), ("quad8", "quad4"), ("tri6", "quad9")])
+def test_values_beside_derivatives(kinds: tuple[str, str]) -> None:
+    """What the derivatives come with is what ``couple`` integrates, and the rows of slips are those of its points."""
+    pair = lines(kinds) if kinds[0] in LINES else faces(kinds)
+    options, (pressure, traction) = CouplingOptions(keep_points=True), load(pair[0])
+    tangent = coupling_tangent(*pair, 1, options, pressure, traction)
+    coupling = couple(*pair, 1, options)
+    dim, n_points = pair[0].dim, point_columns(*pair)[1]
+    value, *places = tangent.operators
+    size = np.abs(coupling.operator).max()
+    assert np.abs(block_rows((value[..., :dim], *places), n_points) - coupling.operator).max() < 1e-12 * size
+    assert np.abs(tangent.gap_value - coupling.gap).max() < 1e-12 * np.abs(coupling.gap).max()
+    assert np.abs(tangent.weight_value - coupling.weight).max() < 1e-12 * coupling.weight.max()
+    if dim == 3:
+        square = block_rows((value[..., dim:].reshape(-1, dim, dim), *places), n_points).tocsr()
+        points = np.vstack([side.points for side in pair]) if pair[0].points is not pair[1].points else pair[0].points
+        for a, along in enumerate(slip_operators(coupling.points, points).along):
+            assert np.abs(square[a::dim] - along).max() < 1e-12 * size
+
+
+@pytest.mark.parametrize("kinds", [("line3", "line2"), ("quad8", "quad4"), ("tri6", "quad9")])
+def test_slips(kinds: tuple[str, str]) -> None:
+    """Of places that are held, against differences."""
+    own, other = lines(kinds) if kinds[0] in LINES else faces(kinds)
+    shared = np.vstack([own.points, other.points])
+    target = np.where(other.nodes >= 0, other.nodes + len(own.points), -1).astype(np.int32)
+    pair = replace(own, points=shared), replace(other, points=shared, nodes=target)
+    normals, held = normal_pattern(pair[0]), SlipPoints.of(*pair, 1, CouplingOptions())
+
+    def at(points: np.ndarray) -> SlipNow:
+        moved = replace(pair[0], points=points)
+        return slip_now(held, moved, replace(pair[1], points=points), normals.at(moved))
+
+    way = np.random.default_rng(4).uniform(-1, 1, shared.shape)
+    far = [at(shared + k * 1e-4 * way).value for k in (-2, -1, 1, 2)]
+    expected = (far[0] - 8 * far[1] + 8 * far[2] - far[3]).ravel() / 12e-4
+    now, dim = at(shared), pair[0].dim
+    turning = normals.at(pair[0]).turning(len(shared))
+    found = block_rows(now.by_points, len(shared)) + block_rows(now.by_normals, turning.shape[0] // dim) @ turning
+    assert np.abs(found @ way.ravel() - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 def tangent_of(pair: tuple[Surface, Surface], with_traction: bool) -> CouplingTangent:

@@ -281,7 +281,6 @@ def test_too_much_ends_with_words() -> None:
     [
         ({"adjust": 0.1}, "adjust"),
         ({"law": "constraint-function"}, "law"),
-        ({"pressure": "dual"}, "nowhere negative"),
         ({"method": "node-to-segment"}, "method"),
         ({"pressure": "P2"}, "quadratic"),
     ],

@@ -18,6 +18,11 @@ def block_rows(parts: CompressedRows, columns: int) -> Sparse:
     return sp.bsr_matrix(parts, shape=(value.shape[1] * (len(start) - 1), value.shape[2] * columns))
 
 
+def in_place(value: Array, parts: CompressedRows) -> CompressedRows:
+    """Other blocks where those of ``parts`` are."""
+    return value, parts[1], parts[2]
+
+
 def weights_of_rows(matrix: Sparse) -> Sparse:
     """A sparse matrix as ``added_up`` takes it."""
     return sp.bsr_matrix(matrix, blocksize=(1, 1))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from abut._core import couple_tangent
 from abut.cells import MAX_FACET_NODES
-from abut.contact.block_rows import CompressedRows, block_rows, interleaved
+from abut.contact.block_rows import CompressedRows, block_rows, in_place, interleaved
 from abut.contact.coupling import CouplingOptions, check_pair, cutting_arguments, point_columns
 from abut.contact.geometry import Smoothing
 from abut.contact.moving_normals import MovingNormals, normal_pattern
@@ -30,7 +30,7 @@ from abut.types import Array, Json, Sparse
 @dataclass(frozen=True)
 class ContactLoad:
     """Coefficients of the facet-wise functions. pressure: (9 n_facets,); traction: (9 n_facets, dim) vectors, of which the
-    part square to the normal counts; turned: (9 n_facets,) in 2D, along the normal turned by a right angle; None for none."""
+    part square to the normal counts; turned: (9 n_facets,) in 2D, along the normal turned by a right angle; or None."""
 
     pressure: Array
     traction: Array | None = None
@@ -44,7 +44,7 @@ class CouplingTangent:
 
     gap_value, weight_value: (9 n_facets,) int H_k g and int H_k.
     operators: of 9 n_facets rows, blocks (n, 1, dim) of int H_k (N_C - N_T) N and, in 3D with tractions, beside each other
-               (n, 1, dim + dim^2) with int H_k (N_C - N_T) (I - N N).
+               (n, 1, dim + dim^2) with int H_k (N_C - N_T) (I - N N): theory (T6).
     force:     (dim n_points,) sum_k int H_k (p_k N + (I - N N) t_k) (N_C - N_T) da: what the contact does to the nodes.
     force_tangent: (dim n_points, dim n_points), its derivative at constant p and t; not symmetric.
     by_points, by_normals: of 9 n_facets rows, blocks (n, 2, dim), derivatives of int H_k g and int H_k by points and by the
@@ -72,10 +72,10 @@ class CouplingTangent:
 
     def slope(self, shares: Array) -> Sparse:
         """(9 n_facets, dim n_points) in blocks, derivative of so much of int H_k g and of int H_k, (2,)."""
-        (points, *of_points), (normals, *of_normals) = self.by_points, self.by_normals
+        normals, points = ((shares @ parts[0])[:, None] for parts in (self.by_normals, self.by_points))
         dim = points.shape[2]
-        by_normals = block_rows(((shares @ normals)[:, None], *of_normals), self.turning.shape[0] // dim)
-        by_points = block_rows(((shares @ points)[:, None], *of_points), self.turning.shape[1] // dim)
+        by_normals = block_rows(in_place(normals, self.by_normals), self.turning.shape[0] // dim)
+        by_points = block_rows(in_place(points, self.by_points), self.turning.shape[1] // dim)
         return by_points + by_normals @ self.turning
 
 

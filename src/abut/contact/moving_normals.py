@@ -27,8 +27,8 @@ from abut.types import Array, Sparse
 @dataclass(frozen=True)
 class MovingNormals:
     """Nodal normals at one place of a surface. numbers: (n_facets, 9) of the m that differ, -1 where padded; values:
-    (n_facets, 9, dim) unit, out of the surface, zero where padded; blocks: of their derivatives, (value (n, dim, dim), column
-    (n,), start (m + 1,)), a column being a point."""
+    (n_facets, 9, dim) unit, out of the surface, zero where padded; blocks: of their derivatives, (value (n, dim, dim),
+    column (n,), start (m + 1,)), a column being a point."""
 
     numbers: NDArray[np.int32]
     values: NDArray[np.float64]
@@ -120,9 +120,7 @@ def _rate_places(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]
 
 def _all_rates(surface: Surface) -> list[NDArray[np.float64]]:
     """Derivatives of the area vectors at each facet's nodes by its points, (facets, nodes, nodes, dim, dim) by kind."""
-    return [
-        _area_rates(surface, kind, surface.nodes[facets, : CELLS[kind].nodes]) for kind, facets in by_kind(surface)
-    ]
+    return [_area_rates(surface, kind, surface.nodes[facets, : CELLS[kind].nodes]) for kind, facets in by_kind(surface)]
 
 
 def _area_rates(surface: Surface, kind: str, nodes: Array) -> NDArray[np.float64]:

@@ -166,6 +166,17 @@ def with_plain_facets(
     return replace(space, transfer=transfer)
 
 
+def partly_dual(space: PressureSpace, share: NDArray[np.float64]) -> PressureSpace:
+    """A space with dual functions and ordinary ones mixed on each facet: constants are in it as they were, and integrals of
+    the functions over whole facets stay. share: (n_facets,) of the dual ones, 0 to 1."""
+    if space.ordinary:
+        return space
+    rows = np.repeat(share, MAX_FACET_NODES)
+    if not rows.any():
+        return replace(space, transfer=space.plain)
+    return replace(space, transfer=(sp.diags(rows) @ space.transfer + sp.diags(1.0 - rows) @ space.plain).tocsr())
+
+
 def reduce(
     space: PressureSpace,
     coupling: Coupling,

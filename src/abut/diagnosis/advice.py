@@ -147,7 +147,8 @@ def _by_sliding(solution: Solution) -> Iterator[Remedy]:
     """Of bodies that supports leave free and loads push along, where friction gave all that it can in the last state that
     converged, or where none did."""
     model, steps = solution.model, [step for step in solution.steps if step.converged]
-    rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None]
+    selves = {contact.name for contact in model.contacts if contact.contactor == contact.target}
+    rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None and c.name not in selves]
     if not (rubbing and model.loads):
         return
     free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)

@@ -48,10 +48,16 @@ def check(model: Model) -> Report:
     return Report(in_order(findings), tuple(shown))
 
 
+def _built(model: Model, contact: Contact, supported: Constraints) -> Pair:
+    """The pair as a run builds it."""
+    sliding = model.finite and contact.kind != "tied"
+    return whole_pair(model, contact, supported) if sliding else pair(model, contact, supported)
+
+
 def _why(model: Model, contact: Contact, supported: Constraints, error: AbutError) -> Finding:
     """Why a contact cannot be built: its friction, if it can without, else where its surfaces are."""
     try:
-        pair(model, replace(contact, friction=0.0, friction_amplitude=None), supported)
+        _built(model, replace(contact, friction=0.0, friction_amplitude=None), supported)
     except AbutError:
         return not_facing(model, contact, error)
     return from_error(error, f"contact '{contact.name}'")
@@ -72,8 +78,7 @@ def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Findi
     outside = exterior(model.mesh) if model.contacts else np.empty((0, 2), np.int64)
     for contact in model.contacts:
         try:
-            sliding = model.finite and contact.kind != "tied"
-            one = whole_pair(model, contact, supported) if sliding else pair(model, contact, supported)
+            one = _built(model, contact, supported)
         except AbutError as error:
             findings.append(_why(model, contact, supported, error))
             continue

@@ -133,7 +133,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contactor": "surface or body that carries the pressure (slave), or a list; the softer, among equals the finer one",
         "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
-        "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties take P1 or P2",
+        "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "
+        "P1 or P2",
         "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure (of friction: its root)",
         "method": "node-to-segment methods are for comparison only",

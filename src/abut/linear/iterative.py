@@ -175,9 +175,8 @@ class Multigrid:
         elastic = system.stiffness if system.bending is None else system.stiffness + system.bending
         levels = hierarchy((0.5 * (elastic + elastic.T)).tocsr(), bodies.free, bodies.near_null, bodies.points)
         beside = loose(system, bodies, levels, self.count)
-        made = self._with_pressures(
-            replace(system, pairs=[wholly_covered(pair) for pair in system.pairs]), replace(levels, product=product), beside
-        )
+        whole = replace(system, pairs=[wholly_covered(pair) for pair in system.pairs])
+        made = self._with_pressures(whole, replace(levels, product=product), beside)
         return replace(made, system=system, pressures=replace(made.pressures, covered=covered))
 
     def _with_pressures(self, system: Linearised, levels: Hierarchy, beside: Loose) -> Iterative:

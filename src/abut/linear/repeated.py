@@ -14,7 +14,9 @@ from abut.linear.krylov import fgmres
 from abut.types import Foreign, Sparse
 
 EXACT = 1e-12  # reduction of the residual that stands for an exact solution
-WORTH = 36.0  # entries of the factors by row, for every iteration with old factors that half a factorisation would pay for
+WORTH = (
+    36.0  # entries of the factors by row, for every iteration with old factors that half a factorisation would pay for
+)
 FEW = 9  # such iterations, below which old factors are not tried; as many are spent to spare an analysis
 LOST = 0.01  # share of the entries that have no place in the pattern, above which it is made anew
 ROOM = 1.1  # growth of a pattern by entries that others had, up to which they are kept
@@ -72,7 +74,9 @@ class Repeated:
         self._factorised = None
         if not self._factorise(sp.csr_matrix((values, pattern.indices, pattern.indptr), shape=matrix.shape)):
             return None
-        return self._substitute(rhs, direct.SETTINGS[8]) if not lost else self._iterate(matrix, rhs, max(self._limit, FEW))
+        return (
+            self._substitute(rhs, direct.SETTINGS[8]) if not lost else self._iterate(matrix, rhs, max(self._limit, FEW))
+        )
 
     @property
     def _limit(self) -> int:

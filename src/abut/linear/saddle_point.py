@@ -96,9 +96,7 @@ def factorise(stiffness: Sparse, operator: Sparse, rows: Rows) -> Solve:
     """The same for several right-hand sides (residual of equilibrium, residual of the law) with one factorisation; of
     symmetric rows."""
     unit, n = np.median(stiffness.diagonal()), stiffness.shape[0]
-    factors = direct.Factorization(
-        store_diagonal(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n))))
-    )
+    factors = direct.Factorization(store_diagonal(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n)))))
 
     def solve(
         residual: NDArray[np.float64], of_law: NDArray[np.float64]

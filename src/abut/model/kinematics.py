@@ -15,7 +15,6 @@ from abut.model.contact import LAWS, METHODS, Contact
 from abut.model.solid import Solid
 
 KINEMATICS = ("small", "finite")
-NON_NEGATIVE = ("auto", "P1", "P2")  # pressures whose functions are nowhere negative: part of one may be covered
 
 
 def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
@@ -45,10 +44,6 @@ def _check_contact(contact: Contact) -> None:
         raise InputError(f"{where}: law: {contact.law if isinstance(contact.law, str) else 'a law of your own'} {why}")
     if contact.adjust:
         raise InputError(f"{where}: adjust {why}, and close the gap in the mesh")
-    if contact.pressure not in NON_NEGATIVE:
-        raise InputError(
-            f"{where}: pressure: {contact.pressure} {why}, or choose P1 or P2, whose functions are nowhere negative"
-        )
 
 
 def check_finite(

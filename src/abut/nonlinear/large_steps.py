@@ -37,9 +37,10 @@ def march_finite(
         begins = cuts or pace.turned or earlier is None or let_go(problem, earlier, before)
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
-        step = Step(problem, before, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
+        begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
+        step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
-            attempt = _ended(step, solve_finite(step, guess, time), time)
+            attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
         except NotConverged as reason:
             stands_in = control.fallback(number, reason)
             continue
@@ -79,6 +80,19 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
     return replace(
         before, time=time, multipliers=ahead, unknowns=before.unknowns + ratio * (before.unknowns - earlier.unknowns)
     )
+
+
+def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
+    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was if that fails."""
+    if not found.converged:
+        return step, found
+    here = step.problem.displacement(replace(found.state, time=time))
+    before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
+    if before is step.before:
+        return step, found
+    again = replace(step, before=before, limit=step.limit + len(step.done))
+    inside = solve_finite(again, found.state, time)
+    return (again, inside) if inside.converged else (step, found)
 
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
-from abut.nonlinear.apart import thrown_apart
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.holding import sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
@@ -98,7 +98,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, step.advanced(here.system, here.state, here.laws, forcing(here.error, before, BALANCED)))
+        there = _balance(step, _following(step, here, forcing(here.error, before, BALANCED)))
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -107,6 +107,13 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
         before, here, guess = here.error, there, None
         begun = _report(step, here, begun)
     return here
+
+
+def _following(step: Step, here: Balance, accuracy: float) -> State:
+    """One iteration on."""
+    state = sticking(step.problem, here.system, here.state)
+    laws = here.laws if state is here.state else laws_of(here.system, state)
+    return step.advanced(here.system, state, laws, accuracy)
 
 
 def _balanced(here: Balance, before: float) -> bool:
@@ -121,6 +128,7 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
+    state = sticking(step.problem, system, state)
     return step.advanced(system, state, laws_of(system, state), FINE)
 
 

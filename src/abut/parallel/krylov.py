@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -48,39 +49,42 @@ def multigrid(store: Store, number: int, motions: Vector) -> None:
     store["stiffness solver"] = solver
 
 
-def iterate(
-    store: Store,
-    number: int,
-    accuracy: float,
-    n: int,
-    small: Vector,
-    share: Vector,
-    unconstrained: Vector,
-    conditions: Conditions | None,
-    definite: bool = True,
-) -> Answer:
-    """Solve by Krylov iterations until the residual is ``accuracy`` times the right-hand side.
+@dataclass(frozen=True)
+class Task:
+    """A linear system to iterate on. number: of the stiffness in the store; n: how many pressures; accuracy: residual over
+    the right-hand side; small: (m, m) inverse of what resists motions that multigrid does not see; definite: the
+    stiffness."""
 
-    number: of the stiffness in the store; n: how many pressures; share: of the right-hand side; unconstrained: (n_own, m)
-    share of motions that multigrid does not see, small: (m, m) inverse of their resistance; definite: the stiffness."""
+    number: int
+    n: int
+    accuracy: float
+    small: Vector
+    definite: bool
+
+
+def iterate(store: Store, task: Task, share: Vector, unconstrained: Vector, conditions: Conditions | None) -> Answer:
+    """Solve by Krylov iterations. share: of the right-hand side; unconstrained: (n_own, m) share of motions that multigrid
+    does not see."""
     from petsc4py import PETSc
 
-    matrix = store[number]
+    matrix = store[task.number]
     given = conditions or NONE
-    pulls, lower = pressure_rows(matrix, n, given.coupled), pressure_rows(matrix, n, given.lower)
+    pulls, lower = pressure_rows(matrix, task.n, given.coupled), pressure_rows(matrix, task.n, given.lower)
     pulls.scale(-1.0)
     operator = matrix
-    if n:
-        upper, corner = PETSc.Mat().createTranspose(pulls), pressure_square(matrix.comm, n, given.corner)
+    if task.n:
+        upper, corner = PETSc.Mat().createTranspose(pulls), pressure_square(matrix.comm, task.n, given.corner)
         operator = PETSc.Mat().createNest([[matrix, upper], [lower, corner]], comm=matrix.comm)
         operator.assemble()
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(operator)
-    solver.setType("cg" if definite and not n else "fgmres")
+    solver.setType("cg" if task.definite and not task.n else "fgmres")
     solver.setGMRESRestart(RESTART)
-    solver.setTolerances(rtol=accuracy, atol=0.0, max_it=MOST)
+    solver.setTolerances(rtol=task.accuracy, atol=0.0, max_it=MOST)
     solver.setFromOptions()
-    blocks = Blocks(store["stiffness solver"], pulls, unconstrained, small, given.inverse, solver.getType() == "minres")
+    blocks = Blocks(
+        store["stiffness solver"], pulls, unconstrained, task.small, given.inverse, solver.getType() == "minres"
+    )
     solver.getPC().setType("python")
     solver.getPC().setPythonContext(blocks)
     answer = solve(solver, operator, share, given.rhs)

@@ -27,7 +27,7 @@ from abut.linear.schur_preconditioner import (
 )
 from abut.linear.solver import Count, NotConverged, Prepared, Solve
 from abut.parallel.factors import by_factors, direct_solver, drop_factors, factorise, keep_factors
-from abut.parallel.krylov import MULTIGRID, STIFFNESS, iterate, multigrid
+from abut.parallel.krylov import MULTIGRID, STIFFNESS, Task, iterate, multigrid
 from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.systems import FACTORS, Answer, Conditions
@@ -100,11 +100,9 @@ class Iterative:
     def _solve(self, accuracy: float, rhs: Vector, small: Vector, beside: Conditions | None) -> list[Answer]:
         n = 0 if beside is None else len(beside.rhs)
         shares = self.matrix.layout.shares(np.column_stack([rhs, self.loose.motions]))
-        definite = self.system.about is None
-        answers: list[Answer] = self.matrix.team.each(
-            iterate, self.matrix.kept.number, accuracy, n, small,
-            per_rank=[(v[:, 0], v[:, 1:], None if rank else beside, definite) for rank, (v,) in enumerate(shares)],
-        )  # fmt: skip
+        task = Task(self.matrix.kept.number, n, accuracy, small, self.system.about is None)
+        arguments = [(v[:, 0], v[:, 1:], None if rank else beside) for rank, (v,) in enumerate(shares)]
+        answers: list[Answer] = self.matrix.team.each(iterate, task, per_rank=arguments)
         self.count.iterations += answers[0].iterations
         return answers
 
@@ -314,8 +312,6 @@ def choose(problem: ContactProblem) -> str:
             f"PETSc's iterations know friction by Coulomb's law alone, and contact '{smooth[0]}' has the constraint "
             'function for it; choose law = "complementarity", or leave -ksp_type and -pc_type out'
         )
-    if smooth:
-        return "direct"
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
 

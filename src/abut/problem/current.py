@@ -9,13 +9,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.block_rows import added_up, block_rows, weights_of_rows
+from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
-from abut.contact.geometry import Smoothing, facet_sizes, smoothing
+from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
+from abut.problem.dual_functions import Mixed, Mixture, inner_now, mixed_part
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
@@ -42,12 +43,14 @@ class ContactNow:
 @dataclass(frozen=True)
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
-    None without friction; offset: what is added to the gap now."""
+    None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
+    space are the ordinary ones in this step, None for nowhere."""
 
     displacement: Array
     before: Array
     points: SlipPoints | None
     offset: float
+    inner: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -60,35 +63,49 @@ class Current:
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
-        pair, down = self.pair, self._down
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
+        mixture = self._mixture(contactor, target, options, place.inner)
+        pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
+        down = self._down if mixture is None else weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)
         tangents = self._tangents(contactor, normals, multipliers)
-        load = self._load(multipliers, tangents)
+        load = _load(pair, multipliers, tangents)
         by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
         points, dim = len(contactor.points), contactor.dim
-        along, *places = added_up(down, by.operators, points)
+        operators = added_up(down, by.operators, points)
+        along = operators[0]
         weight = np.asarray(down @ by.weight_value)
         slope = down @ by.slope(np.array([1.0, place.offset]))
         now = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
-                rows=block_rows((along[..., :dim], *places), points).tocsr(),
+                rows=block_rows(in_place(along[..., :dim], operators), points).tocsr(),
             ),
             np.asarray(down @ by.gap_value + place.offset * weight),
-            slope.tocsr(), by.force_tangent, np.zeros(len(pair.space), dtype=bool),
+            slope.tocsr(), by.force_tangent.tocsr(), np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
+        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
+        if mixed is not None:
+            p = multipliers[pair.normal]
+            now = replace(
+                now, by_position=now.by_position + mixed.gap(place.offset), bending=now.bending + mixed.pressed(p)
+            )
         if not pair.frictional:
             return now
         assert place.points is not None
         slip = slip_now(place.points, contactor, target, normals)
         if tangents is None:
             turned = tangents_2d(normals, *self._anchors)
-            made = rub_in_plane(self._down_along, by, added_up(self._down_along, by.operators, points), slip)
+            part = self._down_along if mixture is None else weights_of_rows(pair.components[1].transfer.T)
+            made = rub_in_plane(part, by, added_up(part, by.operators, points), slip)
+            if mixed is not None:
+                made = mixed.rubbed_in_plane(made, slip, multipliers[pair.tangential])
         else:
-            square = along[..., dim:].reshape(-1, dim, dim), *places
+            square = in_place(along[..., dim:].reshape(-1, dim, dim), operators)
             turned, made = tangents.now.tangents, rub_in_space(down, by, square, slip, tangents, contactor)
+            if mixed is not None:
+                made = mixed.rubbed_in_space(made, slip, tangents)
         covered = pair.space.plain.T @ place.points.moments(len(contactor))
         return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
 
@@ -106,6 +123,27 @@ class Current:
         """With what results ask for beside it; points: integration points, too."""
         options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
         return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+
+    def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
+        """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""
+        contactor, target = self.surfaces(displacement)
+        options = self._options(np.zeros_like(displacement))
+        share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
+        return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
+
+    def _mixture(
+        self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None
+    ) -> Mixture | None:
+        """None where no function is a dual one."""
+        if self.pair.space.ordinary:
+            return None
+        covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        return Mixture.of(contactor, covered, inner)
+
+    @cached_property
+    def _differences(self) -> list[Sparse]:
+        """Dual less ordinary functions, by component, (9 n_facets, n) each."""
+        return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
 
     def _options(self, moved: Array) -> CouplingOptions:
         rule = self.pair.contact.integration
@@ -162,14 +200,14 @@ class Current:
         along = np.where(index >= 0, multipliers[np.maximum(index, 0)], 0.0)
         return Tangents(self._frames, self._frames.at(contactor, normals), along, self._kept)
 
-    def _load(self, multipliers: Array, tangents: Tangents | None) -> ContactLoad:
-        pair = self.pair
-        pressure = pair.space.transfer @ multipliers[pair.normal]
-        if tangents is not None:
-            return ContactLoad(pressure, traction=pair.space.transfer @ tangents.traction)
-        if pair.frictional:
-            return ContactLoad(pressure, turned=pair.components[1].transfer @ multipliers[pair.tangential])
-        return ContactLoad(pressure)
+
+def _load(pair: Pair, multipliers: Array, tangents: Tangents | None) -> ContactLoad:
+    pressure = pair.space.transfer @ multipliers[pair.normal]
+    if tangents is not None:
+        return ContactLoad(pressure, traction=pair.space.transfer @ tangents.traction)
+    if pair.frictional:
+        return ContactLoad(pressure, turned=pair.components[1].transfer @ multipliers[pair.tangential])
+    return ContactLoad(pressure)
 
 
 def _with(now: ContactNow, made: Rubbing, tangents: Array, without_history: NDArray[np.bool_]) -> ContactNow:

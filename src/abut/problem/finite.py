@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.coupling_tangent import Differentiate, differentiated
+from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.contact_pairs import Pair
@@ -21,6 +22,7 @@ from abut.problem.slip_points import SlipPoints
 from abut.problem.terms import Motion, Share
 from abut.solution.state import State, at_rest
 
+INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
 BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
@@ -98,6 +100,18 @@ class FiniteProblem(ContactProblem):
         self.latest.drop()
         return self._marked(replace(now, history=history))
 
+    def with_ordinary_inside(self, before: State, here: Array, closed: NDArray[np.bool_]) -> State:
+        """A converged state from which a step begins, with the ordinary functions of "dual-P1" inside what is ``closed``,
+        (n,) multipliers, at displacements ``here`` (dim n_points,). The same object where they are there already."""
+        inner, old = {}, before.history.of(INNER)
+        for kind, part in zip(self.moving, self.split(closed.astype(float))):
+            if kind is not None and kind.pair.space.name == DUAL_P1:
+                inner[kind.pair.contact.name] = kind.inner(here, part > 0.0)
+        known = {name: old.get(name, np.zeros_like(facets)) for name, facets in inner.items()}
+        if all(np.array_equal(known[name], facets) for name, facets in inner.items()):
+            return before
+        return replace(before, history=before.history.with_term(INNER, inner))
+
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
         here = self.displacement(state)
@@ -162,7 +176,7 @@ class FiniteProblem(ContactProblem):
     def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
-        marks, result = before.history.of(POINTS), []
+        marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
         for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
@@ -172,7 +186,8 @@ class FiniteProblem(ContactProblem):
             points = None
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
-            result.append(kind.at(Place(here, there, points, constant + float(varying @ factors)), part))
+            offset = constant + float(varying @ factors)
+            result.append(kind.at(Place(here, there, points, offset, inner.get(pair.contact.name)), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:

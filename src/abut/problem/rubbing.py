@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.block_rows import CompressedRows, added_up, block_rows, row_numbers
+from abut.contact.block_rows import CompressedRows, added_up, block_rows, in_place, row_numbers
 from abut.contact.coupling_tangent import CouplingTangent
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipNow
@@ -32,13 +32,13 @@ class Rubbing:
 def rub_in_plane(part: Sparse, by: CouplingTangent, operators: CompressedRows, slip: SlipNow) -> Rubbing:
     """2D: forces of a traction are those of a pressure, turned by a right angle at every point. part: (m, 9 n_facets);
     operators: blocks (n, 1, 2) along the normal, functions added up."""
-    value, *places = operators
+    value = operators[0]
     points, normals = by.turning.shape[1] // 2, by.turning.shape[0] // 2
     rows = np.stack([-value[..., 1], value[..., 0]], axis=-1)
     by_normals = block_rows(added_up(part, slip.by_normals, normals), normals)
     by_points = block_rows(added_up(part, slip.by_points, points), points)
     return Rubbing(
-        block_rows((rows, *places), points).tocsr(),
+        block_rows(in_place(rows, operators), points).tocsr(),
         np.asarray(part @ slip.value[:, 0]),
         (by_points + by_normals @ by.turning).tocsr(),
     )
@@ -63,8 +63,8 @@ class Tangents:
 def rub_in_space(
     down: Sparse, by: CouplingTangent, operators: CompressedRows, slip: SlipNow, tangents: Tangents, contactor: Surface
 ) -> Rubbing:
-    """3D: two components along tangents that turn with the surface. down: (n, 9 n_facets); operators: blocks (n, 3, 3) square
-    to the normal, functions added up."""
+    """3D: two components along tangents that turn with the surface. down: (n, 9 n_facets); operators: blocks (n, 3, 3)
+    square to the normal, functions added up."""
     at, kept = tangents.now, tangents.kept
     points, normals = by.turning.shape[1] // 3, by.turning.shape[0] // 3
     value = down @ slip.value
@@ -92,4 +92,6 @@ def _along(tangents: Array, parts: CompressedRows) -> CompressedRows:
 
 def _at_normals(values: Array, number: NDArray[np.int32], normals: int) -> Sparse:
     """A block (n, r, 3) a row, in the columns of the nodal normals."""
-    return sp.bsr_matrix((values, number, np.arange(len(values) + 1)), shape=(values.shape[1] * len(values), 3 * normals))
+    return sp.bsr_matrix(
+        (values, number, np.arange(len(values) + 1)), shape=(values.shape[1] * len(values), 3 * normals)
+    )

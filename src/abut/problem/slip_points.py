@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 class SlipPoints:
     """Integration points (n of them) of the last converged step: constants of the next one, theory (G6).
 
-    facet, target_facet: (n,) int32; weight: (n,) area; pressure, own, other: (n, 9) values of the facet-wise pressure functions
-    and of the shape functions of the contactor's and the target's facet."""
+    facet, target_facet: (n,) int32; weight: (n,) area; pressure, own, other: (n, 9) values of the facet-wise pressure
+    functions and of the shape functions of the contactor's and the target's facet."""
 
     facet: NDArray[np.int32]
     target_facet: NDArray[np.int32]
@@ -84,7 +84,7 @@ class SlipNow:
 def slip_now(points: SlipPoints, contactor: Surface, target: Surface, normals: MovingNormals) -> SlipNow:
     """Of theory (G6), at the positions of two surfaces over one array of points, normals being the contactor's: sum w H
     (x_C - x_T) . tau in 2D (c = 1), with tau the normal turned by a right angle; in 3D (c = 3) the part of x_C - x_T square
-    to the normal."""
+    to the normal. Derivatives by theory (T7)."""
     raw = slip_tangent(
         points_c=contactor.points,
         nodes_c=contactor.nodes,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
@@ -95,12 +96,15 @@ class FramesNow:
 
 
 def anchors(contactor: Surface, space: PressureSpace) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """A facet and the number of its node where each function of a continuous space sits, (n,) each."""
+    """A facet and the number of its node where each function sits, (n,) each; of a facet alone, where it is largest."""
     split, _ = split_at_creases(contactor)
     facet, local = np.nonzero(split.nodes >= 0)
     node, first = np.unique(split.nodes[facet, local], return_index=True)
-    at = first[np.searchsorted(node, space.side)]
-    return facet[at], local[at]
+    at = first[np.searchsorted(node, np.maximum(space.side, node[0]))]
+    largest = np.asarray(sp.csc_matrix(abs(space.plain)).argmax(axis=0)).ravel()
+    alone = space.node < 0
+    facet, local = facet[at], local[at]
+    return np.where(alone, largest // MAX_FACET_NODES, facet), np.where(alone, largest % MAX_FACET_NODES, local)
 
 
 def tangents_2d(normals: MovingNormals, facet: NDArray[np.int64], local: NDArray[np.int64]) -> Array:

@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from abut.contact.coupling import CouplingOptions, couple, surface_degree
+from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.function_places import places
-from abut.contact.geometry import facet_sizes, full_moments
-from abut.contact.pressure_space import only, pressure_space
+from abut.contact.geometry import facet_products, facet_sizes, full_moments
+from abut.contact.pressure_space import DUAL, DUAL_P1, only, pressure_space, resolve
 from abut.contact.tangential import frames, slip_operators
-from abut.errors import InputError
 from abut.model import Contact, Model
 from abut.model.friction import friction_values
 from abut.problem.constraints import Constraints
@@ -37,12 +36,13 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)
-    name = _pressure(contact, surface_degree(contactor))
-    degree = int(name[1])
+    name, degree = resolve(contact.pressure, contactor, free_edge=contact.pressure != "auto")
+    if contact.frictional and name == DUAL_P1:
+        name = DUAL  # the law of friction looks at pressure and traction node by node
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
     options = CouplingOptions(rule.rule, rule.points, reach, keep_points=contact.frictional)
     coupling = couple(contactor, target, degree, options)
-    whole = replace(coupling, weight=full_moments(contactor, degree).ravel())
+    whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=facet_products(contactor, degree))
     space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
@@ -63,7 +63,8 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
     assert at is not None
     points, outward = places(whole.contactor, space)
     axes = [constraints.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
-    tangents, free = frames(-outward, np.stack(axes, axis=1))
+    moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
+    tangents, free = frames(-outward, moves)
     operators = slip_operators(at, whole.contactor.points)
     fields = [(space.transfer.T @ along).tocsr() for along in operators.along]
     index, first = np.full((n, dim), -1), n
@@ -84,11 +85,3 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
         coupling=replace(whole.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
         values=friction_values(model, whole.contact, points),
     )  # fmt: skip
-
-
-def _pressure(contact: Contact, highest: int) -> str:
-    """The pressure's space. Raises InputError for quadratic pressure on linear facets."""
-    name = f"P{highest}" if contact.pressure == "auto" else contact.pressure
-    if int(name[1]) > highest:
-        raise InputError(f"contact '{contact.name}': pressure: {name} needs quadratic facets; choose P1 or auto")
-    return name

@@ -1,0 +1,86 @@
+"""Bodies that contact alone holds, in Newton's method at large displacements: an iteration that lets go of one throws it
+away."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.problem.contact_pairs import Pair
+from abut.problem.linearised import Linearised
+from abut.problem.problem import ContactProblem
+from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
+from abut.solution.state import CLOSED, State
+
+FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step
+
+
+def sticking(problem: ContactProblem, system: Linearised, state: State) -> State:
+    """The state for an iteration: where a body could slip away since all that touches it slips, all of it sticks, which
+    tells the tractions that it takes."""
+    if system.restraint.by_supports or not _all_slips(system, state):
+        return state
+    rigid, supports = _now(problem, system)
+    if not _free(system, rigid, supports, state):
+        return state
+    parts = zip(system.pairs, system.split(state.status), system.split(state.slipping))
+    status = [
+        np.where(slips & _rubs(pair, system), CLOSED, own) if pair.frictional else own for pair, own, slips in parts
+    ]
+    stuck = state.with_status(np.concatenate(status).astype(np.int8))
+    return stuck if _free(system, rigid, supports, stuck) < _free(system, rigid, supports, state) else state
+
+
+def _rubs(pair: Pair, system: Linearised) -> NDArray[np.bool_]:
+    """(n,) multipliers with friction."""
+    return pair.of_functions(np.broadcast_to(~np.asarray(pair.friction(system.factors).none), len(pair.space)))
+
+
+def _all_slips(system: Linearised, state: State) -> bool:
+    """Whether there is a contact in which nothing sticks."""
+    parts = zip(system.pairs, system.split(state.slipping), system.split(state.closed))
+    return any(pair.frictional and slips.any() and not (closed & ~slips).any() for pair, slips, closed in parts)
+
+
+def _now(problem: ContactProblem, system: Linearised) -> tuple[RigidModes, NDArray[np.float64]]:
+    """Rigid motions of the bodies where they are now, and how supports resist them."""
+    assert system.about is not None
+    mesh, at = problem.model.mesh, system.about.at
+    moved = problem.constraints.displacement(at, system.factors).reshape(mesh.points.shape)
+    rigid = rigid_modes(replace(mesh, points=mesh.points + moved))
+    return rigid, resistance_of_supports(rigid, problem.constraints.near(at, system.factors))
+
+
+def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State) -> int:
+    """How many motions neither supports, ties, closed gaps nor what sticks resists."""
+    grams = [supports]
+    for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):
+        resists = closed & ~slips
+        resists[pair.normal] = closed[pair.normal]
+        grams.append(resistance_of_rows(rigid, pair.rows[np.ones(len(pair), bool) if pair.tied else resists]))
+    return int(free_motions(grams).shape[1])
+
+
+def thrown_apart(system: Linearised, before: State, now: State) -> str:
+    """Why the state ``now`` does not follow from the converged state ``before``; empty where it may.
+
+    Without friction or pressure a body that supports leave free is in equilibrium anywhere: Newton's method ends there when
+    an iteration has thrown it out of its contact."""
+    if system.restraint.by_supports:
+        return ""
+    parts = zip(system.pairs, system.split(before.closed), system.split(now.closed), system.split(system.gap(now)))
+    for pair, was, closed, gap in parts:
+        if pair.tied or not was[pair.normal].any() or closed[pair.normal].any():
+            continue
+        if _clearance(pair, gap) > FAR:
+            return f"contact '{pair.contact.name}' comes apart at once, and it is what holds a body"
+    return ""
+
+
+def _clearance(pair: Pair, gap: NDArray[np.float64]) -> float:
+    """The least gap over the facet size; infinite where nothing is opposite."""
+    weight = pair.space.weight
+    opposite = weight > 0.0
+    return float((gap[pair.normal][opposite] / weight[opposite]).min(initial=np.inf) / pair.size)

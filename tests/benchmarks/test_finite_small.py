@@ -1,0 +1,90 @@
+"""Examples of small displacements with finite kinematics and tiny loads: the same pressures, at rest and carried about."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import abut
+from abut.job.load import load_job
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+COARSE = {
+    "two-blocks/job": [("[6, 6, 6]", "[3, 3, 2]"), ("[5, 5, 4]", "[2, 2, 2]")],
+    "pushed-block/job": [
+        ("[32, 8]", "[12, 3]"), ("[22, 10]", "[8, 4]"), ("0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0", "0.5, 1.0"),
+    ],
+    "hertz-line/quad4": [],
+    "hertz-line/quad8": [("cells = 12", "cells = 4"), ("[24, 12]", "[8, 4]")],
+}  # fmt: skip
+TINY = 1e-6  # of the loads: what is of second order in the displacements is about as much of the pressures
+SAME = 1e-6
+
+
+def example(name: str, folder: Path) -> abut.Model:
+    """An example with a coarse mesh and tiny loads, both kinds of Hertz's with the complementarity law."""
+    text = (EXAMPLES / f"{name}.toml").read_text()
+    for fine, coarse in COARSE[name]:
+        assert fine in text
+        text = text.replace(fine, coarse)
+    (folder / "job.toml").write_text(text)
+    model = load_job(folder / "job.toml").model
+    supports = [replace(s, **{axis: getattr(s, axis) * TINY for axis in _axes(s)}) for s in model.supports]
+    loads = [replace(load, value=(TINY * np.array(load.value)).tolist()) for load in model.loads]
+    contacts = [replace(contact, law="complementarity") for contact in model.contacts]
+    return replace(model, supports=supports, loads=loads, contacts=contacts)
+
+
+def _axes(support: abut.Support) -> list[str]:
+    return [axis for axis in "xyz" if isinstance(getattr(support, axis), int | float)]
+
+
+def with_pressure(model: abut.Model, pressure: str, kinematics: str, **contact: Any) -> abut.Model:
+    contacts = [replace(c, pressure=pressure, **contact) for c in model.contacts]
+    return replace(model, contacts=contacts, kinematics=kinematics)
+
+
+def differences(small: abut.Model, large: abut.Model) -> float:
+    """Of pressures and tractions over the largest pressure."""
+    results = [abut.solve(model).contacts[0] for model in (small, large)]
+    top = np.nanmax(np.abs(results[0].multiplier))
+    wrong = [np.nanmax(np.abs(getattr(results[0], n) - getattr(results[1], n))) for n in ("multiplier", "pressure")]
+    if results[0].friction is not None and results[1].friction is not None:
+        sizes = [np.linalg.norm(r.friction.traction, axis=-1) for r in results]
+        wrong.append(np.nanmax(np.abs(sizes[0] - sizes[1])))
+    return float(max(wrong) / top)
+
+
+CASES = [
+    ("two-blocks/job", "P1", {}), ("two-blocks/job", "dual", {"friction": 0.3}), ("pushed-block/job", "dual", {}),
+    ("pushed-block/job", "P1", {"friction": 0.0}), ("hertz-line/quad4", "P1", {}), ("hertz-line/quad8", "P2", {}),
+    ("hertz-line/quad8", "dual", {}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "pressure", "contact"), CASES)
+def test_same_pressures(name: str, pressure: str, contact: dict[str, Any], tmp_path: Path) -> None:
+    model = example(name, tmp_path)
+    small, large = (with_pressure(model, pressure, k, **contact) for k in ("small", "finite"))
+    assert differences(small, large) < SAME
+
+
+@pytest.mark.parametrize(("pressure", "friction", "angle"), [("P1", 0.0, 70.0), ("dual", 0.3, -40.0)])
+def test_rigid_motions_change_nothing(pressure: str, friction: float, angle: float, tmp_path: Path) -> None:
+    """Both blocks, held at a side each, pressed by a load that follows, and turned about a skew axis far away at once."""
+    model = example("two-blocks/job", tmp_path)
+    held, times = ("lower.bottom", "upper.right"), abut.SolveOptions(times=(0.25, 0.5, 0.75, 1.0))
+    model = replace(
+        with_pressure(model, pressure, "small", friction=friction), loads=[abut.Pressure("upper.top", 210e3 * TINY)],
+        supports=[abut.Support(name, x=0.0, y=0.0, z=0.0) for name in held], solve=times,
+    )  # fmt: skip
+    turns = [
+        abut.Rotation(name, angle=float(np.deg2rad(angle)), centre=(30.0, -10.0, 5.0), axis=(0.3, -0.8, 0.5))
+        for name in held
+    ]
+    moved = replace(model, kinematics="finite", supports=[], rotations=turns)
+    assert differences(model, moved) < SAME
