@@ -39,7 +39,7 @@ from abut.solution.state import OPEN
 
 @dataclass(frozen=True)
 class PairState:
-    """A pair with its multipliers, their status, and the slips (n, 2) of those of friction, in the step and in all; limit:
+    """A pair with its multipliers, their status, and the slips (n, 4) of those of friction, as in its history; limit:
     of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
     that are pressures (of a tie: all)."""
 
@@ -66,7 +66,7 @@ class PairState:
         """Of all its multipliers, each (n,); slips: None where nothing has slipped yet; factors: of the model's
         histories."""
         every = slice(None) if pair.tied else pair.normal
-        slips = np.zeros((len(pair), 2)) if slips is None else slips
+        slips = np.zeros((len(pair), 4)) if slips is None else slips
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
         limit = pair.friction(factors) if pair.frictional else None
         return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN)

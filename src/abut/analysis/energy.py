@@ -63,7 +63,7 @@ def energy(
     contacts: Sequence[ContactResult],
     earlier: float = 0.0,
 ) -> Energy:
-    """Of the step between two states. slips: (n, 3) of each pair's multipliers, in the step, in all, and what came closer
+    """Of the step between two states. slips: (n, 4) of each pair's multipliers, in the step, in all, and what came closer
     without slip, None without friction; contacts: their results; earlier: the largest size of the steps before, beside
     which what is left after unloading is rounding."""
     moved = now.displacement - before.displacement
@@ -75,7 +75,7 @@ def energy(
     stepping = closing = 0.0
     for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
         if pair.frictional and slip is not None:
-            step, _, came = (pair.weight[:, None] * slip)[pair.tangential].T
+            step, _, came, _ = (pair.weight[:, None] * slip)[pair.tangential].T
             stepping += 0.5 * float(step @ (late - early))
             closing += 0.5 * float(came @ (late + early))
     internal, step = mean("internal"), np.abs(now.free - before.free)

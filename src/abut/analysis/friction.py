@@ -18,6 +18,7 @@ from abut.solution.state import CLOSED, OPEN, SLIPPING
 CONE = 1e-6  # traction beyond the bound, over the largest pressure
 OPPOSED = 1e-6  # power that slip in another direction than the traction's would need, over the largest
 STUCK = 1e-6  # slip that sticking points may have left, as a pressure over the largest
+NEW = 0.02  # share of the friction that a step has left out
 FAINT = 1e-3  # traction over the largest pressure from which down its work is not looked at by itself
 WORK = 1e-6  # friction that gives work back, over the largest of one multiplier
 PRESSED = 1e-6  # bound over the largest below which no share of it is told
@@ -38,7 +39,7 @@ def friction_result(
     limit: FrictionBound | None,
     earlier: FrictionResult | None = None,
 ) -> FrictionResult | None:
-    """multipliers, status: (n,) of the pair; slips: (n, 2), in the step and in all; limit: at the end of the step; earlier:
+    """multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit: at the end of the step; earlier:
     of the step before, None in the first; None without friction."""
     if limit is None:
         return None
@@ -175,6 +176,14 @@ def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | N
     return float(np.abs(force.sum(axis=0)).max()) / size, turn
 
 
+def _left_out(pair: Pair, new: Vector, bound: Vector) -> float:
+    """Share of the bound (n_functions,) at functions that carry no friction in the step, since they have no past."""
+    along = pair.index[:, 1:]
+    none = np.where(along >= 0, new[np.maximum(along, 0)], 0.0).max(axis=1, initial=0.0) > 0.0
+    force = bound * pair.space.weight
+    return float(force[none].sum() / max(float(force.sum()), 1e-300))
+
+
 def friction_checks(
     pair: Pair,
     multipliers: Vector,
@@ -200,6 +209,7 @@ def friction_checks(
     most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
     work = -(power * pair.space.weight)[states != OPEN]
     unit = max(1e-300, float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
+    left_out = _left_out(pair, slips[:, 3], np.where(np.isfinite(bound), bound, pressure))
     values = (
         ("friction cone", max(float((size - bound).max(initial=0.0)), 0.0) / largest, CONE,
          "tangential traction beyond the coefficient times the pressure, over the largest pressure"),
@@ -209,5 +219,7 @@ def friction_checks(
          "slip of sticking points in the step, as a pressure over the largest pressure"),
         ("friction work", max(-float(work.min(initial=0.0)), 0.0) / unit, WORK,
          "work that friction gives back at a point in the step, over the largest that it takes"),
+        ("friction left out", left_out, NEW,
+         "share of what friction can carry where none counts in the step, as the target was not opposite before"),
     )  # fmt: skip
-    return tuple(Check(name, *line) for line in values)
+    return tuple(Check(name, *line) for line in (values if left_out else values[:-1]))

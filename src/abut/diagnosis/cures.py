@@ -126,6 +126,13 @@ def _friction(contact: Contact, result: ContactResult, sides: str) -> str:
     return "raise solve.max_iterations: stick and slip are not final"
 
 
+def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
+    swap = f", or {sides}" if sides else ""
+    return (
+        f"shorter steps, so that less of the target comes under the contactor's edge in each; or round that edge{swap}"
+    )
+
+
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "force balance": _balance,
     "moment balance": _balance,
@@ -144,4 +151,5 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "slip direction": _friction,
     "sticking": _friction,
     "friction work": _friction,
+    "friction left out": _left_out,
 }

@@ -228,21 +228,21 @@ class ContactProblem:
         return [pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors for pair in self.pairs]
 
     def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
-        """Slip of each pair with friction by name, (n, 3): in the step that ends ``now``, in all steps in contact, and what
-        did not count in the step because it only came closer."""
+        """Slip of each pair with friction by name, (n, 4): in the step that ends ``now``, in all steps in contact, what did
+        not count in the step because it only came closer, and 1 where nothing did, for want of a past."""
         system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
         result, gaps = {}, system.gap(now)
-        if system.forgotten is not None:  # what has no past has nothing to slip from
-            gaps = np.where(system.forgotten, 0.0, gaps)
-        states = system.split(gaps), system.split(now.closed), self._approached(before)
-        for pair, gap, closed, approached in zip(self.pairs, *states):
+        forgotten = np.zeros(len(gaps), bool) if system.forgotten is None else system.forgotten
+        gaps = np.where(forgotten, 0.0, gaps)  # what has no past has nothing to slip from
+        states = system.split(gaps), system.split(now.closed), system.split(forgotten), self._approached(before)
+        for pair, gap, closed, new, approached in zip(self.pairs, *states):
             if pair.frictional:
                 step = gap / pair.weight
                 step[pair.normal] = 0.0
-                total = earlier.get(pair.contact.name, np.zeros((len(pair), 3)))[:, 1]
+                total = earlier.get(pair.contact.name, np.zeros((len(pair), 4)))[:, 1]
                 came = np.zeros(len(pair))
                 came[pair.tangential] = approached / pair.weight[pair.tangential]
-                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0), came])
+                result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0), came, new])
         return result
 
     def _shares(self, before: State, now: State, prescribed: NDArray[np.float64] | None = None) -> list[Share]:
