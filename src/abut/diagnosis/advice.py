@@ -149,7 +149,7 @@ def _by_sliding(solution: Solution) -> Iterator[Remedy]:
     model, steps = solution.model, [step for step in solution.steps if step.converged]
     selves = {contact.name for contact in model.contacts if contact.contactor == contact.target}
     rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None and c.name not in selves]
-    if not (rubbing and model.loads):
+    if not (rubbing and model.loads) or _hurried(solution):
         return
     free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)
     loose = free.reshape(-1, model.dim).max(axis=1) > LOOSE
@@ -206,6 +206,12 @@ def _by_deformation(solution: Solution) -> Iterator[Remedy]:
             f"solve.steps = {4 * len(model.solve.ends)}",
             "steps are halved six times at most; a load that no deformation balances stays out of reach",
         )
+
+
+def _hurried(solution: Solution) -> bool:
+    """Whether fewer iterations were allowed than by default, and all of them taken: that alone may be why."""
+    limit = solution.model.solve.max_iterations
+    return limit < SolveOptions().max_iterations and len(solution.steps[-1].iterations) >= limit
 
 
 def _by_limit(solution: Solution) -> Iterator[Remedy]:

@@ -29,6 +29,7 @@ ROUNDING = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
 NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
+SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
 
 
@@ -110,10 +111,19 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
 
 
 def _following(step: Step, here: Balance, accuracy: float) -> State:
-    """One iteration on."""
+    """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
     state = sticking(step.problem, here.system, here.state)
     laws = here.laws if state is here.state else laws_of(here.system, state)
-    return step.advanced(here.system, state, laws, accuracy)
+    there = step.advanced(here.system, state, laws, accuracy)
+    seen = {state.status.tobytes()}
+    while step.careful and len(seen) < SETTLED:
+        wanted = np.where(_bare(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
+        if wanted.tobytes() in seen:
+            break
+        seen.add(wanted.tobytes())
+        state = here.state.with_status(wanted)
+        there = step.advanced(here.system, state, laws_of(here.system, state), accuracy)
+    return there
 
 
 def _balanced(here: Balance, before: float) -> bool:
