@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -28,6 +29,7 @@ from abut.contact.nodal_recovery import (
     corner_values,
     facet_node_values,
 )
+from abut.contact.pressure_space import WEAK_SUPPORT, covered_share
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -108,6 +110,7 @@ class PairState:
         return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
 
 
+EDGE = 0.05  # share of the force that functions with hardly any support may carry
 FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
 
 
@@ -165,7 +168,21 @@ def _checks(
     return (
         *certificate(pair, state.values, nodal, state.penetration, residual, share, around, balanced),
         *friction_checks(pair, state.multipliers, state.status, state.slips, state.limit, largest),
+        *(_edge_check(state) if around.moving and not pair.tied else ()),
     )
+
+
+def _edge_check(state: PairState) -> Iterator[Check]:
+    """How much is carried by functions that small displacements would remove, since their support is hardly covered."""
+    pair = state.pair
+    force = np.maximum(state.pressure, 0.0) * pair.space.weight
+    weak = covered_share(pair.space, pair.contactor, pair.coupling) < WEAK_SUPPORT
+    if force[weak].any():
+        text = f"share of the force at nodes less than {WEAK_SUPPORT:.0%} of whose facets has a target opposite"
+        yield Check(
+            pair.contact.name, "force at the target's edge", float(force[weak].sum() / force.sum()), EDGE, text,
+            pressure=float(state.pressure[~weak].max(initial=0.0)),
+        )  # fmt: skip
 
 
 def _undeformed(mesh: Mesh, surface: Surface) -> Surface:

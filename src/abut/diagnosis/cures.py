@@ -145,6 +145,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "resolution": _resolution,
     "facet moments": _moments,
     "loaded area without target": _bare,
+    "force at the target's edge": _bare,
     "removed multipliers": _removed,
     "covered twice": _twice,
     "friction cone": _friction,
