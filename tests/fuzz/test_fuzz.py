@@ -44,6 +44,13 @@ def test_a_target_without_a_normal_somewhere_has_its_report(number: int, tmp_pat
     assert (result.status, result.problem) == (0, "")
 
 
+@pytest.mark.parametrize("number", [4384, 8472])
+def test_a_coefficient_of_nearly_nothing_is_none(number: int, tmp_path: Path) -> None:
+    """In the constraint function: tractions over such a bound were too large to be squared."""
+    (result,) = run_all([number], 1, tmp_path)
+    assert (result.status, result.problem) == (0, "")
+
+
 def test_an_input_is_made_by_its_number_alone() -> None:
     assert make(1, 17).files == make(1, 17).files
     assert make(1, 17).files != make(1, 18).files

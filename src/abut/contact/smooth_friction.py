@@ -12,6 +12,7 @@ from abut.contact.laws import LawResult, LawState, constraint_function
 
 FAINT = 1e-12  # of the largest pressure, under which there is no friction to speak of
 SOLUTIONS = 60  # of Newton's method for one function; about 20 are used for the smallest epsilon
+LARGEST = 1e100  # s of the function, whose square and quotient by epsilon are still numbers
 Array = NDArray[np.float64]
 
 
@@ -23,7 +24,7 @@ def friction_function(size: Array, epsilon: float) -> tuple[Array, Array]:
 
     Solved for y = (s - f) / epsilon, in which s is a rising concave function: Newton's method goes up to the solution from
     below, and never past it."""
-    share = 2.0 / np.pi
+    share, size = 2.0 / np.pi, np.minimum(size, LARGEST)
     y = np.maximum(size / (share + epsilon), (size - 1.0) / epsilon)
     for _ in range(SOLUTIONS):
         slope = share / (1.0 + y * y) + epsilon
@@ -77,9 +78,9 @@ class SmoothCoulomb:
             by_slip = np.broadcast_to(np.where(on, -unit, 0.0), (len(slip), *unit.shape))
             by_drag = np.broadcast_to(np.where(on, 0.0, -soft * unit), by_slip.shape)
             return np.where(pressed[:, None], -slip, -soft * drag), by_slip, by_drag, np.zeros_like(slip)
-        rubs = pressed & (bound > 0.0)
-        limit = np.where(rubs, bound, 1.0)
         length = np.linalg.norm(trial, axis=1)
+        rubs = pressed & (bound > length / LARGEST)
+        limit = np.where(rubs, bound, np.maximum(length, 1.0))
         size = length / limit
         share, rise = friction_function(size, self.epsilon)
         along = trial / np.maximum(length, 1e-300)[:, None]
