@@ -1,4 +1,4 @@
-"""A rubber roller between two plates, which hold it by contact alone."""
+"""Bodies that contact alone holds: a rubber roller between two plates, a block pushed across a plate."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from models.sliding import bent
 RUBBER = abut.NeoHooke(young=5.0, poisson=0.4)
 STEEL = abut.LinearElastic(young=5e3, poisson=0.3)
 DOWN, LENGTH = 0.08, 2.0  # in radii of the roller: together, and the upper plate along
+FRICTION, LOAD = 0.3, 4.5  # of the block: coefficient, and what presses it down
 TREAD = [f"roller.{side}" for side in ("left", "bottom", "right", "top")]
 
 
@@ -40,5 +41,30 @@ def roller(cells: int = 8, friction: float = 0.4) -> abut.Model:
         contacts=[
             abut.Contact(TREAD, "road.top", name="road", friction=friction),
             abut.Contact(TREAD, "roof.bottom", name="roof", friction=friction),
+        ],
+    )  # fmt: skip
+
+
+def pushed_across() -> abut.Model:
+    """A block under pressure, pushed along a plate by a third body without friction; it is free to move sideways."""
+    mesh = make.join(
+        {
+            "plate": make.box((0, 6), (0, 3), (-1, 0), (8, 4, 1), "hex8"),
+            "block": make.box((1, 2.5), (0.75, 2.25), (0, 1), (3, 3, 2), "hex8"),
+            "pusher": make.box((0.5, 1), (0.5, 2.5), (0.1, 0.9), (1, 4, 2), "hex8"),
+        }
+    )
+    stiff = abut.LinearElastic(young=1000.0, poisson=0.3)
+    pressed, along = abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0))), abut.Amplitude(((0.2, 0.0), (1.0, 1.0)))
+    return abut.Model(
+        mesh, kinematics="finite", solids=[abut.Solid(name, stiff) for name in ("plate", "block", "pusher")],
+        supports=[
+            abut.Support("plate.bottom", x=0, y=0, z=0), abut.Support("pusher.left", y=0, z=0),
+            abut.Support("pusher.left", x=0.6, amplitude=along),
+        ],
+        loads=[abut.Pressure("block.top", value=LOAD / 2.25, amplitude=pressed)],
+        contacts=[
+            abut.Contact("block.bottom", "plate.top", name="floor", friction=FRICTION),
+            abut.Contact("block.left", "pusher.right", name="push"),
         ],
     )  # fmt: skip

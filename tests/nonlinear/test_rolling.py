@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import abut
-from models.rolling import DOWN, LENGTH, roller
+from models.rolling import DOWN, FRICTION, LENGTH, LOAD, pushed_across, roller
 
 
 @pytest.mark.parametrize("friction", [0.4, 0.1])
@@ -20,3 +20,17 @@ def test_a_roller_goes_half_as_far_as_the_plate_that_rolls_it(friction: float) -
     moved = solution.displacement[centre].ravel()
     assert moved == pytest.approx([0.5 * LENGTH, -0.5 * DOWN], abs=0.02)
     assert all(contact.active for contact in solution.contacts)
+
+
+def test_a_block_that_slips_all_over_may_be_free_across() -> None:
+    """Pushed along a plate by a smooth pusher, nothing but friction holds it across, and all of it slips: it takes the
+    coefficient times the load and no more."""
+    solution = abut.solve(pushed_across())
+    assert solution.converged
+    floor, push = solution.contacts
+    assert abs(floor.force[0]) == pytest.approx(
+        FRICTION * abs(floor.force[2]), rel=1e-3
+    )  # facets lean by the indentation
+    assert abs(floor.force[2]) == pytest.approx(LOAD, rel=5e-3)  # pressure that follows the stretched top
+    assert abs(floor.force[1]) < 1e-6 * LOAD
+    assert all(check.passed for check in solution.certificate)

@@ -14,13 +14,13 @@ from abut.problem.problem import ContactProblem
 from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
 from abut.solution.state import CLOSED, State
 
-FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step
+FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step, and bodies move in an iteration
 
 
-def sticking(problem: ContactProblem, system: Linearised, state: State) -> State:
-    """The state for an iteration: where a body could slip away since all that touches it slips, all of it sticks, which
-    tells the tractions that it takes."""
-    if system.restraint.by_supports or not _all_slips(system, state):
+def sticking(problem: ContactProblem, system: Linearised, before: State, state: State, thrown: State) -> State:
+    """The state for an iteration that would end at ``thrown``: where that throws a body which slips all over, all of it
+    sticks, which tells the tractions that it takes; else as it is. before: the last converged state."""
+    if system.restraint.by_supports or not _all_slips(system, state) or not _far(problem, before, state, thrown):
         return state
     rigid, supports = _now(problem, system)
     if not _free(system, rigid, supports, state):
@@ -31,6 +31,13 @@ def sticking(problem: ContactProblem, system: Linearised, state: State) -> State
     ]
     stuck = state.with_status(np.concatenate(status).astype(np.int8))
     return stuck if _free(system, rigid, supports, stuck) < _free(system, rigid, supports, state) else state
+
+
+def _far(problem: ContactProblem, before: State, state: State, thrown: State) -> bool:
+    """Whether an iteration moves points by more than a facet, and twice as far as any have moved in the step."""
+    start, here, there = (problem.displacement(each) for each in (before, state, thrown))
+    size = max(pair.size for pair in problem.pairs)
+    return bool(np.abs(there - here).max() > FAR * size + 2.0 * np.abs(here - start).max())
 
 
 def _rubs(pair: Pair, system: Linearised) -> NDArray[np.bool_]:

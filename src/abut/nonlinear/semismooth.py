@@ -112,10 +112,8 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
 
 def _following(step: Step, here: Balance, accuracy: float) -> State:
     """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
-    state = sticking(step.problem, here.system, here.state)
-    laws = here.laws if state is here.state else laws_of(here.system, state)
-    there = step.advanced(here.system, state, laws, accuracy)
-    seen = {state.status.tobytes()}
+    there = _iterated(step, here.system, here.state, here.laws, accuracy)
+    seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
         wanted = np.where(_bare(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
         if wanted.tobytes() in seen:
@@ -124,6 +122,13 @@ def _following(step: Step, here: Balance, accuracy: float) -> State:
         state = here.state.with_status(wanted)
         there = step.advanced(here.system, state, laws_of(here.system, state), accuracy)
     return there
+
+
+def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
+    """One iteration on, in which no body is thrown out of its contact."""
+    there = step.advanced(system, state, laws, accuracy)
+    stuck = sticking(step.problem, system, step.before, state, there)
+    return there if stuck is state else step.advanced(system, stuck, laws_of(system, stuck), accuracy)
 
 
 def _balanced(here: Balance, before: float) -> bool:
@@ -138,8 +143,7 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    state = sticking(step.problem, system, state)
-    return step.advanced(system, state, laws_of(system, state), FINE)
+    return _iterated(step, system, state, laws_of(system, state), FINE)
 
 
 def _kept(step: Step, here: Balance) -> Balance:
