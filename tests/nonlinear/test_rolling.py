@@ -27,7 +27,7 @@ def test_a_block_that_slips_all_over_may_be_free_across() -> None:
     coefficient times the load and no more."""
     solution = abut.solve(pushed_across())
     assert solution.converged
-    floor, push = solution.contacts
+    floor, _ = solution.contacts
     assert abs(floor.force[0]) == pytest.approx(
         FRICTION * abs(floor.force[2]), rel=1e-3
     )  # facets lean by the indentation
