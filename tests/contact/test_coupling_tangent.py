@@ -6,18 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from tests.models.sheets import chain, sheet, together, turn
 
 from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
-from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent, normal_derivative
+from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
 from abut.contact.geometry import Smoothing, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
 from abut.contact.tangential import slip_operators
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
-from abut.types import Array
+from abut.types import Array, Sparse
 
 LINES = ("line2", "line3")
 FACES = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -336,6 +337,19 @@ def test_threads_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.array_equal(found[0].force, found[1].force)
     for name in ("gap", "weight", "force_tangent"):
         assert (getattr(found[0], name) != getattr(found[1], name)).nnz == 0
+
+
+def normal_derivative(contactor: Surface, across: Smoothing | None = None) -> Sparse:
+    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded;
+    theory (T2)."""
+    normals = normal_pattern(contactor, across).at(contactor)
+    turning = normals.turning(len(contactor.points))
+    used = np.flatnonzero(normals.numbers.ravel() >= 0)
+    ones, dim = np.ones(len(used)), contactor.dim
+    place = sp.csr_matrix(
+        (ones, (used, normals.numbers.ravel()[used])), (normals.numbers.size, turning.shape[0] // dim)
+    )
+    return (sp.kron(place, sp.identity(dim), format="csr") @ turning).tocsr()
 
 
 @pytest.mark.parametrize("kind", LINES + FACES)

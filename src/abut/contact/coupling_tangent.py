@@ -13,7 +13,6 @@ from functools import cached_property, reduce
 from operator import add
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import couple_tangent
@@ -162,19 +161,6 @@ def assembled(parts: Sequence[Json], turning: Sparse) -> CouplingTangent:
         sum(part["gap"] for part in parts), sum(part["weight"] for part in parts), operators, force.ravel(),
         (by_points + by_normals @ turning).tocsr(), of_points, of_normals, turning,
     )  # fmt: skip
-
-
-def normal_derivative(contactor: Surface, across: Smoothing | None = None) -> Sparse:
-    """Derivative of ``nodal_normals(contactor, across)`` by its points, (9 n_facets dim, dim n_points), zero where padded;
-    theory (T2)."""
-    normals = normal_pattern(contactor, across).at(contactor)
-    turning = normals.turning(len(contactor.points))
-    used = np.flatnonzero(normals.numbers.ravel() >= 0)
-    ones, dim = np.ones(len(used)), contactor.dim
-    place = sp.csr_matrix(
-        (ones, (used, normals.numbers.ravel()[used])), (normals.numbers.size, turning.shape[0] // dim)
-    )
-    return (sp.kron(place, sp.identity(dim), format="csr") @ turning).tocsr()
 
 
 def _check_load(contactor: Surface, options: CouplingOptions, pressure: Array, traction: Array | None) -> None:
