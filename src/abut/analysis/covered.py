@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import PressureSpace, only
+from abut.contact.rim import rim
+from abut.contact.symmetry_planes import Planes
 from abut.contact.tangential import SlipOperators, arms
-from abut.problem.contact_pairs import Pair
+from abut.problem.contact_pairs import Pair, planes_of
+from abut.problem.current import Current
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.friction_rows import Slip
 from abut.problem.linearised import Linearised
@@ -24,7 +27,8 @@ def covered(
     problem: FiniteProblem, system: Linearised, state: State, here: Array
 ) -> tuple[Linearised, State, NDArray[np.bool_]]:
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
-    nothing is opposite to, and which are left, (n,); weights are those of the part that is covered."""
+    nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of symmetry
+    those where the contactor ends now."""
     pairs, keeps, slips = [], [], state.history.of(CONTACTS)
     for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
         keep = np.ones(len(pair), dtype=bool)
@@ -32,7 +36,8 @@ def covered(
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
             seen = kind.shown(here, points=pair.frictional and pair.contactor.dim == 3)
-            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen))
+            planes = None if pair.contactor.dim == 2 else _planes_now(problem, kind, pair)
+            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen), planes=planes)
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
@@ -48,6 +53,12 @@ def covered(
     history = state.history.with_term(CONTACTS, slips)
     kept = replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
     return smaller, kept, keep
+
+
+def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes | None:
+    """Of symmetry, at which a contactor ends now."""
+    border = rim(pair.contactor)
+    return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
 def _with_arms(pair: Pair, seen: Coupling) -> Slip | None:

@@ -37,7 +37,7 @@ def march_finite(
         begins = cuts or pace.turned or earlier is None or let_go(problem, earlier, before)
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
-        begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
+        begin = problem.with_functions(before, before)
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -83,11 +83,11 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was if that fails."""
+    """Once more with the functions and gaps that belong to the end of the step; as it was if that fails."""
     if not found.converged:
         return step, found
-    here = step.problem.displacement(replace(found.state, time=time))
-    before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
+    end = replace(found.state, time=time)
+    before = step.problem.with_functions(step.before, end)
     if before is step.before:
         return step, found
     again = replace(step, before=before, limit=step.limit + len(step.done))

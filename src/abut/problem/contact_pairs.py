@@ -257,7 +257,7 @@ def pair(
         components=(space,), compliance=both.compliance,
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=_planes(contactor, border, beyond, constraints),
+        planes=planes_of(contactor, border, beyond, constraints),
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
@@ -297,7 +297,7 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
 
 
-def _planes(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes | None:
+def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes | None:
     """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
     target ends there too. None in 2D."""
     if contactor.dim == 2:

@@ -10,13 +10,15 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
-from abut.contact.coupling import Coupling, CouplingOptions, couple
+from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
+from abut.contact.rim import Rim, goes_on
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
-from abut.problem.dual_functions import Mixed, Mixture, inner_now, mixed_part
+from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
+from abut.problem.gap_fit import Sides, Sight, fit_change
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
@@ -44,13 +46,14 @@ class ContactNow:
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
     None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
-    space are the ordinary ones in this step, None for nowhere."""
+    space are the ordinary ones in this step, None for nowhere; fit: (9 n_facets,) as from ``Current.fit``, or None."""
 
     displacement: Array
     before: Array
     points: SlipPoints | None
     offset: float
     inner: Array | None = None
+    fit: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,7 @@ class Current:
         tangents = self._tangents(contactor, normals, multipliers)
         load = _load(pair, multipliers, tangents)
         by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
+        by = by if place.fit is None else replace(by, gap_value=by.gap_value + place.fit)
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]
@@ -119,10 +123,28 @@ class Current:
         options = self._options(np.zeros_like(displacement))
         return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
 
+    @cached_property
+    def fits(self) -> bool:
+        """Whether gaps are fitted: those of dual functions on quadratic facets, without friction."""
+        pair = self.pair
+        return pair.space.degree < surface_degree(pair.contactor) and not pair.frictional and not pair.space.ordinary
+
+    def fit(self, displacement: Array) -> Array:
+        """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""
+        contactor, target = self.surfaces(displacement)
+        sides = Sides(self.pair.contactor, self.pair.target, contactor, target)
+        sight = Sight.of(contactor, target, self._options(np.zeros_like(displacement)), self._across)
+        share = dual_share(sight.covered(len(contactor)) / full_moments(contactor, 0)[:, 0])
+        return fit_change(sides, sight, self._across, share)
+
     def shown(self, displacement: Array, points: bool = False) -> Coupling:
         """With what results ask for beside it; points: integration points, too."""
         options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
         return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+
+    def goes_on(self, here: Pair, border: Rim) -> NDArray[np.bool_]:
+        """Edges (m,) of the rim beyond which the target goes on, ``here`` being the pair with surfaces as they are now."""
+        return goes_on(here.contactor, border, here.target, NEAR * self._facet)
 
     def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
         """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""

@@ -48,7 +48,7 @@ class Mixture:
         n = len(contactor)
         covered, area = coupling.weight.reshape(n, -1).sum(axis=1), full_moments(contactor, 0)[:, 0]
         least = _least_around(contactor, covered / area)
-        share = np.clip(SLOPE * ((covered / area)[least] - HALF), 0.0, 1.0)
+        share = dual_share((covered / area)[least])
         return cls(share if inner is None else np.where(inner == 0.0, share, 0.0), least, covered, area)
 
     def space(self, dual: PressureSpace) -> PressureSpace:
@@ -122,6 +122,11 @@ class Mixed:
         value = value[..., :dim]
         value = np.stack([-value[..., 1], value[..., 0]], axis=-1) if turned else value
         return block_rows((value, column, start), points // dim).tocsr()
+
+
+def dual_share(covered: Array) -> Array:
+    """Share of dual functions on facets of which the target covers ``covered``, both (n_facets,)."""
+    return np.asarray(np.clip(SLOPE * (covered - HALF), 0.0, 1.0))
 
 
 def mixed_part(pair: Pair, mixture: Mixture) -> Pair:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -24,6 +24,9 @@ from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
+FIT = "fit"  # whose history is what fits add to the weighted gaps, in the step that ended
+SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
+SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
 BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
 
@@ -68,7 +71,7 @@ class FiniteProblem(ContactProblem):
     def start(self) -> State:
         """As in ``Problem``: multipliers that touch at the outset are closed."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
-        closed = []
+        rest, closed = self.with_functions(rest, rest), []
         for pair, now in zip(self.pairs, self._contacts(rest, rest, self.displacement(rest), rest)):
             touching = (now.gap <= TOUCHING * pair.size * pair.weight)[pair.normal] & ~bare(now.pair)
             closed.append(np.ones(len(pair), bool) if pair.tied else pair.of_functions(touching))
@@ -100,17 +103,36 @@ class FiniteProblem(ContactProblem):
         self.latest.drop()
         return self._marked(replace(now, history=history))
 
-    def with_ordinary_inside(self, before: State, here: Array, closed: NDArray[np.bool_]) -> State:
-        """A converged state from which a step begins, with the ordinary functions of "dual-P1" inside what is ``closed``,
-        (n,) multipliers, at displacements ``here`` (dim n_points,). The same object where they are there already."""
-        inner, old = {}, before.history.of(INNER)
-        for kind, part in zip(self.moving, self.split(closed.astype(float))):
+    def with_functions(self, before: State, now: State) -> State:
+        """A converged state from which a step begins, with the functions and gaps that belong to the state ``now``: ordinary
+        functions of "dual-P1" inside what is closed there, theory (P9), and fits, theory (G15). The same object where they
+        are there already, fits to ``SAME_FIT``."""
+        here, inner, fits = self.displacement(now), {}, {}
+        for kind, closed in zip(self.moving, self.split(now.closed)):
             if kind is not None and kind.pair.space.name == DUAL_P1:
-                inner[kind.pair.contact.name] = kind.inner(here, part > 0.0)
-        known = {name: old.get(name, np.zeros_like(facets)) for name, facets in inner.items()}
-        if all(np.array_equal(known[name], facets) for name, facets in inner.items()):
+                inner[kind.pair.contact.name] = kind.inner(here, closed)
+            if kind is not None and kind.fits:
+                fits[kind.pair.contact.name] = kind.fit(here)
+        known = before.history.of(INNER)
+        same = all(np.array_equal(known.get(name, np.zeros_like(facets)), facets) for name, facets in inner.items())
+        if same and self._fitted(before.history.of(FIT), fits, now):
             return before
-        return replace(before, history=before.history.with_term(INNER, inner))
+        return replace(before, history=before.history.with_term(INNER, inner).with_term(FIT, fits))
+
+    def _fitted(self, known: Mapping[str, Array], fits: Mapping[str, Array], now: State) -> bool:
+        """Whether known fits serve at the state ``now``, where others belong: of their size and of the largest pressure, at
+        multipliers that are closed."""
+        for pair, values, closed in zip(self.pairs, self.split(now.multipliers), self.split(now.closed)):
+            name, touching = pair.contact.name, closed[pair.normal]
+            if name not in fits:
+                continue
+            if name not in known or not touching.any():
+                return False
+            weight, down = pair.weight[pair.normal], pair.space.transfer.T
+            change, size = (np.abs(down @ fit / weight)[touching].max() for fit in (fits[name] - known[name], fits[name]))
+            if change > SAME_FIT * size and pair.stiffness * change > SAME_PRESSURE * values[pair.normal].max():
+                return False
+        return True
 
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
@@ -176,7 +198,8 @@ class FiniteProblem(ContactProblem):
     def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
-        marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
+        marks, inner, fits = (before.history.of(term) for term in (POINTS, INNER, FIT))
+        result = []
         for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
@@ -187,7 +210,8 @@ class FiniteProblem(ContactProblem):
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
             offset = constant + float(varying @ factors)
-            result.append(kind.at(Place(here, there, points, offset, inner.get(pair.contact.name)), part))
+            name = pair.contact.name
+            result.append(kind.at(Place(here, there, points, offset, inner.get(name), fits.get(name)), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:

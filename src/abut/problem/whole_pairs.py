@@ -36,7 +36,7 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)
-    name, degree = resolve(contact.pressure, contactor, free_edge=contact.pressure != "auto")
+    name, degree = resolve(contact.pressure, contactor)
     if contact.frictional and name == DUAL_P1:
         name = DUAL  # the law of friction looks at pressure and traction node by node
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
