@@ -20,23 +20,33 @@ COARSE = {
     ],
     "hertz-line/quad4": [],
     "hertz-line/quad8": [("cells = 12", "cells = 4"), ("[24, 12]", "[8, 4]")],
+    "hertz-sphere/job": [("cells = 16", "cells = 3")],
+    "twisted-hub/job": [
+        ("[1, 32, 10]", "[1, 12, 4]"), ("[2, 32, 6]", "[1, 12, 2]"), ("[1, 32, 1]", "[1, 12, 1]"),
+        ("0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0", "0.5, 1.0"),
+    ],
+    "pin-lug/job": [('"pin-lug.msh"', f'"{(EXAMPLES / "pin-lug" / "pin-lug.msh").as_posix()}"')],
 }  # fmt: skip
 TINY = 1e-6  # of the loads: what is of second order in the displacements is about as much of the pressures
 SAME = 1e-6
+# gaps are known to rounding of the coordinates: the loads under which that does not count
+ROUNDED = {"pin-lug/job": 1e-5, "twisted-hub/job": 3e-6}
 
 
 def example(name: str, folder: Path) -> abut.Model:
     """An example with a coarse mesh and tiny loads, both kinds of Hertz's with the complementarity law."""
+    tiny = ROUNDED.get(name, TINY)
     text = (EXAMPLES / f"{name}.toml").read_text()
     for fine, coarse in COARSE[name]:
         assert fine in text
         text = text.replace(fine, coarse)
     (folder / "job.toml").write_text(text)
     model = load_job(folder / "job.toml").model
-    supports = [replace(s, **{axis: getattr(s, axis) * TINY for axis in _axes(s)}) for s in model.supports]
-    loads = [replace(load, value=(TINY * np.array(load.value)).tolist()) for load in model.loads]
-    contacts = [replace(contact, law="complementarity") for contact in model.contacts]
-    return replace(model, supports=supports, loads=loads, contacts=contacts)
+    supports = [replace(s, **{axis: getattr(s, axis) * tiny for axis in _axes(s)}) for s in model.supports]
+    loads = [replace(load, value=(tiny * np.array(load.value)).tolist()) for load in model.loads]
+    contacts = [replace(contact, law="complementarity", offset=tiny * contact.offset) for contact in model.contacts]
+    rigid = [replace(body, rz=tiny * float(body.rz)) for body in model.rigid]
+    return replace(model, supports=supports, loads=loads, contacts=contacts, rigid=rigid)
 
 
 def _axes(support: abut.Support) -> list[str]:
@@ -63,6 +73,8 @@ CASES = [
     ("two-blocks/job", "P1", {}), ("two-blocks/job", "dual", {"friction": 0.3}), ("pushed-block/job", "dual", {}),
     ("pushed-block/job", "P1", {"friction": 0.0}), ("hertz-line/quad4", "P1", {}), ("hertz-line/quad8", "P2", {}),
     ("hertz-line/quad8", "dual", {}),
+    *((name, "auto", {}) for name in COARSE if name != "pin-lug/job"),
+    pytest.param("pin-lug/job", "auto", {}, marks=pytest.mark.long),
 ]  # fmt: skip
 
 

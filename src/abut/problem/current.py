@@ -26,6 +26,7 @@ from abut.types import Sparse
 
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
+FAR = 8.0  # facets up to which a target counts as one that covers a facet, for its functions
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
 
 
@@ -68,7 +69,7 @@ class Current:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
-        mixture = self._mixture(contactor, target, options, place.inner)
+        mixture = self._mixture(contactor, target, place.inner)
         pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
         down = self._down if mixture is None else weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)
@@ -120,7 +121,7 @@ class Current:
 
     def points(self, displacement: Array) -> SlipPoints:
         """The integration points at a displacement, from which the next step's slip counts."""
-        options = self._options(np.zeros_like(displacement))
+        options = self._options()
         return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
 
     @cached_property
@@ -133,13 +134,13 @@ class Current:
         """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""
         contactor, target = self.surfaces(displacement)
         sides = Sides(self.pair.contactor, self.pair.target, contactor, target)
-        sight = Sight.of(contactor, target, self._options(np.zeros_like(displacement)), self._across)
+        sight = Sight.of(contactor, target, self._options(), self._across)
         share = dual_share(sight.covered(len(contactor)) / full_moments(contactor, 0)[:, 0])
         return fit_change(sides, sight, self._across, share)
 
     def shown(self, displacement: Array, points: bool = False) -> Coupling:
         """With what results ask for beside it; points: integration points, too."""
-        options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
+        options = replace(self._options(), keep_gap_samples=True, keep_points=points)
         return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
 
     def goes_on(self, here: Pair, border: Rim) -> NDArray[np.bool_]:
@@ -149,16 +150,15 @@ class Current:
     def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
         """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""
         contactor, target = self.surfaces(displacement)
-        options = self._options(np.zeros_like(displacement))
+        options = self._options()
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
         return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
-    def _mixture(
-        self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None
-    ) -> Mixture | None:
-        """None where no function is a dual one."""
+    def _mixture(self, contactor: Surface, target: Surface, inner: Array | None) -> Mixture | None:
+        """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""
         if self.pair.space.ordinary:
             return None
+        options = replace(self._options(), reach=FAR * self._facet)
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
         return Mixture.of(contactor, covered, inner)
 
@@ -167,11 +167,13 @@ class Current:
         """Dual less ordinary functions, by component, (9 n_facets, n) each."""
         return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
 
-    def _options(self, moved: Array) -> CouplingOptions:
-        rule = self.pair.contact.integration
-        nodes = self._nodes
-        way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
-        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
+    def _options(self, moved: Array | None = None) -> CouplingOptions:
+        """moved: (dim n_points,) in the step so far, None for nothing."""
+        rule, way = self.pair.contact.integration, 0.0
+        if moved is not None:
+            nodes = moved.reshape(-1, self.pair.contactor.dim)[self._nodes]
+            way = float(np.linalg.norm(nodes, axis=1).max(initial=0.0))
+        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * way)
 
     @cached_property
     def _across(self) -> Smoothing:

@@ -129,7 +129,9 @@ class FiniteProblem(ContactProblem):
             if name not in known or not touching.any():
                 return False
             weight, down = pair.weight[pair.normal], pair.space.transfer.T
-            change, size = (np.abs(down @ fit / weight)[touching].max() for fit in (fits[name] - known[name], fits[name]))
+            change, size = (
+                np.abs(down @ fit / weight)[touching].max() for fit in (fits[name] - known[name], fits[name])
+            )
             if change > SAME_FIT * size and pair.stiffness * change > SAME_PRESSURE * values[pair.normal].max():
                 return False
         return True

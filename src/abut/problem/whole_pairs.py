@@ -16,6 +16,7 @@ from abut.model import Contact, Model
 from abut.model.friction import friction_values
 from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, pair, reach_of
+from abut.problem.dual_functions import Mixture
 from abut.problem.friction_rows import Slip
 from abut.problem.held_multipliers import without_held
 from abut.problem.scales import scales
@@ -36,7 +37,8 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)
-    name, degree = resolve(contact.pressure, contactor)
+    touches_itself = contactor.kin is not None and contact.pressure == "auto"
+    name, degree = resolve(contact.pressure, contactor, free_edge=not touches_itself)
     if contact.frictional and name == DUAL_P1:
         name = DUAL  # the law of friction looks at pressure and traction node by node
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
@@ -46,10 +48,11 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
-    rows = (space.transfer.T @ coupling.operator).tocsr()
+    seen = space if space.ordinary else Mixture.of(contactor, coupling, None).space(space)
+    rows = (seen.transfer.T @ coupling.operator).tocsr()
     made = Pair(
         contact, contactor, target, coupling, space, rows, (rows @ constraints.free).tocsr(),
-        prescribed=rows @ constraints.prescribed, gap=space.transfer.T @ coupling.gap,
+        prescribed=rows @ constraints.prescribed, gap=seen.transfer.T @ coupling.gap,
         scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
         index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
     )  # fmt: skip
