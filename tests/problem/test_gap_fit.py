@@ -17,7 +17,10 @@ from abut.problem.gap_fit import Sides, Sight, fit_change
 
 OPTIONS = CouplingOptions(reach=1.0)
 CASES = {
-    "plane": (chain("line3", 3, lambda s: [2.0 * s, 0.0 * s]), turn(chain("line3", 4, lambda s: [2.0 * s, 0.1 + 0.2 * s**2]))),
+    "plane": (
+        chain("line3", 3, lambda s: [2.0 * s, 0.0 * s]),
+        turn(chain("line3", 4, lambda s: [2.0 * s, 0.1 + 0.2 * s**2])),
+    ),
     "space": (
         sheet("tri6", 2, lambda s, t: [s, t, 0.02 * s**2 - 0.05 * s * t], 0.0, 1),
         turn(sheet("quad8", 3, lambda s, t: [s, t, 0.1 + 0.1 * s**2 + 0.05 * t**2], 0.0, 1)),

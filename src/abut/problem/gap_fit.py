@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Places:
-    """Points (n of them) of a contactor's facets, each with the point of the target opposite. facet, target_facet: (n,); own,
+    """Points (n of them) of a contactor's facets, each with the target's point opposite. facet, target_facet: (n,); own,
     other: (n, 9) values of the shape functions of the contactor's and the target's facet."""
 
     facet: NDArray[np.int32]
@@ -129,7 +129,7 @@ def _rigid_gaps(sides: Sides, sight: Sight, normals: Array) -> tuple[Array, Arra
 
 @dataclass(frozen=True)
 class _Patches:
-    """How patches of a surface have moved: their rotation (n, dim, dim), and their middle at the outset and now, (n, dim)."""
+    """How patches of a surface have moved: rotation (n, dim, dim), middle at the outset and now, (n, dim)."""
 
     turn: Array
     start: Array
