@@ -19,7 +19,8 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
                                Vector<std::int32_t> subdivide_t, int degree, bool axisymmetric, double reach,
                                double rounding, bool hidden, Matrix<double> kin_c, Matrix<double> kin_t,
                                Matrix<double> pressure, Tensor3<double> traction, Matrix<double> turned,
-                               Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points) {
+                               Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points,
+                               bool tangential) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
   add_kin(contactor, kin_c), add_kin(target, kin_t);
@@ -32,7 +33,7 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
     throw nb::value_error("turned must be (facets, MAX_FACET_NODES)");
   TangentLists lists;
   const Load load{pressure.data(), traction.shape(0) ? traction.data() : nullptr,
-                  turned.shape(0) ? turned.data() : nullptr};
+                  turned.shape(0) ? turned.data() : nullptr, tangential};
   {
     nb::gil_scoped_release release;
     lists = tangent({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
@@ -44,7 +45,7 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
   out["moment_by_normals"] = to_python(lists.moment.by_normals, rows, 2, dim);
   out["force_by_points"] = to_python(lists.force.by_points, n_points, dim, dim);
   out["force_by_normals"] = to_python(lists.force.by_normals, n_points, dim, dim);
-  out["operators"] = to_python(lists.operators, rows, 1, operator_width(dim, load.rubs()));
+  out["operators"] = to_python(lists.operators, rows, 1, operator_width(dim, load.rubs));
   out["gap"] = to_numpy(std::move(lists.gap));
   out["weight"] = to_numpy(std::move(lists.weight));
   const std::size_t loads = lists.loaded.size();
@@ -95,7 +96,7 @@ void bind_tangent(nb::module_ &m) {
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("axisymmetric"), nb::arg("reach"),
         nb::arg("rounding"), nb::arg("hidden"), nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
         nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(), nb::arg("turned").noconvert(),
-        nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"),
+        nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"), nb::arg("tangential"),
         "The coupling and its derivatives by points and nodal normals; see abut.contact.coupling_tangent.");
   m.def("slip_tangent", &slip_tangent, nb::arg("points_c").noconvert(), nb::arg("nodes_c").noconvert(),
         nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(), nb::arg("nodes_t").noconvert(),

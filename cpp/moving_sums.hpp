@@ -20,7 +20,7 @@ public:
              const Numbering &numbering)
       : moments_(moments), lists_(lists), contactor_(both.contactor.surface), target_(both.target.surface),
         degree_(both.options.degree), rounding_(both.options.rounding), load_(load), numbering_(numbering),
-        width_(operator_width(D, load.rubs())), couples_(load.rubs() ? Lever<D>::FORCES : 0) {}
+        width_(operator_width(D, load.rubs)), couples_(load.rubs ? Lever<D>::FORCES : 0) {}
 
   void begin(std::size_t f, const Facet &c) {
     f_ = f, c_ = &c, functions_ = pressure_functions(c.kind, degree_), hit_ = false;

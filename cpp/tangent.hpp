@@ -5,10 +5,10 @@
 namespace abut {
 
 // Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each, and
-// in 2D those along the turned normal (none: null) one.
+// in 2D those along the turned normal (none: null) one. rubs: whether there are tractions, facets or not.
 struct Load {
   const double *pressure, *traction, *turned;
-  bool rubs() const { return traction || turned; }
+  bool rubs;
 };
 
 // Numbers of what is differentiated by: the points of both surfaces, and the contactor's nodal normals.

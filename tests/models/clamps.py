@@ -45,21 +45,42 @@ def clamp(
     """The arms are pressed together where they are outside, the upper one moved along a little as well; in 3D between
     two planes, as in plane strain."""
     solid = cell in SOLID_CELLS
-    lines = [np.linspace(0.0, 1.0, cells[0] + 1), np.linspace(0.0, 1.0, cells[1] + 1)]
-    made = grid([*lines, np.array([0.0, DEPTH])] if solid else lines, cell, bowed)
-    inside, outside = ("back", "front") if solid else ("top", "bottom")
-    mesh = replace(made, surfaces={
-        **made.surfaces,
-        "lower": _where(made, inside, lambda x: x[:, 1] < 0.0), "upper": _where(made, inside, lambda x: x[:, 1] > 0.0),
-        "below": _where(made, outside, lambda x: (x[:, 1] < 0.0) & (x[:, 0] > 0.5 * ARM)),
-        "above": _where(made, outside, lambda x: (x[:, 1] > 0.0) & (x[:, 0] > 0.5 * ARM)),
-    })  # fmt: skip
+    mesh = _jaws(cell, cells, [0.0, DEPTH] if solid else None)
     between = [abut.Support("bottom", z=0.0), abut.Support("top", z=0.0)] if solid else []
     return abut.Model(
         mesh, [abut.Solid("body", RUBBER)],
         [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.03, y=-GAP - closing), *between],
         contacts=[abut.Contact(*sides, name="jaws", **contact)], plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
+
+
+def wrung(cell: str, sides: tuple[Names, Names] = ("body", "body"), **contact: Any) -> abut.Model:
+    """The clamp in space, free in its depth: closed, and then its upper arm is pushed across and turned about the way in
+    which it closed."""
+    first = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 1.0)))
+    then = abut.Amplitude(((0.0, 0.0), (0.5, 0.0), (1.0, 1.0)))
+    return abut.Model(
+        _jaws(cell, (16, 1), [0.0, 0.25, 0.5]), [abut.Solid("body", RUBBER)],
+        [
+            abut.Support("below", x=0.0, y=0.0, z=0.0), abut.Support("above", y=-GAP - 0.1, amplitude=first),
+            abut.Support("above", x=lambda p: 0.2 * (p[:, 2] - 0.25), z=lambda p: 0.12 - 0.2 * (p[:, 0] - PLACE), amplitude=then),
+        ],
+        contacts=[abut.Contact(*sides, name="jaws", **contact)], kinematics="finite",
+        solve=abut.SolveOptions(times=tuple(np.linspace(0.125, 1.0, 8))),
+    )  # fmt: skip
+
+
+def _jaws(cell: str, cells: tuple[int, int], depth: list[float] | None) -> Mesh:
+    """Of a strip with so many cells along and through it; depth: of the layers of solid cells."""
+    lines = [np.linspace(0.0, 1.0, n + 1) for n in cells]
+    made = grid(lines if depth is None else [*lines, np.array(depth)], cell, bowed)
+    inside, outside = ("top", "bottom") if depth is None else ("back", "front")
+    return replace(made, surfaces={
+        **made.surfaces,
+        "lower": _where(made, inside, lambda x: x[:, 1] < 0.0), "upper": _where(made, inside, lambda x: x[:, 1] > 0.0),
+        "below": _where(made, outside, lambda x: (x[:, 1] < 0.0) & (x[:, 0] > 0.5 * ARM)),
+        "above": _where(made, outside, lambda x: (x[:, 1] > 0.0) & (x[:, 0] > 0.5 * ARM)),
+    })  # fmt: skip
 
 
 def _where(mesh: Mesh, surface: str, chosen: Any) -> NDArray[np.int64]:

@@ -139,6 +139,7 @@ def of_facets(
         normal_numbers=np.ascontiguousarray(normals.numbers[facets]),
         target_offset=offset,
         n_points=n_points,
+        tangential=load.traction is not None or load.turned is not None,
     )
     return raw if len(facets) == len(contactor) else _among_all(raw, facets, len(contactor))
 
