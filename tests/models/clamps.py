@@ -89,7 +89,13 @@ def _where(mesh: Mesh, surface: str, chosen: Any) -> NDArray[np.int64]:
     return rows[[bool(chosen(mesh.points[nodes[nodes >= 0]]).all()) for nodes in mesh.facets(rows).nodes]]
 
 
-def tube(cell: str, closing: float = 0.1, sides: tuple[Names, Names] = ("body", "body"), cells: int = 24) -> abut.Model:
+def tube(
+    cell: str,
+    closing: float = 0.1,
+    sides: tuple[Names, Names] = ("body", "body"),
+    cells: int = 24,
+    **contact: Any,
+) -> abut.Model:
     """A thick tube, pressed together where it is outside at the top and the bottom until its inside touches itself."""
     solid = cell in SOLID_CELLS
     lines = [np.linspace(0.0, 1.0, cells + 1), np.array([0.0, 1.0])]
@@ -105,7 +111,7 @@ def tube(cell: str, closing: float = 0.1, sides: tuple[Names, Names] = ("body", 
     between = [abut.Support("bottom", z=0.0), abut.Support("top", z=0.0)] if solid else []
     middle = [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.0, y=-2.0 * INNER - closing)]
     return abut.Model(
-        mesh, [abut.Solid("body", RUBBER)], [*middle, *between], contacts=[abut.Contact(*sides, name="inside")],
+        mesh, [abut.Solid("body", RUBBER)], [*middle, *between], contacts=[abut.Contact(*sides, name="inside", **contact)],
         plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
 
