@@ -12,11 +12,13 @@ import abut
 from abut.contact.sides import Names
 from abut.mesh.make.block import SOLID_CELLS, grid
 from abut.mesh.mesh import Mesh
+from abut.solution import Solution
 
 ARM, RADIUS, THICKNESS, DEPTH = 1.2, 0.4, 0.3, 0.2
 NOSE, PLACE, WIDTH = 0.18, 0.9, 0.45  # of the bulge inside of each arm
 GAP = 2.0 * (RADIUS - 0.5 * THICKNESS - NOSE)  # between the noses
 OUTER, INNER = 1.0, 0.75  # radii of the tube
+WHOLE, NAMED = ("body", "body"), ("lower", "upper")  # what clamp and tube may be in contact by
 RUBBER = abut.NeoHooke(young=100.0, poisson=0.3)
 Array = NDArray[np.float64]
 
@@ -63,7 +65,8 @@ def wrung(cell: str, sides: tuple[Names, Names] = ("body", "body"), **contact: A
         _jaws(cell, (16, 1), [0.0, 0.25, 0.5]), [abut.Solid("body", RUBBER)],
         [
             abut.Support("below", x=0.0, y=0.0, z=0.0), abut.Support("above", y=-GAP - 0.1, amplitude=first),
-            abut.Support("above", x=lambda p: 0.2 * (p[:, 2] - 0.25), z=lambda p: 0.12 - 0.2 * (p[:, 0] - PLACE), amplitude=then),
+            abut.Support("above", x=lambda p: 0.2 * (p[:, 2] - 0.25), amplitude=then),
+            abut.Support("above", z=lambda p: 0.12 - 0.2 * (p[:, 0] - PLACE), amplitude=then),
         ],
         contacts=[abut.Contact(*sides, name="jaws", **contact)], kinematics="finite",
         solve=abut.SolveOptions(times=tuple(np.linspace(0.125, 1.0, 8))),
@@ -126,3 +129,22 @@ def _joined(mesh: Mesh) -> Mesh:
     _, first, number = np.unique(np.round(mesh.points, 9), axis=0, return_index=True, return_inverse=True)
     blocks = tuple(replace(b, nodes=number.ravel()[b.nodes].astype(np.int32)) for b in mesh.blocks)
     return replace(mesh, points=mesh.points[first], blocks=blocks)
+
+
+def balanced(solution: Solution) -> None:
+    """Both sides' forces, and their moments about the origin where the points are now, add up to none."""
+    pair = solution.contacts[0]
+    now = solution.model.mesh.points + solution.displacement
+    sides = (pair.contactor.node_ids, pair.contactor_forces), (pair.target.node_ids, pair.target_forces)
+    size = np.abs(pair.contactor_forces).sum()
+    linear = sum(forces.sum(axis=0) for _, forces in sides)
+    turn = sum(np.sum(cross(now[ids], forces), axis=0) for ids, forces in sides)
+    assert size > 0.0
+    assert np.abs(linear).max() < 1e-13 * size
+    assert np.abs(turn).max() < 1e-12 * size
+
+
+def cross(x: Array, force: Array) -> Array:
+    if x.shape[1] == 3:
+        return np.cross(x, force)
+    return x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0]

@@ -146,7 +146,9 @@ def _on_target(pair: Pair, multipliers: Vector) -> Vector:
         return np.zeros(pair.rows.shape[1])
     assert pair.slip is not None
     flat = pair.contactor.dim == 2
-    along = [pair.components[1].transfer @ multipliers[pair.tangential]] if flat else traction_values(pair, multipliers).T
+    along = (
+        [pair.components[1].transfer @ multipliers[pair.tangential]] if flat else traction_values(pair, multipliers).T
+    )
     parts = zip(pair.slip.operators.along, along, strict=True)
     return np.asarray(sum(operator.T @ values for operator, values in parts))
 
