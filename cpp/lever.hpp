@@ -23,16 +23,25 @@ public:
       }
   }
 
-  // moment (dual_e . t) N, the forces on the edges, with dual_e square to N and dual_e . edge_f = 1 where e is f, else
-  // 0. Edges are constants here: `turn` has their part.
-  template <class Number> void find(const Number &moment, const Number *normal, const Number *t, Number *to) {
+  // Vectors square to n with dual_e . edge_f = 1 where e is f, else 0.
+  void aim(const double *n) {
+    if constexpr (D == 2)
+      dual_[0][0] = -n[1], dual_[0][1] = n[0];
+    else
+      cross(edge_[1], n, dual_[0]), cross(n, edge_[0], dual_[1]);
+    const double volume = dot(edge_[0], dual_[0], D);
+    for (auto &dual : dual_)
+      for (double &value : dual)
+        value /= volume;
+  }
+
+  // moment (dual_e . t) N, the forces on the edges. Edges are constants here: `turn` has their part.
+  template <class Number> void find(const Number &moment, const Number *normal, const Number *t, Number *to) const {
     Number along[EDGES], volume;
     if constexpr (D == 2) {
       along[0] = normal[0] * t[1] - normal[1] * t[0];
       volume = edge_[0][1] * normal[0] - edge_[0][0] * normal[1];
-      dual_[0][0] = -normal[1].v / volume.v, dual_[0][1] = normal[0].v / volume.v;
     } else {
-      const double n[3] = {normal[0].v, normal[1].v, normal[2].v};
       double area[3];
       Number turned[3];
       cross(edge_[0], edge_[1], area), cross(normal, t, turned);
@@ -40,10 +49,6 @@ public:
         volume += area[a] * normal[a];
         along[0] += edge_[1][a] * turned[a], along[1] -= edge_[0][a] * turned[a];
       }
-      cross(edge_[1], n, dual_[0]), cross(n, edge_[0], dual_[1]);
-      for (auto &dual : dual_)
-        for (double &value : dual)
-          value /= volume.v;
     }
     const Number share = moment / volume;
     for (int e = 0; e < EDGES; ++e)

@@ -20,7 +20,7 @@ public:
              const Numbering &numbering)
       : moments_(moments), lists_(lists), contactor_(both.contactor.surface), target_(both.target.surface),
         degree_(both.options.degree), rounding_(both.options.rounding), load_(load), numbering_(numbering),
-        width_(operator_width(D, load.rubs)), couples_(load.rubs ? Lever<D>::FORCES : 0) {}
+        width_(operator_width(D, load.rubs)), rubs_(load.rubs) {}
 
   void begin(std::size_t f, const Facet &c) {
     f_ = f, c_ = &c, functions_ = pressure_functions(c.kind, degree_), hit_ = false;
@@ -30,6 +30,7 @@ public:
     for (double &value : own_load_)
       value = 0;
     lever_.begin(c);
+    couples_ = load_.rubs_on(f, D) ? Lever<D>::FORCES : 0;
   }
   // `columns` are those that the rows of all its points have.
   void begin_target(int t, const Facet &facet, const Columns &columns) {
@@ -102,6 +103,8 @@ private:
       value = value * length;
     for (int a = 0; a < D; ++a)
       normal_[a] = normal[a].v;
+    if (rubs_)
+      lever_.aim(normal_);
     see(place, normal, y);
     find_force(at, normal, h, dh);
   }
@@ -289,7 +292,7 @@ private:
       moments_.gap[MAX_FACET_NODES * f_ + k] += area * gap, moments_.weight[MAX_FACET_NODES * f_ + k] += area;
       for (int i = 0; i < c_->nodes; ++i)
         add_row(width_, area * nc_[i], along, &own_operator_[(k * c_->nodes + i) * width_]);
-      if (couples_)
+      if (rubs_)
         lever_.add_operator(area * g, normal_, width_, &own_operator_[k * c_->nodes * width_]);
       for (int j = 0; j < facet_->nodes; ++j)
         add_row(width_, -area * nt_[j], along, &other_operator_[(k * facet_->nodes + j) * width_]);
@@ -375,7 +378,8 @@ private:
   const Load &load_;
   const Numbering &numbering_;
   const std::size_t width_; // of an entry of the operators
-  const int couples_;       // forces that take up the couple of tractions, or none
+  const bool rubs_;
+  int couples_ = 0; // forces that take up the couple of tractions on this facet, or none
   Lever<D> lever_;
   const Facet *c_ = nullptr, *facet_ = nullptr;
   const Columns *columns_ = nullptr;

@@ -9,6 +9,13 @@ namespace abut {
 struct Load {
   const double *pressure, *traction, *turned;
   bool rubs;
+  // Whether there are tractions on facet f.
+  bool rubs_on(std::size_t f, std::size_t dim) const {
+    auto any = [f](const double *values, std::size_t n) {
+      return values && std::any_of(values + f * n, values + (f + 1) * n, [](double value) { return value != 0; });
+    };
+    return any(traction, MAX_FACET_NODES * dim) || any(turned, MAX_FACET_NODES);
+  }
 };
 
 // Numbers of what is differentiated by: the points of both surfaces, and the contactor's nodal normals.
