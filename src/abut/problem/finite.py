@@ -14,7 +14,9 @@ from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.problem.contact_pairs import Pair
+from abut.problem.adjusted import BARELY, taken_off
+from abut.problem.constraints import Constraints
+from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
@@ -24,7 +26,6 @@ from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
-BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
 
 
@@ -214,5 +215,10 @@ def _tie(pair: Pair, displacement: Array) -> ContactNow:
 def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
     """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
+    moving = [None if pair.tied else _current(pair, problem.constraints, differentiate) for pair in problem.pairs]
     return FiniteProblem(**{**values, "stiffness": None}, moving=moving)
+
+
+def _current(pair: Pair, constraints: Constraints, differentiate: Differentiate) -> Current:
+    reach = reach_of(constraints, pair.contactor, pair.target)
+    return Current(pair, differentiate, taken_off(pair, reach) if pair.contact.adjust else None)
