@@ -54,8 +54,8 @@ class Balance:
 @dataclass
 class Step:
     """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; asked:
-    which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it ended
-    without a solution."""
+    which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
+    ended without a solution."""
 
     problem: FiniteProblem
     before: State

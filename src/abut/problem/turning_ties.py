@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TurningTie:
-    """A tie whose surfaces do not touch. pattern: of the contactor's m nodal normals; across: (n, dim m), weighted gaps along
+    """A tie across a gap. pattern: of the contactor's m nodal normals; across: (n, dim m), weighted gaps along
     them; at_rest: (dim m,) normals at the outset."""
 
     pair: Pair
