@@ -8,9 +8,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.analysis.friction import touches_itself
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.tangential import SlipOperators, arms
+from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.friction_rows import Slip
@@ -34,8 +35,8 @@ def covered(
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            seen = kind.shown(here, points=pair.frictional and pair.contactor.dim == 3)
-            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen))
+            seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
+            pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen))
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
@@ -56,12 +57,13 @@ def covered(
     return smaller, kept, keep
 
 
-def _with_arms(pair: Pair, seen: Coupling) -> Slip | None:
-    """What makes tangential rows, its arms those of the points that are seen now."""
+def _seen_slip(pair: Pair, seen: Coupling) -> Slip | None:
+    """What makes tangential rows, of the points that are seen now: no couple, and the target's part where points of its are
+    the contactor's too."""
     if pair.slip is None:
         return None
-    of_points = seen.gap[:, None] if seen.points is None else arms(seen.points, pair.contactor.points)
-    return replace(pair.slip, operators=SlipOperators((), of_points))
+    none = SlipOperators((), None)
+    return replace(pair.slip, operators=none if seen.points is None else target_operators(seen.points, pair.target))
 
 
 def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:

@@ -114,12 +114,11 @@ class Mixed:
         )
 
     def _along(self, turned: bool = False) -> Sparse:
-        """int H_k (N_C - N_T) N, facet by facet, (9 n_facets, dim n_points); turned: along the normal's right angle."""
+        """Forces of unit pressures, facet by facet, (9 n_facets, dim n_points); turned: in 2D of unit tractions."""
         value, column, start = self.by.operators
         points = self.by.turning.shape[1]
         dim = 3 if value.shape[2] in (3, 12) else 2
-        value = value[..., :dim]
-        value = np.stack([-value[..., 1], value[..., 0]], axis=-1) if turned else value
+        value = value[..., dim:] if turned else value[..., :dim]
         return block_rows((value, column, start), points // dim).tocsr()
 
 
