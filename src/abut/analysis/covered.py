@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.friction import touches_itself
@@ -26,9 +27,11 @@ def covered(
 ) -> tuple[Linearised, State, NDArray[np.bool_]]:
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
     nothing is opposite to, and which are left, (n,); weights are those of the part that is covered."""
-    pairs, keeps, slips = [], [], state.history.of(CONTACTS)
+    pairs, keeps, shares, slips = [], [], [], state.history.of(CONTACTS)
     for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
-        keep = np.ones(len(pair), dtype=bool)
+        keep, share = np.ones(len(pair), dtype=bool), np.ones(len(pair))
+        if pair.smooth:  # whose gaps are means times the weight of the whole function
+            share[pair.normal] = pair.space.weight / whole.weight[whole.normal]
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
@@ -37,13 +40,16 @@ def covered(
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
+        shares.append(share)
+    share = np.concatenate([np.zeros(0), *shares])
     keep = np.concatenate([np.zeros(0, bool), *keeps])
     slips = {
         p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
     }
     assert system.pushing is not None
     smaller = replace(
-        system, pairs=pairs, operator=system.operator[keep], offset=system.offset[keep], pushing=system.pushing[keep],
+        system, pairs=pairs, operator=(sp.diags(share[keep]) @ system.operator[keep]).tocsr(),
+        offset=share[keep] * system.offset[keep], pushing=system.pushing[keep],
         forgotten=None if system.forgotten is None else system.forgotten[keep],
     )  # fmt: skip
     history = state.history.with_term(CONTACTS, slips)

@@ -76,9 +76,8 @@ class Mixed:
     by: CouplingTangent
     differences: Sequence[Sparse]
 
-    def gap(self, offset: float) -> Sparse:
-        """Of the weighted gaps, (n, dim n_points)."""
-        value = self.by.gap_value + offset * self.by.weight_value
+    def moment(self, value: Array) -> Sparse:
+        """Of integrals, (n, dim n_points), that are ``value`` (9 n_facets,) facet by facet."""
         return (self.differences[0].T @ sp.diags(value) @ self.change).tocsr()
 
     def pressed(self, pressure: Array) -> Sparse:
