@@ -38,6 +38,7 @@ def march_finite(
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
+        begin = problem.with_following(begin, problem.displacement(guess or before))
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -88,6 +89,7 @@ def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
         return step, found
     here = step.problem.displacement(replace(found.state, time=time))
     before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
+    before = step.problem.with_following(before, here, found.state.closed)
     if before is step.before:
         return step, found
     again = replace(step, before=before, limit=step.limit + len(step.done))

@@ -76,6 +76,11 @@ class Mixed:
     by: CouplingTangent
     differences: Sequence[Sparse]
 
+    @classmethod
+    def of(cls, change: Sparse, by: CouplingTangent, pair: Pair) -> Mixed:
+        """Of a pair with dual functions all over."""
+        return cls(change, by, [(part.transfer - part.plain).tocsr() for part in pair.components])
+
     def gap(self, offset: float) -> Sparse:
         """Of the weighted gaps, (n, dim n_points)."""
         value = self.by.gap_value + offset * self.by.weight_value

@@ -23,6 +23,7 @@ from abut.problem.terms import Motion, Share
 from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
+FOLLOWING = "following"  # whose history is which function each one followed, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
 BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
@@ -112,6 +113,22 @@ class FiniteProblem(ContactProblem):
             return before
         return replace(before, history=before.history.with_term(INNER, inner))
 
+    def with_following(self, before: State, here: Array, closed: NDArray[np.bool_] | None = None) -> State:
+        """A converged state from which a step begins, with functions that hardly have a target opposite at displacements
+        ``here`` (dim n_points,) following others in the step. The same object where they do, or where, with (n,) multipliers
+        ``closed``, it doesn't matter."""
+        following, old = {}, before.history.of(FOLLOWING)
+        for kind, touching in zip(self.moving, [None] * len(self.pairs) if closed is None else self.split(closed)):
+            if kind is None:
+                continue
+            name, now = kind.pair.contact.name, kind.following(here)
+            known = old.get(name, np.arange(len(now.to), dtype=float))
+            if touching is None or now.matters(known.astype(np.int64), touching[kind.pair.normal]):
+                following[name] = now.to.astype(float)
+        if all(np.array_equal(old.get(name), to) for name, to in following.items()):
+            return before
+        return replace(before, history=before.history.with_term(FOLLOWING, following))
+
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
         here = self.displacement(state)
@@ -177,6 +194,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
+        following = before.history.of(FOLLOWING)
         for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, here))
@@ -187,7 +205,7 @@ class FiniteProblem(ContactProblem):
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
             offset = constant + float(varying @ factors)
-            result.append(kind.at(Place(here, there, points, offset, inner.get(pair.contact.name)), part))
+            result.append(kind.at(Place(here, there, points, offset, *(each.get(pair.contact.name) for each in (inner, following))), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
