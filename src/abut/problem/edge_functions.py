@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,33 +14,41 @@ from abut.contact.pressure_space import NO_SUPPORT, WEAK_SUPPORT, PressureSpace,
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
+MARGIN = 0.2  # of the least share, by which it may be missed at the end of a step that began with a guess of it
+
 
 @dataclass(frozen=True)
 class Following:
-    """Which function each one has its pressure from, theory (P6). to: (n_functions,) its own number, or that of a neighbour;
-    seen: (n_functions,) whether any target is opposite."""
+    """Which function each one has its pressure from, theory (P6). to: (n_functions,) its own number, or that of a neighbour, or
+    -1 for none; share: (n_functions,) of its support that is covered."""
 
     to: NDArray[np.int64]
-    seen: NDArray[np.bool_]
+    share: NDArray[np.float64]
 
     @classmethod
     def of(cls, space: PressureSpace, contactor: Surface, coupling: Coupling) -> Following:
         """On a contactor that is where it is now: with less than ``WEAK_SUPPORT`` of its support covered, and be it none, a
-        function follows a neighbour with more, if there is one.
+        function follows a neighbour with more. Where there is none, those of a facet alone have no pressure; others keep their
+        own, as all do where none has more, and as those do that a target may come opposite to.
 
         space: with a multiplier for every function; coupling: of that contactor."""
         share = covered_share(space, contactor, coupling)
         now = replace(space, weight=space.plain.T @ coupling.weight)
-        to = leaders(now, keep=share >= WEAK_SUPPORT, goes=share < WEAK_SUPPORT)
-        return cls(np.where(to >= 0, to, np.arange(len(space))), share > NO_SUPPORT)
+        weak = share < WEAK_SUPPORT
+        to = leaders(now, keep=~weak, goes=weak)
+        gone = weak & (share > NO_SUPPORT) & (space.node < 0) & (not weak.all())
+        return cls(np.where((to >= 0) | gone, to, np.arange(len(space))), share)
 
     def matters(self, before: NDArray[np.int64], closed: NDArray[np.bool_]) -> bool:
-        """Whether functions with a target follow that did not, or the other way round, where something is closed.
+        """Whether functions with a target follow that did not, or the other way round, where something is closed, and not by a
+        hair.
 
         before: (n_functions,) as ``to``; closed: (n_functions,)."""
         own = np.arange(len(self.to))
-        changed = self.seen & ((before != own) != (self.to != own))
-        return bool((changed & (closed | closed[before] | closed[self.to])).any())
+        clear = (self.share > NO_SUPPORT) & (np.abs(self.share / WEAK_SUPPORT - 1.0) > MARGIN)
+        changed = clear & ((before != own) != (self.to != own))
+        leading = closed[before] & (before >= 0) | closed[self.to] & (self.to >= 0)
+        return bool((changed & (closed | leading)).any())
 
 
 def led(pair: Pair, to: NDArray[np.int64]) -> Pair:
@@ -47,9 +56,22 @@ def led(pair: Pair, to: NDArray[np.int64]) -> Pair:
     n = len(pair.space)
     if np.array_equal(to, np.arange(n)):
         return pair
-    follow = sp.csr_matrix((np.ones(n), (np.arange(n), to)), shape=(n, n))
+    have = np.flatnonzero(to >= 0)
+    follow = sp.csr_matrix((np.ones(len(have)), (have, to[have])), shape=(n, n))
     plain = (pair.space.plain @ follow).tocsr()
     transfer = plain if pair.space.ordinary else (pair.space.transfer @ follow).tocsr()
     space = replace(pair.space, transfer=transfer, plain=plain)
     others = (only(space, pair.index[:, c] >= 0) for c in range(1, len(pair.components)))
     return replace(pair, space=space, components=(space, *others))
+
+
+def handed_over(pair: Pair, values: NDArray[Any], old: NDArray[Any] | None, to: NDArray[np.int64]) -> NDArray[Any]:
+    """Values (n,) of multipliers, or their status, where other functions begin to follow: one that no longer does has those of
+    the one that it followed, one that does has none. old, to: (n_functions,) as in ``Following``; old None: all their own."""
+    own = np.arange(len(to))
+    was = own if old is None else old.astype(np.int64)
+    source = np.where((was >= 0)[:, None], pair.index[was], -1)
+    there = (pair.index >= 0) & (source >= 0) & (to == own)[:, None]
+    result = np.zeros_like(values)
+    result[pair.index[there]] = values[source[there]]
+    return result

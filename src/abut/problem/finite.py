@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -16,6 +16,7 @@ from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.contact_pairs import Pair
 from abut.problem.current import ContactNow, Current, Place
+from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import SlipPoints
@@ -113,21 +114,29 @@ class FiniteProblem(ContactProblem):
             return before
         return replace(before, history=before.history.with_term(INNER, inner))
 
-    def with_following(self, before: State, here: Array, closed: NDArray[np.bool_] | None = None) -> State:
-        """A converged state from which a step begins, with functions that hardly have a target opposite at displacements
-        ``here`` (dim n_points,) following others in the step. The same object where they do, or where, with (n,) multipliers
-        ``closed``, it doesn't matter."""
-        following, old = {}, before.history.of(FOLLOWING)
+    def following(self, before: State, here: Array, closed: NDArray[np.bool_] | None = None) -> dict[str, Array]:
+        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here`` (dim n_points,);
+        nothing of contacts where it is as at ``before`` or, with (n,) multipliers ``closed``, doesn't matter."""
+        result, old = {}, before.history.of(FOLLOWING)
         for kind, touching in zip(self.moving, [None] * len(self.pairs) if closed is None else self.split(closed)):
             if kind is None:
                 continue
-            name, now = kind.pair.contact.name, kind.following(here)
-            known = old.get(name, np.arange(len(now.to), dtype=float))
-            if touching is None or now.matters(known.astype(np.int64), touching[kind.pair.normal]):
-                following[name] = now.to.astype(float)
-        if all(np.array_equal(old.get(name), to) for name, to in following.items()):
-            return before
-        return replace(before, history=before.history.with_term(FOLLOWING, following))
+            now, name = kind.following(here), kind.pair.contact.name
+            known = old.get(name, np.arange(len(now.to))).astype(np.int64)
+            if touching is None or now.matters(known, touching[kind.pair.normal]):
+                result[name] = now.to.astype(float)
+        return {name: to for name, to in result.items() if not np.array_equal(to, old.get(name))}
+
+    def led(self, state: State, following: Mapping[str, Array]) -> State:
+        """A state whose functions follow others, as from ``following``, with the pressures and tractions that they had."""
+        old, parts = state.history.of(FOLLOWING), zip(self.split(state.multipliers), self.split(state.status))
+        values, status = [np.zeros(0)], [np.zeros(0, np.int8)]
+        for pair, (multipliers, touching) in zip(self.pairs, parts):
+            to, known = following.get(pair.contact.name), old.get(pair.contact.name)
+            for held, part in ((values, multipliers), (status, touching)):
+                held.append(part if to is None else handed_over(pair, part, known, to.astype(np.int64)))
+        history = state.history.with_term(FOLLOWING, following)
+        return replace(state, multipliers=np.concatenate(values), status=np.concatenate(status), history=history)
 
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
@@ -205,7 +214,12 @@ class FiniteProblem(ContactProblem):
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
             offset = constant + float(varying @ factors)
-            result.append(kind.at(Place(here, there, points, offset, *(each.get(pair.contact.name) for each in (inner, following))), part))
+            result.append(
+                kind.at(
+                    Place(here, there, points, offset, *(each.get(pair.contact.name) for each in (inner, following))),
+                    part,
+                )
+            )
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
