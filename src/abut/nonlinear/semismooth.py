@@ -35,7 +35,8 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Balance:
-    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together."""
+    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together;
+    rounding: of forces over the largest."""
 
     system: Linearised
     state: State
@@ -44,6 +45,7 @@ class Balance:
     law: float
     size: float
     changed: NDArray[np.bool_]
+    rounding: float
 
     @property
     def error(self) -> float:
@@ -133,7 +135,8 @@ def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRo
 
 def _balanced(here: Balance, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    return here.error <= BALANCED or (here.error <= ROUNDING and here.error > 0.5 * before)
+    idle = here.error > 0.5 * before and here.law <= ROUNDING and here.force <= max(ROUNDING, here.rounding)
+    return here.error <= BALANCED or idle
 
 
 def _carried(step: Step, time: float) -> State:
@@ -205,6 +208,7 @@ def _balance(step: Step, state: State) -> Balance:
     return Balance(
         system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
         float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+        0.0 if system.about is None else system.about.rounding / forces,
     )  # fmt: skip
 
 
