@@ -52,8 +52,8 @@ def covered(
 
 
 def whole_supports(problem: FiniteProblem, system: Linearised, keep: NDArray[np.bool_]) -> list[Array | None]:
-    """int H_k over all of the contactor where it is now, (n_functions,) of each pair in a system as from ``covered``, without
-    what follows it; None of ties. keep: (n,) multipliers of the problem that are left."""
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair in a system as from ``covered``,
+    without what follows it; None of ties. keep: (n,) multipliers of the problem that are left."""
     return [
         None
         if pair.tied

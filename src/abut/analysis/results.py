@@ -138,7 +138,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     reaction = internal - loads - contact_force
     stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else 0.0
     return _End(
-        problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored, supports
+        problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
+        supports,
     )  # fmt: skip
 
 

@@ -216,8 +216,8 @@ def reduce(
 
 
 def leaders(space: PressureSpace, keep: NDArray[np.bool_], goes: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The best supported one of ``keep`` that shares a facet with each of ``goes``, theory (P6), (n,); -1 where there is none,
-    and for all others. keep, goes: (n,) bool."""
+    """The best supported one of ``keep`` that shares a facet with each of ``goes``, theory (P6), (n,); -1 where there is
+    none, and for all others. keep, goes: (n,) bool."""
     pattern = space.plain.copy()
     pattern.data = np.ones_like(pattern.data)
     facets = sp.csr_matrix(
@@ -233,6 +233,12 @@ def leaders(space: PressureSpace, keep: NDArray[np.bool_], goes: NDArray[np.bool
     result = np.full(len(space), len(space))
     np.minimum.at(result, row[best], column[best])
     return np.where(result < len(space), result, -1)
+
+
+def beside(space: PressureSpace, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Some functions and those that share a facet with one, (n,). some: (n,) bool."""
+    uses = abs(space.plain)
+    return _touched(uses, (uses @ some.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0)
 
 
 def only(space: PressureSpace, keep: NDArray[np.bool_]) -> PressureSpace:

@@ -45,8 +45,8 @@ class ContactNow:
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
     None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
-    space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this step, None
-    for itself."""
+    space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this
+    step, None for itself."""
 
     displacement: Array
     before: Array
@@ -135,12 +135,12 @@ class Current:
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
         return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
-    def following(self, displacement: Array) -> Following:
-        """Which functions follow others where the pair is now."""
+    def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
+        """Which functions follow others where the pair is now, with multipliers (n,) closed."""
         contactor, target = self.surfaces(displacement)
         options = self._options(np.zeros_like(displacement))
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
-        return Following.of(self.pair.space, contactor, covered)
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal])
 
     def _mixture(
         self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
-from abut.contact.pressure_space import NO_SUPPORT, WEAK_SUPPORT, PressureSpace, covered_share, leaders, only
+from abut.contact.pressure_space import NO_SUPPORT, WEAK_SUPPORT, PressureSpace, beside, covered_share, leaders, only
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
@@ -19,29 +19,29 @@ MARGIN = 0.2  # of the least share, by which it may be missed at the end of a st
 
 @dataclass(frozen=True)
 class Following:
-    """Which function each one has its pressure from, theory (P6). to: (n_functions,) its own number, or that of a neighbour, or
-    -1 for none; share: (n_functions,) of its support that is covered."""
+    """Which function each one has its pressure from, theory (P6). to: (n_functions,) its own number, or that of a
+    neighbour, or -1 for none; share: (n_functions,) of its support that is covered."""
 
     to: NDArray[np.int64]
     share: NDArray[np.float64]
 
     @classmethod
-    def of(cls, space: PressureSpace, contactor: Surface, coupling: Coupling) -> Following:
-        """On a contactor that is where it is now: with less than ``WEAK_SUPPORT`` of its support covered, and be it none, a
-        function follows a neighbour with more. Where there is none, those of a facet alone have no pressure; others keep their
-        own, as all do where none has more, and as those do that a target may come opposite to.
+    def of(cls, space: PressureSpace, contactor: Surface, coupling: Coupling, closed: NDArray[np.bool_]) -> Following:
+        """On a contactor that is where it is now: with less than ``WEAK_SUPPORT`` of its support covered, be it none, a
+        function in or beside closed contact follows the neighbour that has most. Without a neighbour that has more, those of
+        a facet alone have no pressure; others keep their own.
 
-        space: with a multiplier for every function; coupling: of that contactor."""
-        share = covered_share(space, contactor, coupling)
-        now = replace(space, weight=space.plain.T @ coupling.weight)
-        weak = share < WEAK_SUPPORT
+        space: with a multiplier for every function; coupling: of that contactor; closed: (n_functions,)."""
+        share, own = covered_share(space, contactor, coupling), np.arange(len(space))
+        now, weak = replace(space, weight=space.plain.T @ coupling.weight), share < WEAK_SUPPORT
         to = leaders(now, keep=~weak, goes=weak)
-        gone = weak & (share > NO_SUPPORT) & (space.node < 0) & (not weak.all())
-        return cls(np.where((to >= 0) | gone, to, np.arange(len(space))), share)
+        gone = (to < 0) & weak & (share > NO_SUPPORT) & (space.node < 0) & (not weak.all())
+        stays = ~gone & ((to < 0) | ~(closed | beside(space, closed)[to]))
+        return cls(np.where(stays, own, to), share)
 
     def matters(self, before: NDArray[np.int64], closed: NDArray[np.bool_]) -> bool:
-        """Whether functions with a target follow that did not, or the other way round, where something is closed, and not by a
-        hair.
+        """Whether functions with a target follow that did not, or the other way round, where something is closed, and not
+        by a hair.
 
         before: (n_functions,) as ``to``; closed: (n_functions,)."""
         own = np.arange(len(self.to))
@@ -66,8 +66,9 @@ def led(pair: Pair, to: NDArray[np.int64]) -> Pair:
 
 
 def handed_over(pair: Pair, values: NDArray[Any], old: NDArray[Any] | None, to: NDArray[np.int64]) -> NDArray[Any]:
-    """Values (n,) of multipliers, or their status, where other functions begin to follow: one that no longer does has those of
-    the one that it followed, one that does has none. old, to: (n_functions,) as in ``Following``; old None: all their own."""
+    """Values (n,) of multipliers, or their status, where other functions begin to follow: one that no longer does has those
+    of the one that it followed, one that does has none. old, to: (n_functions,) as in ``Following``; old None: all their
+    own."""
     own = np.arange(len(to))
     was = own if old is None else old.astype(np.int64)
     source = np.where((was >= 0)[:, None], pair.index[was], -1)

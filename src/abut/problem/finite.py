@@ -114,18 +114,23 @@ class FiniteProblem(ContactProblem):
             return before
         return replace(before, history=before.history.with_term(INNER, inner))
 
-    def following(self, before: State, here: Array, closed: NDArray[np.bool_] | None = None) -> dict[str, Array]:
-        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here`` (dim n_points,);
-        nothing of contacts where it is as at ``before`` or, with (n,) multipliers ``closed``, doesn't matter."""
+    def following(
+        self, before: State, here: Array, closed: NDArray[np.bool_], settled: bool = False
+    ) -> dict[str, Array]:
+        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here``
+        (dim n_points,) with (n,) multipliers closed. Nothing of contacts where that is as at ``before``, or, at the end of a
+        step (settled), doesn't matter."""
         result, old = {}, before.history.of(FOLLOWING)
-        for kind, touching in zip(self.moving, [None] * len(self.pairs) if closed is None else self.split(closed)):
+        for kind, touching in zip(self.moving, self.split(closed)):
             if kind is None:
                 continue
-            now, name = kind.following(here), kind.pair.contact.name
+            now, name = kind.following(here, touching), kind.pair.contact.name
             known = old.get(name, np.arange(len(now.to))).astype(np.int64)
-            if touching is None or now.matters(known, touching[kind.pair.normal]):
+            if not np.array_equal(now.to, known) and not (
+                settled and not now.matters(known, touching[kind.pair.normal])
+            ):
                 result[name] = now.to.astype(float)
-        return {name: to for name, to in result.items() if not np.array_equal(to, old.get(name))}
+        return result
 
     def led(self, state: State, following: Mapping[str, Array]) -> State:
         """A state whose functions follow others, as from ``following``, with the pressures and tractions that they had."""
