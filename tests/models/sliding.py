@@ -14,6 +14,7 @@ from abut.analysis.run import Run
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
 from abut.problem.finite import FiniteProblem
+from abut.solution.state import State
 
 SOFT = abut.LinearElastic(young=100.0, poisson=0.3)
 FIRST = abut.Amplitude(((0.0, 0.0), (0.4, 1.0), (1.0, 1.0)))
@@ -58,11 +59,11 @@ def finite(model: abut.Model) -> FiniteProblem:
     return problem
 
 
-def tangent_errors(problem: FiniteProblem, size: float) -> tuple[float, float]:
+def tangent_errors(problem: FiniteProblem, size: float, before: State | None = None) -> tuple[float, float]:
     """Of the derivatives of balance and of gaps (slips) against central differences, relative, in all displacements at once
-    and near random ones of that size."""
+    and near random ones of that size, in a step from ``before`` or from the start."""
     rng = np.random.default_rng(3)
-    before, n = problem.start(), problem.operator.shape[0]
+    before, n = before or problem.start(), problem.operator.shape[0]
     at = replace(
         before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
     )
