@@ -13,6 +13,7 @@ from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.resolution import resolution
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
+from abut.contact.rim import rim
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check
 
@@ -38,14 +39,15 @@ class Surroundings:
     """What else a pair's checks are judged by. reference: its largest pressure of the steps before; beside: that of all
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
-    moving: the sides may meet anywhere, so that what has no target opposite now is no sign of wrong surfaces."""
+    support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
+    opposite now is no sign of wrong surfaces; else None."""
 
     reference: float = 0.0
     beside: float = 0.0
     overlap: NDArray[np.float64] | None = None
     free: NDArray[np.bool_] | None = None
     elsewhere: NDArray[np.float64] | None = None
-    moving: bool = False
+    support: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -71,7 +73,7 @@ def certificate(
         checks += [*_gaps(case, penetration), *_pressure(case, residual)]
     if pair.contact.method == "segment-to-segment":
         checks.append(
-            case.check("facet moments", _moment_error(pair, case.areas, case.cover, case.loaded), MOMENTS,
+            case.check("facet moments", _moment_error(case), MOMENTS,
                 "integration error of int H over loaded facets that are fully covered, over their area")
         )  # fmt: skip
     return (*checks, *_cover(case))
@@ -175,7 +177,7 @@ def _cover(case: _Case) -> Iterator[Check]:
     yield case.check(
         "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
     )
-    if not case.around.moving:
+    if case.around.support is None:
         total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
         yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
             "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
@@ -207,18 +209,19 @@ def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:
     return float(np.abs(near - other).max()) / size, float(np.abs(own_turn - other_turn).max()) / (size * extent)
 
 
-def _moment_error(
-    pair: Pair, areas: NDArray[np.float64], cover: NDArray[np.float64], loaded: NDArray[np.bool_]
-) -> float:
+def _moment_error(case: _Case) -> float:
     """Largest error of int H_k over the area, of facets that are fully covered, as those beside them are, and carry
-    pressure: where the target ends within a facet of a slide, a hundredth of it may be missing."""
-    whole = np.abs(cover - 1.0) < WHOLE
+    pressure: where the target ends within a facet of a slide, a hundredth of it may be missing, and so it may where a body
+    that is flush with its target bulges."""
+    pair, whole = case.pair, np.abs(case.cover - 1.0) < WHOLE
     at_end = np.zeros(len(pair.contactor.points), dtype=bool)
     nodes = pair.contactor.nodes
     at_end[nodes[~whole][nodes[~whole] >= 0]] = True
-    whole &= loaded & ~(at_end[np.maximum(nodes, 0)] & (nodes >= 0)).any(axis=1)
+    if case.around.support is not None:
+        at_end[rim(pair.contactor).ends] = True
+    whole &= case.loaded & ~(at_end[np.maximum(nodes, 0)] & (nodes >= 0)).any(axis=1)
     if not whole.any():
         return 0.0
     exact = full_moments(pair.contactor, pair.coupling.degree)
-    miss = np.abs(pair.coupling.weight.reshape(exact.shape) - exact) / areas[:, None]
+    miss = np.abs(pair.coupling.weight.reshape(exact.shape) - exact) / case.areas[:, None]
     return float(miss[whole].max())

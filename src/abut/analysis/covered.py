@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.analysis.friction import touches_itself
 from abut.contact.coupling import Coupling
+from abut.contact.geometry import full_moments
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.rim import rim
 from abut.contact.symmetry_planes import Planes
-from abut.contact.tangential import SlipOperators, arms
+from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.contact_pairs import Pair, planes_of
 from abut.problem.current import Current
 from abut.problem.finite import FiniteProblem, bare
@@ -29,25 +32,30 @@ def covered(
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
     nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of symmetry
     those where the contactor ends now."""
-    pairs, keeps, slips = [], [], state.history.of(CONTACTS)
+    pairs, keeps, shares, slips = [], [], [], state.history.of(CONTACTS)
     for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
-        keep = np.ones(len(pair), dtype=bool)
+        keep, share = np.ones(len(pair), dtype=bool), np.ones(len(pair))
+        if pair.smooth:  # whose gaps are means times the weight of the whole function
+            share[pair.normal] = pair.space.weight / whole.weight[whole.normal]
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            seen = kind.shown(here, points=pair.frictional and pair.contactor.dim == 3)
+            seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
             planes = None if pair.contactor.dim == 2 else _planes_now(problem, kind, pair)
-            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen), planes=planes)
+            pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen), planes=planes)
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
+        shares.append(share)
+    share = np.concatenate([np.zeros(0), *shares])
     keep = np.concatenate([np.zeros(0, bool), *keeps])
     slips = {
         p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
     }
     assert system.pushing is not None
     smaller = replace(
-        system, pairs=pairs, operator=system.operator[keep], offset=system.offset[keep], pushing=system.pushing[keep],
+        system, pairs=pairs, operator=(sp.diags(share[keep]) @ system.operator[keep]).tocsr(),
+        offset=share[keep] * system.offset[keep], pushing=system.pushing[keep],
         forgotten=None if system.forgotten is None else system.forgotten[keep],
     )  # fmt: skip
     history = state.history.with_term(CONTACTS, slips)
@@ -61,12 +69,24 @@ def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes | N
     return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
-def _with_arms(pair: Pair, seen: Coupling) -> Slip | None:
-    """What makes tangential rows, its arms those of the points that are seen now."""
+def whole_supports(problem: FiniteProblem, system: Linearised, keep: NDArray[np.bool_]) -> list[Array | None]:
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair in a system as from ``covered``,
+    without what follows it; None of ties. keep: (n,) multipliers of the problem that are left."""
+    return [
+        None
+        if pair.tied
+        else (whole.space.plain.T @ full_moments(pair.contactor, pair.coupling.degree).ravel())[own[whole.normal]]
+        for pair, whole, own in zip(system.pairs, problem.pairs, problem.split(keep))
+    ]
+
+
+def _seen_slip(pair: Pair, seen: Coupling) -> Slip | None:
+    """What makes tangential rows, of the points that are seen now: no couple, and the target's part where points of its are
+    the contactor's too."""
     if pair.slip is None:
         return None
-    of_points = seen.gap[:, None] if seen.points is None else arms(seen.points, pair.contactor.points)
-    return replace(pair.slip, operators=SlipOperators((), of_points))
+    none = SlipOperators((), None)
+    return replace(pair.slip, operators=none if seen.points is None else target_operators(seen.points, pair.target))
 
 
 def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:

@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
-from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.rim import Rim, goes_on
 from abut.mesh.surface import Surface
+from abut.problem.adjusted import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
+from abut.problem.edge_functions import Following, led
 from abut.problem.gap_fit import Sides, Sight, fit_change
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import SlipPoints, slip_now
@@ -28,6 +30,7 @@ Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
 FAR = 8.0  # facets up to which a target counts as one that covers a facet, for its functions
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
+GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
 @dataclass(frozen=True)
@@ -46,32 +49,36 @@ class ContactNow:
 @dataclass(frozen=True)
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
-    None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
-    space are the ordinary ones in this step, None for nowhere; fit: (9 n_facets,) as from ``Current.fit``, or None."""
+    None without friction; offset: what is added to all gaps now; inner: (n_facets,) not zero where functions of a dual
+    space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this
+    step, None for itself; fit: (9 n_facets,) as from ``Current.fit``, or None."""
 
     displacement: Array
     before: Array
     points: SlipPoints | None
     offset: float
     inner: Array | None = None
+    following: Array | None = None
     fit: Array | None = None
 
 
 @dataclass(frozen=True)
 class Current:
     """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
-    and integrates, here or on several processes."""
+    and integrates, here or on several processes; adjusted: as from ``taken_off``, None for nothing."""
 
     pair: Pair
     differentiate: Differentiate = differentiated
+    adjusted: Array | None = None
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
         mixture = self._mixture(contactor, target, place.inner)
-        pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
-        down = self._down if mixture is None else weights_of_rows(pair.space.transfer.T)
+        unmixed = self.pair if place.following is None else led(self.pair, place.following.astype(np.int64))
+        pair = unmixed if mixture is None else mixed_part(unmixed, mixture)
+        down = weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)
         tangents = self._tangents(contactor, normals, multipliers)
         load = _load(pair, multipliers, tangents)
@@ -80,29 +87,25 @@ class Current:
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]
+        mixed = None if mixture is None else Mixed.of(mixture.change(contactor, by.weight), by, unmixed)
         weight = np.asarray(down @ by.weight_value)
-        slope = down @ by.slope(np.array([1.0, place.offset]))
+        gap, by_position = self._gaps(down, by, mixed, place.offset)
+        bending = by.force_tangent.tocsr()
         now = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
                 rows=block_rows(in_place(along[..., :dim], operators), points).tocsr(),
             ),
-            np.asarray(down @ by.gap_value + place.offset * weight),
-            slope.tocsr(), by.force_tangent.tocsr(), np.zeros(len(pair.space), dtype=bool),
+            gap, by_position, bending if mixed is None else bending + mixed.pressed(multipliers[pair.normal]),
+            np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
-        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
-        if mixed is not None:
-            p = multipliers[pair.normal]
-            now = replace(
-                now, by_position=now.by_position + mixed.gap(place.offset), bending=now.bending + mixed.pressed(p)
-            )
         if not pair.frictional:
             return now
         assert place.points is not None
         slip = slip_now(place.points, contactor, target, normals)
         if tangents is None:
             turned = tangents_2d(normals, *self._anchors)
-            part = self._down_along if mixture is None else weights_of_rows(pair.components[1].transfer.T)
+            part = weights_of_rows(pair.components[1].transfer.T)
             made = rub_in_plane(part, by, added_up(part, by.operators, points), slip)
             if mixed is not None:
                 made = mixed.rubbed_in_plane(made, slip, multipliers[pair.tangential])
@@ -113,6 +116,28 @@ class Current:
                 made = mixed.rubbed_in_space(made, slip, tangents)
         covered = pair.space.plain.T @ place.points.moments(len(contactor))
         return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
+
+    def _gaps(self, down: Sparse, by: CouplingTangent, mixed: Mixed | None, offset: float) -> tuple[Array, Sparse]:
+        """Weighted gaps (n_functions,) with their derivative, theory (G2), (G16); where the law looks at the mean gap, as if
+        the whole function was covered, theory (G17)."""
+
+        def moment(shares: Array) -> tuple[Array, Sparse]:
+            value = shares[0] * by.gap_value + shares[1] * by.weight_value
+            slope = (down @ by.slope(shares)).tocsr()
+            return np.asarray(down @ value), slope if mixed is None else slope + mixed.moment(value)
+
+        means = self.pair.smooth
+        if self.adjusted is None and not means:
+            return moment(np.array([1.0, offset]))
+        (gap, by_gap), (weight, by_weight) = moment(np.array([1.0, 0.0])), moment(np.array([0.0, 1.0]))
+        added = np.full(len(gap), offset) if self.adjusted is None else offset + self.adjusted
+        if not means:
+            return gap + added * weight, (by_gap + sp.diags(added) @ by_weight).tocsr()
+        whole = self.pair.weight[self.pair.normal]
+        seen = weight >= BARELY * whole
+        share = np.where(seen, whole / np.where(seen, weight, 1.0), 0.0)
+        mean = np.where(seen, gap / np.where(seen, weight, 1.0), 0.0)
+        return whole * (mean + added), (sp.diags(share) @ (by_gap - sp.diags(mean) @ by_weight)).tocsr()
 
     def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
         """Contactor and target at a displacement (dim n_points,)."""
@@ -139,9 +164,13 @@ class Current:
         return fit_change(sides, sight, self._across, share)
 
     def shown(self, displacement: Array, points: bool = False) -> Coupling:
-        """With what results ask for beside it; points: integration points, too."""
+        """With what results ask for beside it, the gaps at samples adjusted; points: integration points, too."""
         options = replace(self._options(), keep_gap_samples=True, keep_points=points)
-        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+        contactor, target = self.surfaces(displacement)
+        seen = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        if self.adjusted is None:
+            return seen
+        return replace(seen, gap_samples=with_adjusted(self.pair.space, contactor, seen, self.adjusted))
 
     def goes_on(self, here: Pair, border: Rim) -> NDArray[np.bool_]:
         """Edges (m,) of the rim beyond which the target goes on, ``here`` being the pair with surfaces as they are now."""
@@ -154,6 +183,13 @@ class Current:
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
         return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
+    def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
+        """Which functions follow others where the pair is now, with multipliers (n,) closed."""
+        contactor, target = self.surfaces(displacement)
+        options = self._options()
+        covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal])
+
     def _mixture(self, contactor: Surface, target: Surface, inner: Array | None) -> Mixture | None:
         """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""
         if self.pair.space.ordinary:
@@ -162,18 +198,14 @@ class Current:
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
         return Mixture.of(contactor, covered, inner)
 
-    @cached_property
-    def _differences(self) -> list[Sparse]:
-        """Dual less ordinary functions, by component, (9 n_facets, n) each."""
-        return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
-
     def _options(self, moved: Array | None = None) -> CouplingOptions:
         """moved: (dim n_points,) in the step so far, None for nothing."""
         rule, way = self.pair.contact.integration, 0.0
         if moved is not None:
             nodes = moved.reshape(-1, self.pair.contactor.dim)[self._nodes]
             way = float(np.linalg.norm(nodes, axis=1).max(initial=0.0))
-        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * way)
+        near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
+        return CouplingOptions(rule.rule, rule.points, reach=near * self._facet + 2.0 * way)
 
     @cached_property
     def _across(self) -> Smoothing:
@@ -200,16 +232,6 @@ class Current:
     @cached_property
     def _normals(self) -> NormalPattern:
         return normal_pattern(self.pair.contactor, self._across)
-
-    @cached_property
-    def _down(self) -> Sparse:
-        """(n_functions, 9 n_facets)."""
-        return weights_of_rows(self.pair.space.transfer.T)
-
-    @cached_property
-    def _down_along(self) -> Sparse:
-        """The same for tractions in 2D."""
-        return weights_of_rows(self.pair.components[1].transfer.T)
 
     @cached_property
     def _kept(self) -> NDArray[np.int64]:

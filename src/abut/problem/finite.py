@@ -14,20 +14,23 @@ from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.problem.contact_pairs import Pair
+from abut.problem.adjusted import BARELY, taken_off
+from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
+from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import SlipPoints
 from abut.problem.terms import Motion, Share
+from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
+FOLLOWING = "following"  # whose history is which function each one followed, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
 FIT = "fit"  # whose history is what fits add to the weighted gaps, in the step that ended
 SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
 SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
-BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
 
 
@@ -58,9 +61,11 @@ class Latest:
 
 @dataclass(frozen=True)
 class FiniteProblem(ContactProblem):
-    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties."""
+    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties; ties: of
+    those across a gap, None of all others."""
 
     moving: Sequence[Current | None] = ()
+    ties: Sequence[TurningTie | None] = ()
     latest: Latest = field(default_factory=Latest, repr=False, compare=False)
 
     @property
@@ -136,6 +141,35 @@ class FiniteProblem(ContactProblem):
                 return False
         return True
 
+    def following(
+        self, before: State, here: Array, closed: NDArray[np.bool_], settled: bool = False
+    ) -> dict[str, Array]:
+        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here``
+        (dim n_points,) with (n,) multipliers closed. Nothing of contacts where that is as at ``before``, or, at the end of a
+        step (settled), doesn't matter."""
+        result, old = {}, before.history.of(FOLLOWING)
+        for kind, touching in zip(self.moving, self.split(closed)):
+            if kind is None:
+                continue
+            now, name = kind.following(here, touching), kind.pair.contact.name
+            known = old.get(name, np.arange(len(now.to))).astype(np.int64)
+            if not np.array_equal(now.to, known) and not (
+                settled and not now.matters(known, touching[kind.pair.normal])
+            ):
+                result[name] = now.to.astype(float)
+        return result
+
+    def led(self, state: State, following: Mapping[str, Array]) -> State:
+        """A state whose functions follow others, as from ``following``, with the pressures and tractions that they had."""
+        old, parts = state.history.of(FOLLOWING), zip(self.split(state.multipliers), self.split(state.status))
+        values, status = [np.zeros(0)], [np.zeros(0, np.int8)]
+        for pair, (multipliers, touching) in zip(self.pairs, parts):
+            to, known = following.get(pair.contact.name), old.get(pair.contact.name)
+            for held, part in ((values, multipliers), (status, touching)):
+                held.append(part if to is None else handed_over(pair, part, known, to.astype(np.int64)))
+        history = state.history.with_term(FOLLOWING, following)
+        return replace(state, multipliers=np.concatenate(values), status=np.concatenate(status), history=history)
+
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
         here = self.displacement(state)
@@ -201,10 +235,10 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, inner, fits = (before.history.of(term) for term in (POINTS, INNER, FIT))
-        result = []
-        for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
+        following, result = before.history.of(FOLLOWING), []
+        for pair, kind, tie, part in zip(self.pairs, self.moving, self.ties, self.split(at.multipliers)):
             if kind is None:
-                result.append(_tie(pair, here))
+                result.append(_tie(pair, tie, here))
                 continue
             constant, varying = offsets(self.model, pair.contact)
             mark = marks.get(pair.contact.name)
@@ -213,7 +247,8 @@ class FiniteProblem(ContactProblem):
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
             offset = constant + float(varying @ factors)
             name = pair.contact.name
-            result.append(kind.at(Place(here, there, points, offset, inner.get(name), fits.get(name)), part))
+            of_step = (each.get(name) for each in (inner, following, fits))
+            result.append(kind.at(Place(here, there, points, offset, *of_step), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
@@ -231,14 +266,21 @@ def bare(pair: Pair) -> NDArray[np.bool_]:
     return np.asarray(pair.space.weight < BARELY * pair.weight[pair.normal])
 
 
-def _tie(pair: Pair, displacement: Array) -> ContactNow:
-    """A tie, which holds undeformed surfaces together."""
+def _tie(pair: Pair, tie: TurningTie | None, displacement: Array) -> ContactNow:
+    """A tie, which holds surfaces together as they were at the outset."""
     none = sp.csr_matrix((len(displacement),) * 2)
-    return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
+    gap, rows = (pair.rows @ displacement, pair.rows) if tie is None else tie.at(displacement)
+    return ContactNow(replace(pair, rows=rows), gap, rows, none, np.zeros(len(pair.space), dtype=bool))
 
 
 def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
     """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
-    return FiniteProblem(**{**values, "stiffness": None}, moving=moving)
+    apart = [reach_of(problem.constraints, pair.contactor, pair.target) for pair in problem.pairs]
+    moving = [None if pair.tied else _current(pair, reach, differentiate) for pair, reach in zip(problem.pairs, apart)]
+    ties = [turning_tie(pair, reach) if pair.tied else None for pair, reach in zip(problem.pairs, apart)]
+    return FiniteProblem(**{**values, "stiffness": None}, moving=moving, ties=ties)
+
+
+def _current(pair: Pair, reach: float, differentiate: Differentiate) -> Current:
+    return Current(pair, differentiate, taken_off(pair, reach) if pair.contact.adjust else None)
