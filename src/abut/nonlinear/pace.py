@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from abut.model.conditions import History
 
 FIRST = 0.1  # of the way to the next goal
-EASY, GROWTH = 8, 1.5  # iterations up to which the next step is longer, and by how much
+EASY, GROWTH = 7, 1.5  # iterations up to which the next step is longer, and by how much
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
 SMALLEST = 1.0 / 4096.0  # of the way to the next goal
 STRAIGHT = 1e-9  # change of slope over the slope that is none
