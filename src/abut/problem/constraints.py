@@ -182,12 +182,12 @@ def _together(
     rows, values, names = [], [], []
     first = n_own
     for body in bodies:
-        given, value = body.prescribed()
+        given, value = body.prescribed(histories)
         given_rows = sp.csr_matrix(given)
         shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
                               shape=(given.shape[1], free.shape[1]))  # fmt: skip
         rows.append(given_rows @ shift)
-        values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(body.rigid.amplitude)]))
+        values.append(value)
         names += [f"rigid body '{body.rigid.body}'"] * len(value)
         first += given.shape[1]
     node, direction, value, origin = conditions
