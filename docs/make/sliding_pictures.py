@@ -76,7 +76,7 @@ def main() -> None:
     series("snap-joint.png", snap, (0.17, 0.45, 0.7, 1.0), 0.01, (0.0, 13.5, -2.5, 3.0), rows=2)
     snap_curve(snap)
     gears = abut.solve(BENCHMARKS["gears"].model(0))
-    series("gears.png", gears, (0.1, 0.55, 1.0), 0.02, (20.0, 82.0, -32.0, 32.0))
+    series("gears.png", gears, (0.1, 0.55, 1.0), 0.1, (22.0, 68.0, -24.0, 24.0))
 
 
 if __name__ == "__main__":
