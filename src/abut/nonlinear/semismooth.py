@@ -15,7 +15,7 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
-from abut.nonlinear.holding import sticking, thrown_apart
+from abut.nonlinear.holding import flies_off, not_adrift, sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
@@ -101,7 +101,11 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _following(step, here, forcing(here.error, before, BALANCED)))
+        next_ = _following(step, here, forcing(here.error, before, BALANCED))
+        step.failed = flies_off(step.problem, step.before, next_)
+        if step.failed:
+            break
+        there = _balance(step, next_)
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -129,8 +133,10 @@ def _following(step: Step, here: Balance, accuracy: float) -> State:
 def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
     there = step.advanced(system, state, laws, accuracy)
-    stuck = sticking(step.problem, system, step.before, state, there)
-    return there if stuck is state else step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+    stuck = sticking(step.problem, system, state, there)
+    if stuck is not state:
+        there = step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+    return not_adrift(step.problem, system, stuck, there)
 
 
 def _balanced(here: Balance, before: float) -> bool:
