@@ -8,21 +8,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import FINE, forcing
-from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.friction_newton import friction_laws
 from abut.nonlinear.holding import flies_off, not_adrift, sticking, thrown_apart
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
-from abut.problem.finite import FiniteProblem, bare
+from abut.nonlinear.smooth_laws import NO_PRESSURE
+from abut.problem.finite import FiniteProblem
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, OPEN, Largest, State
+from abut.solution.state import CLOSED, Largest, State
 
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
 STALLED = 1e-7  # the same that may be left where it no longer falls
@@ -54,8 +55,9 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. prepared:
-    the linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; asked:
+    which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
+    ended without a solution."""
 
     problem: FiniteProblem
     before: State
@@ -64,6 +66,7 @@ class Step:
     limit: int
     observe: Callable[[Iteration], None]
     careful: bool = False
+    asked: Asked = field(default_factory=Asked)
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
@@ -76,7 +79,35 @@ class Step:
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     """The state at ``time``, from a guess there; None: from the last converged state, whose tangent carries what is
-    prescribed further."""
+    prescribed further.
+
+    Laws of one's own begin from the solution of complementarity where nothing has pressed yet, and where they do not
+    converge otherwise. The constraint function does in any case; its smoothing goes with the largest pressure there."""
+    pairs = [pair for pair in step.problem.pairs if pair.smooth]
+    own = any(not isinstance(pair.contact.law, str) for pair in pairs)
+    ways = [_solved, _by_complementarity] if own else [_solved]
+    if own and step.before.largest.pressure == 0.0:
+        ways.reverse()
+    for way in ways:
+        step.failed = ""
+        found = way(step, guess, time)
+        if found.converged:
+            break
+    if found.converged and any(isinstance(pair.contact.law, str) for pair in pairs):
+        reference = largest_pressure(found.state, step.increment)
+        if reference > NO_PRESSURE * max(pair.stiffness * pair.size for pair in pairs):
+            found = _solved_again(step, Asked(reference=reference), found.state, time)
+    return found
+
+
+def _by_complementarity(step: Step, guess: State | None, time: float) -> Found:
+    """With laws of one's own from the solution of complementarity, whose pressures they meet to begin with."""
+    found = _solved_again(step, Asked(own=False), guess, time)
+    return _solved_again(step, Asked(by_pressure=True), found.state, time) if found.converged else found
+
+
+def _solved(step: Step, guess: State | None, time: float) -> Found:
+    """With the laws that the step asks for."""
     none = np.zeros(len(step.before.status), dtype=bool)
     try:
         here = _newton(step, guess, time)
@@ -85,6 +116,15 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
         return Found(step.before, tuple(step.done), False, none, friction_laws)
     step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
+
+
+def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) -> Found:
+    """With other laws, and as many iterations more; by a line search where they are smooth."""
+    careful = step.careful or asked.reference is not None
+    again = replace(step, asked=asked, limit=step.limit + len(step.done), careful=careful, failed="")
+    found = _solved(again, guess, time)
+    step.failed, step.prepared = again.failed, again.prepared
+    return found
 
 
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
@@ -101,12 +141,13 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        next_ = _following(step, here, forcing(here.error, before, BALANCED))
-        step.failed = flies_off(step.problem, step.before, next_)
+        following = _following(step, here, forcing(here.error, before, BALANCED))
+        step.failed = flies_off(step.problem, step.before, following)
         if step.failed:
             break
-        there = _balance(step, next_)
-        if step.careful:
+        step.asked = replace(step.asked, by_pressure=False)
+        there = _balance(step, following)
+        if step.careful or not np.isfinite(there.size):
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
             step.failed = "forces are not finite"
@@ -121,12 +162,12 @@ def _following(step: Step, here: Balance, accuracy: float) -> State:
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
-        wanted = np.where(_bare(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
+        wanted = wanted_status(here.system, there, step.increment, step.asked)
         if wanted.tobytes() in seen:
             break
         seen.add(wanted.tobytes())
         state = here.state.with_status(wanted)
-        there = step.advanced(here.system, state, laws_of(here.system, state), accuracy)
+        there = step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
     return there
 
 
@@ -135,7 +176,7 @@ def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRo
     there = step.advanced(system, state, laws, accuracy)
     stuck = sticking(step.problem, system, state, there)
     if stuck is not state:
-        there = step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
     return not_adrift(step.problem, system, stuck, there)
 
 
@@ -150,15 +191,15 @@ def _carried(step: Step, time: float) -> State:
     as far as it takes to hold every body."""
     system = step.problem.ahead(step.before, time)
     state = replace(step.before, time=time)
-    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
+    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~barely_covered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return _iterated(step, system, state, laws_of(system, state), FINE)
+    return _iterated(step, system, state, laws_of(system, state, step.asked), FINE)
 
 
 def _kept(step: Step, here: Balance) -> Balance:
     """A guess in which a contact has come off that was closed before: what is nearest stays closed for an iteration, which
     tells whether it pulls. Without it bodies would spring back, and from there far into each other."""
-    wanted, gaps, idle = here.state.status.copy(), here.system.gap(here.state), _bare(here.system)
+    wanted, gaps, idle = here.state.status.copy(), here.system.gap(here.state), barely_covered(here.system)
     first = 0
     for pair in here.system.pairs:
         own = slice(first, first := first + len(pair))
@@ -172,45 +213,22 @@ def _kept(step: Step, here: Balance) -> Balance:
     if np.array_equal(wanted, here.state.status):
         return here
     state = here.state.with_status(wanted)
-    return replace(here, state=state, laws=laws_of(here.system, state))
-
-
-def laws_of(system: Linearised, state: State) -> list[LawRows]:
-    """The laws of all pairs with the status as it is; multipliers of friction without a past carry nothing."""
-    laws = friction_laws(system, state)
-    if system.forgotten is None or not system.forgotten.any():
-        return laws
-    parts = zip(system.pairs, laws, system.split(system.forgotten), system.split(state.multipliers))
-    return [_without(law, forgotten, pair.scale, slips) for pair, law, forgotten, slips in parts]
-
-
-def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
-    """Rows that set some multipliers to zero."""
-    if not forgotten.any():
-        return law
-    keep = sp.diags((~forgotten).astype(float))
-    return replace(
-        law,
-        residual=np.where(forgotten, -scale * multipliers, law.residual),
-        by_gap=(keep @ law.by_gap).tocsr(),
-        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(forgotten, scale, 0.0))).tocsr(),
-        decoupled=law.decoupled | forgotten,
-    )
+    return replace(here, state=state, laws=laws_of(here.system, state, step.asked))
 
 
 def _balance(step: Step, state: State) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
     system = step.problem.linearise(step.before, state)
-    wanted = np.where(_bare(system), OPEN, next_status(system, state, step.increment)).astype(np.int8)
-    changed = wanted != state.status
-    state = state.with_status(wanted)
-    laws = laws_of(system, state)
+    before = state.status
+    state = state.with_status(wanted_status(system, state, step.increment, step.asked))
+    laws = laws_of(system, state, step.asked)
+    state = state.with_status(status_of(system, state, laws, step.asked))
+    changed = state.status != before
     so_far = largest_of(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
     forces, pressures = max(so_far.force, 1e-300), max(so_far.pressure, FAINT * modulus)
     left = system.unbalanced(state) / forces
-    open_ = [law.residual / pair.weight * pair.stiffness / pressures for pair, law in zip(system.pairs, laws)]
-    law = np.concatenate([np.zeros(0), *open_])
+    law = left_open(system, laws, step.asked) / pressures
     return Balance(
         system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
         float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
@@ -222,11 +240,6 @@ def largest_of(system: Linearised, state: State, increment: Increment) -> Larges
     """Force and pressure, now or in a step before."""
     pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
     return Largest(largest_force(system, state, system.load, increment), float(pressure))
-
-
-def _bare(system: Linearised) -> NDArray[np.bool_]:
-    parts = [np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]
-    return np.concatenate([np.zeros(0, bool), *parts])
 
 
 def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
