@@ -29,6 +29,8 @@ ROUNDING = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
 NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
+import os
+KEEPOLD = int(os.environ.get("KEEPOLD", "0"))
 SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
 
@@ -87,7 +89,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
 
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
-    here = _balance(step, _carried(step, time) if guess is None else guess)
+    here = _balance(step, _carried(step, time) if guess is None else guess, guess is not None)
     if guess is None:
         begun = _report(step, here, begun)
     if guess is not None or not _balanced(here, before):
@@ -189,10 +191,10 @@ def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipli
     )
 
 
-def _balance(step: Step, state: State) -> Balance:
+def _balance(step: Step, state: State, guess=False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
     system = step.problem.linearise(step.before, state)
-    wanted = np.where(_bare(system), OPEN, next_status(system, state, step.increment)).astype(np.int8)
+    wanted = _wanted(system, state, step.increment, not guess)
     changed = wanted != state.status
     state = state.with_status(wanted)
     laws = laws_of(system, state)
@@ -206,6 +208,18 @@ def _balance(step: Step, state: State) -> Balance:
         system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
         float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
     )  # fmt: skip
+
+
+def _wanted(system: Linearised, state: State, increment: Increment, iterated=True) -> NDArray[np.int8]:
+    """The status that the laws ask for; what was closed and presses stays closed."""
+    gap = system.gap(state)
+    wanted = next_status(system, state, increment, gap)
+    presses = state.closed & (state.multipliers > 0.0)
+    for pair, own, part, after in zip(system.pairs, system.split(presses), system.split(gap), system.split(wanted)):
+        if pair.tied or not iterated and (after[pair.normal] != OPEN).any():
+            continue
+        part[pair.normal] = np.where(own[pair.normal], np.minimum(part[pair.normal], 0.0), part[pair.normal])
+    return np.where(_bare(system), OPEN, next_status(system, state, increment, gap)).astype(np.int8)
 
 
 def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
