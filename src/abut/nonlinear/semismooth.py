@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.holding import sticking, thrown_apart
@@ -89,6 +90,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
 
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
+    closings = np.zeros(len(step.before.status), dtype=np.int64)
     here = _balance(step, _carried(step, time) if guess is None else guess, guess is not None)
     if guess is None:
         begun = _report(step, here, begun)
@@ -101,7 +103,8 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _following(step, here, forcing(here.error, before, BALANCED)))
+        there = _balance(step, _following(step, here, closings, forcing(here.error, before, BALANCED)))
+        closings += there.state.closed & ~here.state.closed
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -112,9 +115,15 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
     return here
 
 
-def _following(step: Step, here: Balance, accuracy: float) -> State:
+def _following(step: Step, here: Balance, closings, accuracy: float) -> State:
     """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
+    other = exchanged(
+        here.system, here.state, there, closings,
+        lambda state: step.advanced(here.system, state, laws_of(here.system, state), accuracy))
+    if other is not there:
+        print("exchanged", np.flatnonzero(other.closed), other.multipliers[other.closed])
+        return other
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
         wanted = np.where(_bare(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
