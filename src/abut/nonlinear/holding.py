@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.problem.contact_pairs import Pair
@@ -14,6 +15,7 @@ from abut.problem.problem import ContactProblem
 from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
 from abut.solution.state import CLOSED, State
 
+EASY = 0.1  # facet sizes by which forces move a body that nothing resists, in an iteration
 FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step, and bodies move in an iteration
 
 
@@ -31,6 +33,26 @@ def sticking(problem: ContactProblem, system: Linearised, before: State, state: 
     ]
     stuck = state.with_status(np.concatenate(status).astype(np.int8))
     return stuck if _free(system, rigid, supports, stuck) < _free(system, rigid, supports, state) else state
+
+
+def resisting(problem: ContactProblem, system: Linearised, state: State, least: float) -> Linearised:
+    """The system, with a slight resistance to all displacements where a body has motions that supports, ties, closed gaps and what
+    sticks leave free: the forces on it move it by ``EASY`` of a facet. least: resistance over the largest entry of the stiffness."""
+    if system.restraint.by_supports:
+        return system
+    rigid, supports = _now(problem, system)
+    assert system.about is not None
+    free = _free_motions(system, rigid, supports, state)
+    if not free.shape[1]:
+        return system
+    motions = problem.constraints.near(system.about.at, system.factors).free.T @ (rigid.modes @ free)
+    inertia = (motions**2).sum(axis=0)
+    force = np.abs(motions.T @ system.unbalanced(state))
+    size = max(pair.size for pair in system.pairs)
+    needed = float((force / inertia).max()) / (EASY * size)
+    resistance = max(needed, least * float(abs(system.stiffness.diagonal()).max()))
+    more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
+    return replace(system, stiffness=(system.stiffness + more).tocsr())
 
 
 def _far(problem: ContactProblem, before: State, state: State, thrown: State) -> bool:
@@ -62,12 +84,19 @@ def _now(problem: ContactProblem, system: Linearised) -> tuple[RigidModes, NDArr
 
 def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State) -> int:
     """How many motions neither supports, ties, closed gaps nor what sticks resists."""
+    return int(_free_motions(system, rigid, supports, state).shape[1])
+
+
+def _free_motions(
+    system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State
+) -> NDArray[np.float64]:
+    """(n_modes, k) motions that neither supports, ties, closed gaps nor what sticks resists."""
     grams = [supports]
     for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):
         resists = closed & ~slips
         resists[pair.normal] = closed[pair.normal]
         grams.append(resistance_of_rows(rigid, pair.rows[np.ones(len(pair), bool) if pair.tied else resists]))
-    return int(free_motions(grams).shape[1])
+    return free_motions(grams)
 
 
 def thrown_apart(system: Linearised, before: State, now: State) -> str:

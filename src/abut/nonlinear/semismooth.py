@@ -16,7 +16,7 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
-from abut.nonlinear.holding import sticking, thrown_apart
+from abut.nonlinear.holding import resisting, sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
@@ -32,6 +32,7 @@ NEAREST = 0.01  # gap over the facet size by which points may be farther than th
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
 import os
 KEEPOLD = int(os.environ.get("KEEPOLD", "0"))
+LEAST = 1e-12  # stiff
 SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
 
@@ -122,7 +123,6 @@ def _following(step: Step, here: Balance, closings, accuracy: float) -> State:
         here.system, here.state, there, closings,
         lambda state: step.advanced(here.system, state, laws_of(here.system, state), accuracy))
     if other is not there:
-        print("exchanged", np.flatnonzero(other.closed), other.multipliers[other.closed])
         return other
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
@@ -154,7 +154,26 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return _iterated(step, system, state, laws_of(system, state), FINE)
+    while True:
+        there = _iterated(step, resisting(step.problem, system, state, LEAST), state, laws_of(system, state), FINE)
+        fewer = _fewer(system, state, there, step.increment)
+        if fewer is None:
+            return there
+        state = fewer
+
+
+def _fewer(system: Linearised, state: State, there: State, increment: Increment) -> State | None:
+    """The state without the multipliers that pull, where contact holds a body: not before they have let go has it the forces that
+    its loads ask for. None where none or all of a contact pull."""
+    if system.restraint.by_supports:
+        return None
+    wanted = np.where(_bare(system) | ~state.closed, OPEN, next_status(system, there, increment)).astype(np.int8)
+    if not (state.closed & (wanted == OPEN)).any():
+        return None
+    parts = zip(system.pairs, system.split(state.closed), system.split(wanted))
+    if any(before[pair.normal].any() and (now[pair.normal] == OPEN).all() for pair, before, now in parts):
+        return None
+    return state.with_status(wanted)
 
 
 def _kept(step: Step, here: Balance) -> Balance:
