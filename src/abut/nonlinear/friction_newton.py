@@ -149,8 +149,8 @@ def coulomb(pair: Pair, system: Linearised) -> Coulomb:
 
 
 def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
-    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays. gap: (n,)
-    weighted gaps and slips to judge by, left out those of the state."""
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays.
+    gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])

@@ -16,6 +16,9 @@ from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_row
 from abut.solution.state import CLOSED, State
 
 EASY = 0.1  # facet sizes by which forces move a body that nothing resists, in an iteration
+SLIGHT = (
+    1e-12  # resistance over the largest entry of the stiffness: more than rounding, less than what pressures resist
+)
 FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step, and bodies move in an iteration
 
 
@@ -35,9 +38,9 @@ def sticking(problem: ContactProblem, system: Linearised, before: State, state: 
     return stuck if _free(system, rigid, supports, stuck) < _free(system, rigid, supports, state) else state
 
 
-def resisting(problem: ContactProblem, system: Linearised, state: State, least: float) -> Linearised:
-    """The system, with a slight resistance to all displacements where a body has motions that supports, ties, closed gaps and what
-    sticks leave free: the forces on it move it by ``EASY`` of a facet. least: resistance over the largest entry of the stiffness."""
+def resisting(problem: ContactProblem, system: Linearised, state: State) -> Linearised:
+    """The system, with a slight resistance to all displacements where supports, ties, closed gaps and what sticks leave a
+    body free to move: what is unbalanced moves it by ``EASY`` of a facet. Without pressures nothing else resists."""
     if system.restraint.by_supports:
         return system
     rigid, supports = _now(problem, system)
@@ -50,7 +53,7 @@ def resisting(problem: ContactProblem, system: Linearised, state: State, least: 
     force = np.abs(motions.T @ system.unbalanced(state))
     size = max(pair.size for pair in system.pairs)
     needed = float((force / inertia).max()) / (EASY * size)
-    resistance = max(needed, least * float(abs(system.stiffness.diagonal()).max()))
+    resistance = max(needed, SLIGHT * float(np.abs(system.stiffness.diagonal()).max()))
     more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
     return replace(system, stiffness=(system.stiffness + more).tocsr())
 

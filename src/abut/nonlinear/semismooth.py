@@ -18,8 +18,9 @@ from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.holding import resisting, sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
+from abut.nonlinear.opening import following_status, nearest_kept, uncovered, without_pulling
 from abut.nonlinear.smallest import smallest, yielding
-from abut.problem.finite import FiniteProblem, bare
+from abut.problem.finite import FiniteProblem
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.solution import Iteration
@@ -28,11 +29,7 @@ from abut.solution.state import CLOSED, OPEN, Largest, State
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
 ROUNDING = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
-NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
-import os
-KEEPOLD = int(os.environ.get("KEEPOLD", "0"))
-LEAST = 1e-12  # stiff
 SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
 
@@ -92,11 +89,12 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
     closings = np.zeros(len(step.before.status), dtype=np.int64)
-    here = _balance(step, _carried(step, time) if guess is None else guess, guess is not None)
+    here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
     if guess is None:
         begun = _report(step, here, begun)
     if guess is not None or not _balanced(here, before):
-        here = _kept(step, here)
+        state = nearest_kept(here.system, step.before, here.state)
+        here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state))
     while guess is not None or not _balanced(here, before):
         if len(step.done) >= step.limit:
             step.failed = (
@@ -104,9 +102,10 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _following(step, here, closings, forcing(here.error, before, BALANCED)))
+        following, swapped = _following(step, here, closings, forcing(here.error, before, BALANCED))
+        there = _balance(step, following)
         closings += there.state.closed & ~here.state.closed
-        if step.careful:
+        if step.careful and not swapped:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
             step.failed = "forces are not finite"
@@ -116,23 +115,25 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
     return here
 
 
-def _following(step: Step, here: Balance, closings, accuracy: float) -> State:
-    """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
+def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+    """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
+    laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
+
+    def solved(state: State) -> State:
+        return step.advanced(here.system, state, laws_of(here.system, state), accuracy)
+
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
-    other = exchanged(
-        here.system, here.state, there, closings,
-        lambda state: step.advanced(here.system, state, laws_of(here.system, state), accuracy))
+    other = exchanged(here.system, here.state, there, closings, solved)
     if other is not there:
-        return other
+        return other, True
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
-        wanted = np.where(_bare(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
+        wanted = np.where(uncovered(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
         if wanted.tobytes() in seen:
             break
         seen.add(wanted.tobytes())
-        state = here.state.with_status(wanted)
-        there = step.advanced(here.system, state, laws_of(here.system, state), accuracy)
-    return there
+        there = solved(here.state.with_status(wanted))
+    return there, False
 
 
 def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
@@ -152,48 +153,14 @@ def _carried(step: Step, time: float) -> State:
     as far as it takes to hold every body."""
     system = step.problem.ahead(step.before, time)
     state = replace(step.before, time=time)
-    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~_bare(system)
+    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~uncovered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
-        there = _iterated(step, resisting(step.problem, system, state, LEAST), state, laws_of(system, state), FINE)
-        fewer = _fewer(system, state, there, step.increment)
+        there = _iterated(step, resisting(step.problem, system, state), state, laws_of(system, state), FINE)
+        fewer = without_pulling(system, state, there, step.increment)
         if fewer is None:
             return there
         state = fewer
-
-
-def _fewer(system: Linearised, state: State, there: State, increment: Increment) -> State | None:
-    """The state without the multipliers that pull, where contact holds a body: not before they have let go has it the forces that
-    its loads ask for. None where none or all of a contact pull."""
-    if system.restraint.by_supports:
-        return None
-    wanted = np.where(_bare(system) | ~state.closed, OPEN, next_status(system, there, increment)).astype(np.int8)
-    if not (state.closed & (wanted == OPEN)).any():
-        return None
-    parts = zip(system.pairs, system.split(state.closed), system.split(wanted))
-    if any(before[pair.normal].any() and (now[pair.normal] == OPEN).all() for pair, before, now in parts):
-        return None
-    return state.with_status(wanted)
-
-
-def _kept(step: Step, here: Balance) -> Balance:
-    """A guess in which a contact has come off that was closed before: what is nearest stays closed for an iteration, which
-    tells whether it pulls. Without it bodies would spring back, and from there far into each other."""
-    wanted, gaps, idle = here.state.status.copy(), here.system.gap(here.state), _bare(here.system)
-    first = 0
-    for pair in here.system.pairs:
-        own = slice(first, first := first + len(pair))
-        closed, before = here.state.closed[own][pair.normal], step.before.closed[own][pair.normal]
-        if pair.tied or closed.any() or not before.any():
-            continue
-        clearance = (gaps[own] / (pair.weight * pair.size))[pair.normal]
-        clearance = np.where(idle[own][pair.normal], np.inf, clearance)
-        near = np.isfinite(clearance) & (clearance <= clearance.min() + NEAREST)
-        wanted[own] = np.where(pair.of_functions(near), CLOSED, wanted[own])
-    if np.array_equal(wanted, here.state.status):
-        return here
-    state = here.state.with_status(wanted)
-    return replace(here, state=state, laws=laws_of(here.system, state))
 
 
 def laws_of(system: Linearised, state: State) -> list[LawRows]:
@@ -219,10 +186,10 @@ def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipli
     )
 
 
-def _balance(step: Step, state: State, guess=False) -> Balance:
+def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
     system = step.problem.linearise(step.before, state)
-    wanted = _wanted(system, state, step.increment, not guess)
+    wanted = following_status(system, state, step.increment, guessed)
     changed = wanted != state.status
     state = state.with_status(wanted)
     laws = laws_of(system, state)
@@ -238,27 +205,10 @@ def _balance(step: Step, state: State, guess=False) -> Balance:
     )  # fmt: skip
 
 
-def _wanted(system: Linearised, state: State, increment: Increment, iterated=True) -> NDArray[np.int8]:
-    """The status that the laws ask for; what was closed and presses stays closed."""
-    gap = system.gap(state)
-    wanted = next_status(system, state, increment, gap)
-    presses = state.closed & (state.multipliers > 0.0)
-    for pair, own, part, after in zip(system.pairs, system.split(presses), system.split(gap), system.split(wanted)):
-        if pair.tied or not iterated and (after[pair.normal] != OPEN).any():
-            continue
-        part[pair.normal] = np.where(own[pair.normal], np.minimum(part[pair.normal], 0.0), part[pair.normal])
-    return np.where(_bare(system), OPEN, next_status(system, state, increment, gap)).astype(np.int8)
-
-
 def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
     """Force and pressure, now or in a step before."""
     pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
     return Largest(largest_force(system, state, system.load, increment), float(pressure))
-
-
-def _bare(system: Linearised) -> NDArray[np.bool_]:
-    parts = [np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]
-    return np.concatenate([np.zeros(0, bool), *parts])
 
 
 def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
