@@ -54,7 +54,8 @@ def march_finite(
         cuts += 1
         pace.halve()
         if pace.stuck:
-            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, hanging(problem, before)))))
+            where = hanging(problem, before, attempt.cycling)
+            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where))))
             return
         control.halves(attempt, pace.end or time)
 
