@@ -32,20 +32,20 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
   if (turned.shape(0) && (turned.shape(0) != contactor.facets || turned.shape(1) != MAX_FACET_NODES))
     throw nb::value_error("turned must be (facets, MAX_FACET_NODES)");
   TangentLists lists;
+  const Load load{pressure.data(), traction.shape(0) ? traction.data() : nullptr,
+                  turned.shape(0) ? turned.data() : nullptr, tangential};
   {
     nb::gil_scoped_release release;
-    const Load load{pressure.data(), traction.shape(0) ? traction.data() : nullptr,
-                    turned.shape(0) ? turned.data() : nullptr};
     lists = tangent({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
                     rule_table, {degree, true, false, false, axisymmetric, reach, rounding, hidden}, load,
-                    {normal_numbers.data(), target_offset}, tangential);
+                    {normal_numbers.data(), target_offset});
   }
   nb::dict out;
   out["moment_by_points"] = to_python(lists.moment.by_points, rows, 2, dim);
   out["moment_by_normals"] = to_python(lists.moment.by_normals, rows, 2, dim);
   out["force_by_points"] = to_python(lists.force.by_points, n_points, dim, dim);
   out["force_by_normals"] = to_python(lists.force.by_normals, n_points, dim, dim);
-  out["operators"] = to_python(lists.operators, rows, 1, operator_width(dim, tangential && dim == 3));
+  out["operators"] = to_python(lists.operators, rows, 1, operator_width(dim, load.rubs));
   out["gap"] = to_numpy(std::move(lists.gap));
   out["weight"] = to_numpy(std::move(lists.weight));
   const std::size_t loads = lists.loaded.size();

@@ -3,7 +3,7 @@
 #include "accumulator.hpp"
 #include "cutting.hpp"
 #include "dual.hpp"
-#include "moving_columns.hpp"
+#include "lever.hpp"
 #include "tangent.hpp"
 
 namespace abut {
@@ -17,10 +17,10 @@ struct Moments {
 template <int D> class MovingSums {
 public:
   MovingSums(const Moments &moments, TangentLists &lists, const Interface &both, const Load &load,
-             const Numbering &numbering, bool tangential)
+             const Numbering &numbering)
       : moments_(moments), lists_(lists), contactor_(both.contactor.surface), target_(both.target.surface),
         degree_(both.options.degree), rounding_(both.options.rounding), load_(load), numbering_(numbering),
-        width_(operator_width(D, tangential)) {}
+        width_(operator_width(D, load.rubs)), rubs_(load.rubs) {}
 
   void begin(std::size_t f, const Facet &c) {
     f_ = f, c_ = &c, functions_ = pressure_functions(c.kind, degree_), hit_ = false;
@@ -29,21 +29,24 @@ public:
     own_operator_.assign(functions_ * c.nodes * width_, 0);
     for (double &value : own_load_)
       value = 0;
+    lever_.begin(c);
+    couples_ = load_.rubs_on(f, D) ? Lever<D>::FORCES : 0;
   }
   // `columns` are those that the rows of all its points have.
   void begin_target(int t, const Facet &facet, const Columns &columns) {
     t_ = t, facet_ = &facet, columns_ = &columns;
-    block_.assign(rows(facet.nodes) * columns.size, 0);
+    block_.assign(rows(facet.nodes) * columns.size, 0), couple_.assign(couples_ * columns.size, 0);
     other_operator_.assign(functions_ * facet.nodes * width_, 0);
     std::fill(other_load_, other_load_ + MAX_FACET_NODES * D, 0.0);
-    for (auto &row : row_)
-      row.resize(columns.size);
+    for (int q = 0; q < ROWS + couples_; ++q)
+      row_[q].resize(columns.size);
   }
 
   void add(const MovingPoint &at) {
     look(at);
     find_rows(at);
     add_forces(at);
+    add_couples();
     add_moments(at);
     add_values(at);
     hit_ = true;
@@ -51,6 +54,8 @@ public:
 
   void end_target() {
     const std::size_t size = columns_->size, mine = D * c_->nodes, theirs = D * facet_->nodes;
+    if (couples_)
+      lever_.spread(size, couple_.data(), block_.data());
     for (std::size_t r = 0; r < rows(0); ++r) {
       const double *from = &block_[r * size];
       add_row(own_columns_, 1, from, &own_[r * own_columns_]);
@@ -77,9 +82,9 @@ private:
   // Seeds at a point: reference coordinates, area, and what nodes add to x, to the normal and to y.
   static constexpr int XI = 0, WEIGHT = D - 1, X = D, M = 2 * D, Y = 3 * D, SEEDS = 4 * D;
   using Number = Dual<SEEDS>;
-  enum { FORCE = 0, ETA = D, GAP = 2 * D - 1, ROWS = 2 * D };
+  enum { FORCE = 0, ETA = D, GAP = 2 * D - 1, ROWS = 2 * D, COUPLE = ROWS };
 
-  // Force, reference coordinates on the target and gap as functions of the seeds.
+  // Force, reference coordinates on the target, gap and the couple's forces as functions of the seeds.
   void look(const MovingPoint &at) {
     double x[3], m[3], y[3], slope[2][3], turn[2][3], h[MAX_FACET_NODES], dh[MAX_FACET_NODES][3];
     c_->position.at(at.xi, x, slope), c_->direction.at(at.xi, m, turn);
@@ -98,6 +103,8 @@ private:
       value = value * length;
     for (int a = 0; a < D; ++a)
       normal_[a] = normal[a].v;
+    if (rubs_)
+      lever_.aim(normal_);
     see(place, normal, y);
     find_force(at, normal, h, dh);
   }
@@ -169,20 +176,22 @@ private:
         t[a] = coefficient(load_.traction + MAX_FACET_NODES * D * f_ + a, D);
         along -= t[a] * normal[a];
       }
+    if (D == 2 && load_.turned) {
+      const Number turned = coefficient(load_.turned + MAX_FACET_NODES * f_, 1);
+      t[0] -= turned * normal[1], t[1] += turned * normal[0];
+    }
     along = along * weight;
     for (int a = 0; a < D; ++a)
-      value_[FORCE + a] = load_.traction ? along * normal[a] + weight * t[a] : along * normal[a];
-    if (D == 2 && load_.turned) {
-      const Number turned = coefficient(load_.turned + MAX_FACET_NODES * f_, 1) * weight;
-      value_[FORCE] -= turned * normal[1], value_[FORCE + 1] += turned * normal[0];
-    }
+      value_[FORCE + a] = couples_ ? along * normal[a] + weight * t[a] : along * normal[a];
+    if (couples_)
+      lever_.find(weight * value_[GAP], normal, t, value_ + COUPLE);
   }
 
   // From seeds to columns.
   void find_rows(const MovingPoint &at) {
     const std::size_t size = columns_->size;
     const int other = first_of_target();
-    for (int q = 0; q < ROWS; ++q) {
+    for (int q = 0; q < ROWS + couples_; ++q) {
       const double *d = value_[q].d;
       double *row = row_[q].data();
       for (std::size_t s = 0; s < size; ++s)
@@ -198,6 +207,8 @@ private:
         for (int a = 0; a < D; ++a)
           row[other + D * j + a] += nt_[j] * d[Y + a];
     }
+    if (couples_)
+      lever_.turn(value_ + COUPLE, *columns_, row_ + COUPLE);
   }
 
   int first_of_target() const {
@@ -223,6 +234,16 @@ private:
         add_share(size, -nt_[j], row, -force, dnt_[j], rate, &block_[(rows(0) + D * j + a) * size]);
       }
     }
+  }
+
+  void add_couples() {
+    double load[Lever<D>::FORCES];
+    for (int q = 0; q < couples_; ++q) {
+      load[q] = value_[COUPLE + q].v;
+      add_row(columns_->size, 1, row_[COUPLE + q].data(), &couple_[q * columns_->size]);
+    }
+    if (couples_)
+      lever_.spread(1, load, own_load_);
   }
 
   static void add_share(std::size_t size, double share, const double *row, double force, const double *slope,
@@ -253,20 +274,26 @@ private:
     }
   }
 
-  // int H_k g and int H_k; int H_k N_j N and int H_k N_j (I - N N), with the target's negative.
+  // int H_k g and int H_k; int H_k N_j N and int H_k N_j (I - N N), in 2D along the turned normal, with the target's
+  // negative, and the couple's forces.
   void add_values(const MovingPoint &at) {
     const double g = value_[GAP].v, gap = std::abs(g) < rounding_ ? 0 : g;
     double along[D + D * D];
-    for (int a = 0; a < D; ++a) {
+    for (int a = 0; a < D; ++a)
       along[a] = normal_[a];
-      for (int b = 0; b < D; ++b)
-        along[D + D * a + b] = (a == b) - normal_[a] * normal_[b];
-    }
+    if constexpr (D == 2)
+      along[D] = -normal_[1], along[D + 1] = normal_[0];
+    else
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b)
+          along[D + D * a + b] = (a == b) - normal_[a] * normal_[b];
     for (int k = 0; k < functions_; ++k) {
       const double area = at.weight * h_[k];
       moments_.gap[MAX_FACET_NODES * f_ + k] += area * gap, moments_.weight[MAX_FACET_NODES * f_ + k] += area;
       for (int i = 0; i < c_->nodes; ++i)
         add_row(width_, area * nc_[i], along, &own_operator_[(k * c_->nodes + i) * width_]);
+      if (rubs_)
+        lever_.add_operator(area * g, normal_, width_, &own_operator_[k * c_->nodes * width_]);
       for (int j = 0; j < facet_->nodes; ++j)
         add_row(width_, -area * nt_[j], along, &other_operator_[(k * facet_->nodes + j) * width_]);
     }
@@ -351,14 +378,17 @@ private:
   const Load &load_;
   const Numbering &numbering_;
   const std::size_t width_; // of an entry of the operators
+  const bool rubs_;
+  int couples_ = 0; // forces that take up the couple of tractions on this facet, or none
+  Lever<D> lever_;
   const Facet *c_ = nullptr, *facet_ = nullptr;
   const Columns *columns_ = nullptr;
   std::size_t f_ = 0, own_columns_ = 0;
   int t_ = 0, functions_ = 0;
   bool hit_ = false;
-  std::vector<double> own_, block_, row_[ROWS], own_operator_, other_operator_;
+  std::vector<double> own_, block_, couple_, row_[ROWS + Lever<D>::FORCES], own_operator_, other_operator_;
   double own_load_[MAX_FACET_NODES * D], other_load_[MAX_FACET_NODES * D];
-  Number value_[ROWS];
+  Number value_[ROWS + Lever<D>::FORCES];
   double normal_[D];
   double other_slope_[2][3];
   double nc_[MAX_FACET_NODES], dnc_[MAX_FACET_NODES][3], nt_[MAX_FACET_NODES], dnt_[MAX_FACET_NODES][3];

@@ -21,9 +21,9 @@ constexpr std::size_t FEW_MOVING_FACETS = 50; // not worth a thread
 class Differentiator {
 public:
   Differentiator(const Interface &both, const Moments &moments, TangentLists &lists, const Load &load,
-                 const Numbering &numbering, bool tangential)
-      : both_(both), cutter_(both), lines_(moments, lists, both, load, numbering, false),
-        faces_(moments, lists, both, load, numbering, tangential), pieces_(faces_) {}
+                 const Numbering &numbering)
+      : both_(both), cutter_(both), lines_(moments, lists, both, load, numbering),
+        faces_(moments, lists, both, load, numbering), pieces_(faces_) {}
 
   void run(std::size_t f) {
     cutter_.cut(
@@ -96,7 +96,7 @@ private:
 } // namespace
 
 TangentLists tangent(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options,
-                     const Load &load, const Numbering &numbering, bool tangential) {
+                     const Load &load, const Numbering &numbering) {
   const std::size_t facets = contactor.surface.facets;
   const Interface both = interface(contactor, target, rules, options);
   const std::size_t parts = facets < FEW_MOVING_FACETS ? 1 : thread_count();
@@ -104,7 +104,7 @@ TangentLists tangent(const Planned &contactor, const Planned &target, const Rule
   TangentLists out;
   out.gap.assign(MAX_FACET_NODES * facets, 0), out.weight.assign(MAX_FACET_NODES * facets, 0);
   run_parts(parts, [&](std::size_t part) {
-    Differentiator differentiator(both, {out.gap.data(), out.weight.data()}, lists[part], load, numbering, tangential);
+    Differentiator differentiator(both, {out.gap.data(), out.weight.data()}, lists[part], load, numbering);
     for (std::size_t f = facets * part / parts; f < facets * (part + 1) / parts; ++f)
       differentiator.run(f);
   });

@@ -5,9 +5,17 @@
 namespace abut {
 
 // Facet-wise coefficients on the contactor, MAX_FACET_NODES a facet; tractions (none: null) have dim values each, and
-// in 2D those along the turned normal (none: null) one.
+// in 2D those along the turned normal (none: null) one. rubs: whether there are tractions, facets or not.
 struct Load {
   const double *pressure, *traction, *turned;
+  bool rubs;
+  // Whether there are tractions on facet f.
+  bool rubs_on(std::size_t f, std::size_t dim) const {
+    auto any = [f](const double *values, std::size_t n) {
+      return values && std::any_of(values + f * n, values + (f + 1) * n, [](double value) { return value != 0; });
+    };
+    return any(traction, MAX_FACET_NODES * dim) || any(turned, MAX_FACET_NODES);
+  }
 };
 
 // Numbers of what is differentiated by: the points of both surfaces, and the contactor's nodal normals.
@@ -27,9 +35,11 @@ struct Derivative {
   Blocks by_points, by_normals;
 };
 
-// Values of an entry of the operators: dim along the normal, and where tangential ones are wanted dim x dim of the
-// rest.
-inline std::size_t operator_width(std::size_t dim, bool tangential) { return tangential ? dim + dim * dim : dim; }
+// Values of an entry of the operators: dim along the normal, and with tractions, too, dim x dim of them along the axes,
+// in 2D dim along the turned normal.
+inline std::size_t operator_width(std::size_t dim, bool rubs) {
+  return !rubs ? dim : dim == 3 ? dim + dim * dim : 2 * dim;
+}
 
 void append(Derivative &to, Derivative &from); // which is empty afterwards, or of no use
 
@@ -44,7 +54,7 @@ struct TangentLists {
 };
 
 TangentLists tangent(const Planned &contactor, const Planned &target, const RuleTable &rules, const Options &options,
-                     const Load &load, const Numbering &numbering, bool tangential);
+                     const Load &load, const Numbering &numbering);
 
 // Blocks as compressed rows: those in one place added up in their order.
 struct CompressedBlocks {

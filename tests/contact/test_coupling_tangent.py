@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from tests.models.lever import couples
 from tests.models.sheets import chain, sheet, together, turn
 
 from abut.contact.block_rows import block_rows
@@ -14,7 +15,6 @@ from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
 from abut.contact.geometry import Smoothing, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
-from abut.contact.tangential import slip_operators
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
@@ -63,8 +63,8 @@ def load(contactor: Surface, seed: int = 3) -> tuple[Array, Array]:
     return rng.uniform(0.5, 1.0, n), rng.uniform(-1.0, 1.0, (n, contactor.dim))
 
 
-def force(coupling: Coupling, n_points: int, pressure: Array, traction: Array) -> Array:
-    """Sum over the integration points of couple: p N + (I - N N) t, times N_C - N_T."""
+def force(coupling: Coupling, contactor: Surface, n_points: int, pressure: Array, traction: Array) -> Array:
+    """Sum over the integration points of couple: p N + (I - N N) t, times N_C - N_T, and what takes up the couple."""
     points = coupling.points
     assert points is not None
     n, t = points.normal, points.pressure @ traction
@@ -74,6 +74,7 @@ def force(coupling: Coupling, n_points: int, pressure: Array, traction: Array) -
     shape = entries.data * n[entries.row, entries.col % dim]  # summed over the components: shape functions
     result = np.zeros((n_points, dim))
     np.add.at(result, entries.col // dim, shape[:, None] * (points.weight[:, None] * value)[entries.row])
+    result[: len(contactor.points)] += couples(contactor, points, t)
     return result.ravel()
 
 
@@ -95,7 +96,7 @@ def values(
         replace(target, points=target.points + move[n:]),
     )
     result = couple(*moved, degree, replace(options, keep_points=True), across=across)
-    return result.gap, result.weight, force(result, len(move), *load(contactor))
+    return result.gap, result.weight, force(result, moved[0], len(move), *load(contactor))
 
 
 def error(
@@ -216,9 +217,8 @@ def test_values_beside_derivatives(kinds: tuple[str, str]) -> None:
     assert np.abs(tangent.weight_value - coupling.weight).max() < 1e-12 * coupling.weight.max()
     if dim == 3:
         square = block_rows((value[..., dim:].reshape(-1, dim, dim), *places), n_points).tocsr()
-        points = np.vstack([side.points for side in pair]) if pair[0].points is not pair[1].points else pair[0].points
-        for a, along in enumerate(slip_operators(coupling.points, points).along):
-            assert np.abs(square[a::dim] - along).max() < 1e-12 * size
+        pressed = block_rows((value[..., :dim], *places), n_points).T @ pressure
+        assert np.abs(pressed + square.T @ traction.ravel() - tangent.force).max() < 1e-12 * np.abs(tangent.force).max()
 
 
 @pytest.mark.parametrize("kinds", [("line3", "line2"), ("quad8", "quad4"), ("tri6", "quad9")])
@@ -284,10 +284,12 @@ def test_forces_are_in_balance(pair: tuple[Surface, Surface]) -> None:
         assert np.abs(total).max() < 1e-12 * np.abs(tangent.force_tangent).sum()
 
 
+@pytest.mark.parametrize("with_traction", [False, True])
 @pytest.mark.parametrize("pair", PAIRS)
-def test_moments_of_the_pressure_are_in_balance(pair: tuple[Surface, Surface]) -> None:
-    """The force at x_C and its reaction at x_T act along the line through both."""
-    force = tangent_of(pair, with_traction=False).force.reshape(-1, pair[0].dim)
+def test_moments_are_in_balance(pair: tuple[Surface, Surface], with_traction: bool) -> None:
+    """The pressure at x_C and its reaction at x_T act along the line through both, and the contactor's facet takes up the
+    couple of tractions, whatever the gap."""
+    force = tangent_of(pair, with_traction).force.reshape(-1, pair[0].dim)
     x = np.concatenate([s.points for s in pair])
     moments = np.einsum("na,nb->nab", x, force)
     total = moments.sum(axis=0)

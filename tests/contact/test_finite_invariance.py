@@ -25,9 +25,10 @@ def slid(
     length: float = 1.0,
     force: float = 1.0,
     swap: bool = False,
+    cell: str | None = None,
 ) -> abut.Model:
     """A rounded block pressed on a wider one while it slides, with friction; turned in space, in units of other sizes."""
-    model = arched(0.3) if dim == 2 else pressed_in_space(0.3)
+    model = arched(0.3, cell or "quad4") if dim == 2 else pressed_in_space(0.3, cell or "hex8")
     turn = np.eye(dim) if turn is None else turn
     ways = {"lower.bottom": np.zeros(dim), "upper.top": np.array([0.15, -0.06] if dim == 2 else [0.1, 0.05, -0.06])}
     supports = [
@@ -83,17 +84,28 @@ def test_sides_swapped(pressure: str) -> None:
     assert np.abs(here - there).max() < 0.1 * np.abs(here).max()
 
 
-@pytest.mark.parametrize(("dim", "pressure"), [(2, "P0"), (2, "P1"), (2, "dual"), (3, "P1"), (3, "dual")])
-def test_momentum(dim: int, pressure: str) -> None:
-    """Forces add up to none. In 2D their couple too, where the law holds; in 3D the couple of the tractions is left, of
-    the size of gaps on the curved contactor."""
-    model = slid(dim, pressure)
+@pytest.mark.parametrize(
+    ("dim", "pressure", "friction", "offset", "cell"),
+    [
+        (2, "P0", 0.3, 0.0, "quad4"), (2, "dual", 0.3, 0.0, "quad8"), (2, "P1", 0.3, 0.02, "quad4"),
+        (3, "P1", 0.0, 0.0, "hex8"), (3, "P1", 0.3, 0.0, "hex8"), (3, "dual", 0.3, -0.02, "hex8"),
+        (3, "auto", 0.0, 0.0, "tet10"), (3, "auto", 0.3, 0.0, "tet10"), (3, "auto", 0.3, 0.0, "hex20"),
+        (3, "auto", 0.3, 0.0, "tet4"),
+    ],
+)  # fmt: skip
+def test_momentum(dim: int, pressure: str, friction: float, offset: float, cell: str) -> None:
+    """Forces and moments add up to none, on curved facets, with an offset between the surfaces, and in every state: here
+    in one that is not in equilibrium and at the end."""
+    model = slid(dim, pressure, cell=cell)
+    model = replace(model, contacts=[replace(model.contacts[0], friction=friction, offset=offset)])
     _, state = solved(model)
-    pair = finite(model).linearise(state, state).pairs[0]
-    force = (pair.rows.T @ state.multipliers).reshape(-1, dim)
-    x, size = pair.contactor.points, np.abs(force).sum()
-    assert size > 0.1
-    assert np.abs(force.sum(axis=0)).max() < 1e-13 * size
-    moments = np.cross(*(np.column_stack([v, np.zeros(len(v))]) if dim == 2 else v for v in (x, force)))
-    moment = np.abs(moments.sum(axis=0)).max()
-    assert moment < (1e-12 if dim == 2 else 1e-5) * size
+    problem = finite(model)
+    random = state.multipliers * np.random.default_rng(1).uniform(0.5, 2.0, len(state.multipliers))
+    for now in (state, replace(state, multipliers=random)):
+        pair = problem.linearise(state, now).pairs[0]
+        force = (pair.rows.T @ now.multipliers).reshape(-1, dim)
+        x, size = pair.contactor.points, np.abs(force).sum()
+        assert size > 0.1
+        assert np.abs(force.sum(axis=0)).max() < 1e-13 * size
+        moments = np.cross(*(np.column_stack([v, np.zeros(len(v))]) if dim == 2 else v for v in (x, force)))
+        assert np.abs(moments.sum(axis=0)).max() < 1e-12 * size

@@ -14,6 +14,7 @@ from abut.analysis.run import Run
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
 from abut.problem.finite import FiniteProblem
+from abut.solution.state import State
 
 SOFT = abut.LinearElastic(young=100.0, poisson=0.3)
 FIRST = abut.Amplitude(((0.0, 0.0), (0.4, 1.0), (1.0, 1.0)))
@@ -58,14 +59,18 @@ def finite(model: abut.Model) -> FiniteProblem:
     return problem
 
 
-def tangent_errors(problem: FiniteProblem, size: float) -> tuple[float, float]:
+def tangent_errors(
+    problem: FiniteProblem, size: float, before: State | None = None, about: State | None = None
+) -> tuple[float, float]:
     """Of the derivatives of balance and of gaps (slips) against central differences, relative, in all displacements at once
-    and near random ones of that size."""
+    and near random ones of that size, in a step from ``before`` to near ``about``, by default from the start."""
     rng = np.random.default_rng(3)
-    before, n = problem.start(), problem.operator.shape[0]
+    before, n = problem.start() if before is None else before, problem.operator.shape[0]
+    there = before.unknowns if about is None else about.unknowns
     at = replace(
-        before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
-    )
+        before, time=0.7, unknowns=there + size * rng.standard_normal(problem.n_free),
+        multipliers=rng.uniform(0.0, 5.0, n),
+    )  # fmt: skip
     system, way = problem.linearise(before, at), rng.standard_normal(problem.n_free)
 
     def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

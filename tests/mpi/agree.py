@@ -166,7 +166,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "lifted": lifted,
     "loose": loose,
     "pin-lug": lambda: example("pin-lug/job.toml"),
-    **{name: partial(finite, name) for name in ("beam", "folds", "slid", "cushion", "punch", "pad", "turned")},
+    **{name: partial(finite, name) for name in ("beam", "folds", "jaws", "slid", "cushion", "punch", "pad", "turned")},
 }
 
 

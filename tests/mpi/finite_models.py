@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import abut
 from abut.mesh.make import box, join, rectangle
+from models.clamps import wrung
 from models.folding import accordion
 from models.sliding import SOFT, THEN, arched, pressed_in_space
 
@@ -82,4 +83,12 @@ def folds() -> abut.Model:
     return accordion(shortening=0.6, cells=40, friction=0.2)
 
 
-MODELS = {"folds": folds, "beam": beam, "slid": slid, "cushion": cushion, "punch": punch, "pad": pad, "turned": turned}
+def jaws() -> abut.Model:
+    """3D: a clamp that closes on itself and is pushed across, with friction."""
+    return wrung("hex8", friction=0.2)
+
+
+MODELS = {
+    "folds": folds, "jaws": jaws, "beam": beam, "slid": slid, "cushion": cushion, "punch": punch, "pad": pad,
+    "turned": turned,
+}  # fmt: skip

@@ -20,7 +20,7 @@ from abut.cli import main
 from models.steps import job, stop_in
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
-MODELS = ["beam", "slid", "folds", "cushion", "punch", "pad", "turned"]
+MODELS = ["beam", "slid", "folds", "jaws", "cushion", "punch", "pad", "turned"]
 SLID = """
 schema = 1
 [mesh.bodies.plate]
@@ -65,9 +65,9 @@ friction = 0.3
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_states_and_steps(mpirun: Run, n: int) -> None:
-    """In the plane and in space: F-bar under a pressure that follows it, sliding with friction, a body that touches itself,
-    rigid bodies that tilt, a surface that turns, a tie. Iterations are the same, so that load steps are, whose ends are
-    compared too."""
+    """In the plane and in space: F-bar under a pressure that follows it, sliding with friction, bodies that touch
+    themselves, rigid bodies that tilt, a surface that turns, a tie. Iterations are the same, so that load steps are, whose
+    ends are compared too."""
     for row in compared(mpirun, n, MODELS, timeout=400.0).values():
         assert "mumps" in row["solver"]
         assert row["solutions"] == row["alone"]

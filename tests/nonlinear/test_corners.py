@@ -25,7 +25,11 @@ def solved(model: abut.Model) -> tuple[abut.Solution, int]:
     assert last.converged
     assert last.factor == 1.0
     left = {check.name: check.passed for check in solution.certificate}
-    assert all(passed for name, passed in left.items() if name.endswith(("balance", "complementarity", "tension")))
+    assert all(
+        passed
+        for name, passed in left.items()
+        if name.endswith(("model balance", "force balance", "complementarity", "tension"))
+    )
     return solution, len(rows)
 
 
@@ -61,7 +65,7 @@ def test_wedge_into_round_block(aside: float, most: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("cell", "plate_is_contactor", "most"), [("quad4", False, 40), ("quad8", False, 48), ("quad4", True, 100)]
+    ("cell", "plate_is_contactor", "most"), [("quad4", False, 40), ("quad8", False, 48), ("quad4", True, 170)]
 )
 def test_corner_of_a_peg(cell: str, plate_is_contactor: bool, most: int) -> None:
     """It slides all along the plate, so that the traction is the coefficient times the pressure."""

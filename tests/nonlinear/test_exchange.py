@@ -21,6 +21,7 @@ class Side:
 
     n: int
     tied: bool = False
+    smooth: bool = False
 
     @property
     def normal(self) -> slice:

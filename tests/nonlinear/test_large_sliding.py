@@ -14,9 +14,9 @@ from abut.contact.moving_normals import normal_pattern
 from abut.errors import InputError, SingularModelError
 from abut.linear.choice import Direct
 from abut.mesh import make
+from abut.nonlinear.finite_laws import Asked, laws_of
 from abut.nonlinear.iteration import advance
 from abut.nonlinear.large_steps import extrapolated
-from abut.nonlinear.semismooth import laws_of
 from abut.problem.current import Place
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.solution import Solution
@@ -243,7 +243,7 @@ def test_no_past_no_traction() -> None:
     assert not system.forgotten.any()
     mask = np.arange(len(pair)) == pair.tangential.start + 2
     system = replace(system, forgotten=mask)
-    after = advance(Direct().prepare(system, None), state, laws_of(system, state))
+    after = advance(Direct().prepare(system, None), state, laws_of(system, state, Asked()))
     assert np.abs(after.multipliers[mask]).max() < 1e-14
     assert (after.multipliers[~mask] != 0.0).all()
 
@@ -279,8 +279,6 @@ def test_too_much_ends_with_words() -> None:
 @pytest.mark.parametrize(
     ("what", "words"),
     [
-        ({"adjust": 0.1}, "adjust"),
-        ({"law": "constraint-function"}, "law"),
         ({"method": "node-to-segment"}, "method"),
         ({"pressure": "P2"}, "quadratic"),
     ],

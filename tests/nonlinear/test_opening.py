@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.nonlinear.finite_laws import Asked
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.opening import BENT, following_status, without_pulling
 from abut.problem.linearised import Linearised
@@ -30,7 +31,7 @@ def status(apart: float, pressures: tuple[float, float], guessed: bool = False) 
     system, state = touching(apart)
     multipliers = np.zeros(len(state.status))
     multipliers[[1, 2]] = pressures
-    wanted = following_status(system, replace(state, multipliers=multipliers), FIRST, guessed)
+    wanted = following_status(system, replace(state, multipliers=multipliers), FIRST, Asked(), guessed)
     assert (np.delete(wanted, [1, 2]) == (CLOSED if apart < 0.0 else OPEN)).all()
     return [int(one) for one in wanted[[1, 2]]]
 

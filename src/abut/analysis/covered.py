@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.analysis.friction import touches_itself
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.tangential import SlipOperators, arms
+from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem, bare
 from abut.problem.friction_rows import Slip
@@ -25,24 +27,29 @@ def covered(
 ) -> tuple[Linearised, State, NDArray[np.bool_]]:
     """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
     nothing is opposite to, and which are left, (n,); weights are those of the part that is covered."""
-    pairs, keeps, slips = [], [], state.history.of(CONTACTS)
+    pairs, keeps, shares, slips = [], [], [], state.history.of(CONTACTS)
     for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
-        keep = np.ones(len(pair), dtype=bool)
+        keep, share = np.ones(len(pair), dtype=bool), np.ones(len(pair))
+        if pair.smooth:  # whose gaps are means times the weight of the whole function
+            share[pair.normal] = pair.space.weight / whole.weight[whole.normal]
         if kind is not None:
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            seen = kind.shown(here, points=pair.frictional and pair.contactor.dim == 3)
-            pair = replace(pair, coupling=replace(seen, points=None), slip=_with_arms(pair, seen))
+            seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
+            pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen))
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
+        shares.append(share)
+    share = np.concatenate([np.zeros(0), *shares])
     keep = np.concatenate([np.zeros(0, bool), *keeps])
     slips = {
         p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
     }
     assert system.pushing is not None
     smaller = replace(
-        system, pairs=pairs, operator=system.operator[keep], offset=system.offset[keep], pushing=system.pushing[keep],
+        system, pairs=pairs, operator=(sp.diags(share[keep]) @ system.operator[keep]).tocsr(),
+        offset=share[keep] * system.offset[keep], pushing=system.pushing[keep],
         forgotten=None if system.forgotten is None else system.forgotten[keep],
     )  # fmt: skip
     history = state.history.with_term(CONTACTS, slips)
@@ -50,12 +57,13 @@ def covered(
     return smaller, kept, keep
 
 
-def _with_arms(pair: Pair, seen: Coupling) -> Slip | None:
-    """What makes tangential rows, its arms those of the points that are seen now."""
+def _seen_slip(pair: Pair, seen: Coupling) -> Slip | None:
+    """What makes tangential rows, of the points that are seen now: no couple, and the target's part where points of its are
+    the contactor's too."""
     if pair.slip is None:
         return None
-    of_points = seen.gap[:, None] if seen.points is None else arms(seen.points, pair.contactor.points)
-    return replace(pair.slip, operators=SlipOperators((), of_points))
+    none = SlipOperators((), None)
+    return replace(pair.slip, operators=none if seen.points is None else target_operators(seen.points, pair.target))
 
 
 def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:

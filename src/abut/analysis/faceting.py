@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import GapSamples
-from abut.contact.geometry import by_kind, nodal_normals, node_coordinates, pressure_kind
+from abut.contact.function_places import at_samples
+from abut.contact.geometry import by_kind, nodal_normals
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -89,15 +89,7 @@ def _moments(pair: Pair, at: GapSamples, value: NDArray[np.float64]) -> NDArray[
     """Integrals (9 n_facets,) of a value given at the gap samples with the facet-wise pressure functions; in 2D exact to
     the third order (Simpson's rule), in 3D an estimate."""
     contactor, degree = pair.contactor, pair.coupling.degree
-    functions = np.zeros_like(at.contactor_shapes)
-    for kind, facets in by_kind(contactor):
-        here = np.isin(at.facet, facets)
-        if degree == 0:
-            functions[here, 0] = 1.0
-            continue
-        carrier = CELLS[pressure_kind(kind, degree)]
-        values, _ = shape_functions(carrier.code, node_coordinates(kind))
-        functions[np.ix_(here, np.arange(carrier.nodes))] = at.contactor_shapes[here, : CELLS[kind].nodes] @ values
+    functions = at_samples(contactor, degree, at)
     area, middle, number = _segments(contactor, at)
     corners = np.bincount(number, minlength=len(middle)) - 1
     weight = (1.0 - MIDDLE) / np.maximum(corners, 1)[number]

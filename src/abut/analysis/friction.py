@@ -10,7 +10,6 @@ from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count
 from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
 from abut.contact.smooth_friction import slip_of
-from abut.contact.tangential import quarter
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
@@ -64,7 +63,7 @@ def friction_result(
         total_work=work + (0.0 if earlier is None else earlier.total_work),
         work_per_area=each,
         total_work_per_area=each + (0.0 if earlier is None else earlier.total_work_per_area),
-        force=_on_contactor(pair, tangential_forces(pair, multipliers), _own_traction(pair, multipliers)).sum(axis=0),
+        force=_on_contactor(pair, tangential_forces(pair, multipliers), _on_target(pair, multipliers)).sum(axis=0),
         force_by_area=float(weight @ size),
         force_limit=float(weight @ bound),
         largest_share=_largest_share(size, bound),
@@ -120,28 +119,38 @@ def _status_at_nodes(pair: Pair, status: NDArray[np.int8]) -> NDArray[np.int32]:
 def friction_forces(pair: Pair, multipliers: Vector) -> tuple[Vector, Vector]:
     """Nodal forces of pressure and friction on all points, on the contactor's side and on the target's, (n_points, dim)."""
     force = np.asarray(pair.rows.T @ multipliers).reshape(-1, pair.contactor.dim)
-    pressed = pair.space.transfer @ multipliers[pair.normal]
-    mine = _on_contactor(pair, force, pair.coupling.contactor_part.T @ pressed + _own_traction(pair, multipliers))
+    pressed = pair.coupling.target_part.T @ (pair.space.transfer @ multipliers[pair.normal])
+    mine = _on_contactor(pair, force, _on_target(pair, multipliers) - pressed)
     return mine, force - mine
 
 
-def _on_contactor(pair: Pair, force: Vector, forces: Vector) -> Vector:
-    """What of nodal forces (n_points, dim) acts on the contactor: all of its nodes', or, of a body that touches itself,
-    ``own`` (dim n_points,)."""
-    if pair.contactor.kin is not None and len(np.intersect1d(pair.contactor.node_ids, pair.target.node_ids)):
-        return np.asarray(forces).reshape(force.shape)
+def touches_itself(pair: Pair) -> bool:
+    """Whether points of the contactor are the target's, too."""
+    both = pair.contactor.node_ids, pair.target.node_ids
+    return pair.contactor.kin is not None and len(np.intersect1d(*both)) > 0
+
+
+def _on_contactor(pair: Pair, force: Vector, on_target: Vector) -> Vector:
+    """What of nodal forces (n_points, dim) acts on the contactor: all of its nodes', or, of a body that touches itself, what
+    is not ``on_target`` (dim n_points,)."""
+    if touches_itself(pair):
+        return np.asarray(force - on_target.reshape(force.shape))
     mine = np.zeros((len(force), 1), dtype=bool)
     mine[pair.contactor.node_ids] = True
     return np.where(mine, force, 0.0)
 
 
-def _own_traction(pair: Pair, multipliers: Vector) -> Vector:
-    """Nodal forces of tractions on the contactor (dim n_points,), in 2D: those of a pressure turned by a right angle."""
-    size = pair.rows.shape[1]
-    if pair.contactor.dim != 2:
-        return np.zeros(size)
-    along = pair.components[1].transfer @ multipliers[pair.tangential]
-    return np.asarray(quarter(size // 2).T @ (pair.coupling.contactor_part.T @ along))
+def _on_target(pair: Pair, multipliers: Vector) -> Vector:
+    """Nodal forces of tractions on the target (dim n_points,), of a body that touches itself; else zero."""
+    if not touches_itself(pair):
+        return np.zeros(pair.rows.shape[1])
+    assert pair.slip is not None
+    flat = pair.contactor.dim == 2
+    along = (
+        [pair.components[1].transfer @ multipliers[pair.tangential]] if flat else traction_values(pair, multipliers).T
+    )
+    parts = zip(pair.slip.operators.along, along, strict=True)
+    return np.asarray(sum(operator.T @ values for operator, values in parts))
 
 
 def _creep(pair: Pair, size: Vector, bound: Vector) -> Vector:
@@ -156,8 +165,8 @@ def _creep(pair: Pair, size: Vector, bound: Vector) -> Vector:
 def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | None:
     """Relative errors of force and moment between the two sides with pressure and traction; None without friction.
 
-    Across a gap g a traction acts on one line on the contactor and on another on the target: of the moments, this couple
-    g N x t is left out, theory (R12)."""
+    With small displacements a traction acts across a gap g on one line on the contactor and on another on the target: of
+    the moments, this couple g N x t is left out, theory (R12)."""
     if pair.slip is None:
         return None
     dim, ids = pair.contactor.dim, pair.contactor.node_ids
@@ -165,15 +174,24 @@ def friction_balance(pair: Pair, multipliers: Vector) -> tuple[float, float] | N
     size = max(0.5 * float(np.abs(force).sum()), 1e-300)
     turn = 0.0
     if not pair.contactor.axisymmetric:
-        arms = pair.space.transfer.T @ pair.slip.operators.arms
-        along = pair.tangential_traction(multipliers)
-        if dim == 2:  # turned normals are square to N and of unit length at every point
-            along = np.einsum("kd,kd->k", along, pair.slip.tangents[:, 0])[:, None]
-        couple = (arms * along).sum(axis=0) if dim == 2 else np.cross(arms, along).sum(axis=0)
         extent = float(np.ptp(points[ids], axis=0).max())
         moment = cross(points - points[ids].mean(axis=0), force).sum(axis=0)
-        turn = float(np.abs(moment - couple).max()) / (size * extent)
+        turn = float(np.abs(moment - _couple(pair, multipliers)).max()) / (size * extent)
     return float(np.abs(force.sum(axis=0)).max()) / size, turn
+
+
+def _couple(pair: Pair, multipliers: Vector) -> Vector:
+    """Of the tractions across gaps, (3,), in 2D (1,); theory (R12)."""
+    assert pair.slip is not None
+    dim, arms = pair.contactor.dim, pair.slip.operators.arms
+    if arms is None:
+        return np.zeros(3 if dim == 3 else 1)
+    along = pair.tangential_traction(multipliers)
+    if dim == 3:
+        return np.cross(pair.space.transfer.T @ arms, along).sum(axis=0)
+    # turned normals are square to N and of unit length at every point
+    size = np.einsum("kd,kd->k", along, pair.slip.tangents[:, 0])[:, None]
+    return np.asarray((pair.space.transfer.T @ arms * size).sum(axis=0))
 
 
 def _left_out(pair: Pair, new: Vector, bound: Vector) -> float:
@@ -222,4 +240,4 @@ def friction_checks(
         ("friction left out", left_out, NEW,
          "share of what friction can carry where none counts in the step, as the target was not opposite before"),
     )  # fmt: skip
-    return tuple(Check(name, *line) for line in (values if left_out else values[:-1]))
+    return tuple(Check(name, *line, pressure=largest) for line in (values if left_out else values[:-1]))

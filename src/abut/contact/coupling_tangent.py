@@ -42,9 +42,10 @@ class CouplingTangent:
     ``abut.contact.coupling.Coupling``.
 
     gap_value, weight_value: (9 n_facets,) int H_k g and int H_k.
-    operators: of 9 n_facets rows, blocks (n, 1, dim) of int H_k (N_C - N_T) N and, in 3D with tractions, beside each other
-               (n, 1, dim + dim^2) with int H_k (N_C - N_T) (I - N N): theory (T6).
-    force:     (dim n_points,) sum_k int H_k (p_k N + (I - N N) t_k) (N_C - N_T) da: what the contact does to the nodes.
+    operators: of 9 n_facets rows, blocks (n, 1, dim) of int H_k (N_C - N_T) N and, with tractions, beside each other
+               (n, 1, dim + dim^2) with what a unit traction along each axis does to the nodes, in 2D (n, 1, 2 dim) with that
+               of one along the normal turned by a right angle: theory (T6).
+    force:     (dim n_points,) what pressure and tractions do to the nodes: theory (T1).
     force_tangent: (dim n_points, dim n_points), its derivative at constant p and t; not symmetric.
     by_points, by_normals: of 9 n_facets rows, blocks (n, 2, dim), derivatives of int H_k g and int H_k by points and by the
                nodal normals that differ; turning: (dim m, dim n_points) how these follow the points.
@@ -138,7 +139,7 @@ def of_facets(
         normal_numbers=np.ascontiguousarray(normals.numbers[facets]),
         target_offset=offset,
         n_points=n_points,
-        tangential=load.traction is not None,
+        tangential=load.traction is not None or load.turned is not None,
     )
     return raw if len(facets) == len(contactor) else _among_all(raw, facets, len(contactor))
 

@@ -1,4 +1,4 @@
-"""Where the functions of a pressure space sit, and the contactor's normals there."""
+"""Where the functions of a pressure space sit, the contactor's normals there, and their values at gap samples."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.geometry import side_normals
+from abut._core import shape_functions
+from abut.cells import CELLS
+from abut.contact.coupling import GapSamples
+from abut.contact.geometry import by_kind, node_coordinates, pressure_kind, side_normals
 from abut.contact.pressure_space import PressureSpace
 from abut.mesh.surface import Surface
 
@@ -35,3 +38,17 @@ def places(contactor: Surface, space: PressureSpace, normals: Array | None = Non
     points[of_facets] = (share @ split.points) / total
     outward[of_facets] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
     return points, outward
+
+
+def at_samples(contactor: Surface, degree: int, at: GapSamples) -> Array:
+    """Values of the facet-wise pressure functions at gap samples, (n_samples, 9)."""
+    functions = np.zeros_like(at.contactor_shapes)
+    for kind, facets in by_kind(contactor):
+        here = np.isin(at.facet, facets)
+        if degree == 0:
+            functions[here, 0] = 1.0
+            continue
+        carrier = CELLS[pressure_kind(kind, degree)]
+        values, _ = shape_functions(carrier.code, node_coordinates(kind))
+        functions[np.ix_(here, np.arange(carrier.nodes))] = at.contactor_shapes[here, : CELLS[kind].nodes] @ values
+    return functions

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.coupling import IntegrationPoints
+from abut.mesh.surface import Surface
 from abut.types import Sparse
 
 UNEVEN = 1e-6  # difference of the shares that supports hold of two tangents, above which the frame follows them
@@ -20,30 +21,44 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class SlipOperators:
     """Of slip and of its forces, facet by facet. along: (9 n_facets, dim n_points) sparse for each direction d, int H_k d .
-    (u_C - u_T), theory (R1); arms: (9 n_facets, 3) int H_k (x_C - x_T), in 2D its size (9 n_facets, 1), theory (R12)."""
+    (u_C - u_T), theory (R1), or its target's part alone where only that is asked for; arms: (9 n_facets, 3) int H_k (x_C -
+    x_T), in 2D its size (9 n_facets, 1), theory (R12), None where tractions have no couple, theory (G4)."""
 
     along: tuple[Sparse, ...]
-    arms: Array
+    arms: Array | None
 
 
 def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
     """For directions d in the tangent plane of each integration point: in 2D the normal turned by a right angle, in 3D the
     three axes less their normal parts. points: (n_points, dim) of the mesh."""
+    return SlipOperators(_along(at, at.gap_operator.tocoo()), _arms(at, points))
+
+
+def target_operators(at: IntegrationPoints, target: Surface) -> SlipOperators:
+    """The target's part alone: what tractions do to it, where it has points in common with the contactor."""
+    entries = at.gap_operator.tocoo()
+    node = entries.col // at.normal.shape[1]
+    theirs = (target.nodes[at.target_facet[entries.row]] == node[:, None]).any(axis=1)
+    part = sp.coo_matrix((entries.data[theirs], (entries.row[theirs], entries.col[theirs])), shape=entries.shape)
+    return SlipOperators(_along(at, part), None)
+
+
+def _along(at: IntegrationPoints, entries: Sparse) -> tuple[Sparse, ...]:
+    """entries: of ``at.gap_operator``, all or some."""
     normal = at.normal
     dim = normal.shape[1]
-    entries = at.gap_operator.tocoo()
     along = entries.data * normal[entries.row, entries.col % dim]
     shapes = sp.csr_matrix(  # of the contactor, minus those of the target: the normal part of each, put together
-        (along, (entries.row, entries.col // dim)), shape=(len(normal), at.gap_operator.shape[1] // dim)
+        (along, (entries.row, entries.col // dim)), shape=(len(normal), entries.shape[1] // dim)
     )
     if dim == 2:
         fields = [turned(normal)]
     else:
         fields = [np.eye(dim)[a] - normal * normal[:, [a]] for a in range(dim)]
-    return SlipOperators(tuple(_integrated(at, shapes, field) for field in fields), arms(at, points))
+    return tuple(_integrated(at, shapes, field) for field in fields)
 
 
-def arms(at: IntegrationPoints, points: Array) -> Array:
+def _arms(at: IntegrationPoints, points: Array) -> Array:
     """int H_k (x_C - x_T), (9 n_facets, 3); in 2D its size (9 n_facets, 1): theory (R12)."""
     gap = at.weight * (at.gap_operator @ points.ravel())
     field = gap[:, None] if points.shape[1] == 2 else gap[:, None] * at.normal
@@ -63,11 +78,6 @@ def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
 def turned(normal: Array) -> Array:
     """Unit normals (n, 2) turned by a right angle, against the clock."""
     return np.column_stack([-normal[:, 1], normal[:, 0]])
-
-
-def quarter(n_points: int) -> Sparse:
-    """What turns rows of forces (.., 2 n_points) by a right angle, against the clock."""
-    return sp.kron(sp.identity(n_points), np.array([[0.0, 1.0], [-1.0, 0.0]]), format="csr")
 
 
 def frames(normals: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -49,16 +49,6 @@ def unsupported(deck: Deck) -> Iterator[DeckError]:
             yield DeckError(
                 material.place, f"*MATERIAL '{material.name}': *HYPERELASTIC needs large strains; write *STEP, NLGEOM"
             )
-    for pair in deck.pairs:
-        what = "*CLEARANCE" if pair.clearance is not None else "ADJUST"
-        moved = not isinstance(pair.adjust, float) or pair.adjust != 0.0 or pair.clearance is not None
-        if finite and moved and not pair.tied:
-            yield DeckError(
-                pair.place,
-                f"*CONTACT PAIR: {what} is not supported with NLGEOM: close the gap in the mesh, or, if displacements are "
-                "small, leave NLGEOM out",
-                "NLGEOM",
-            )
 
 
 def load_steps(deck: Deck) -> SolveOptions:

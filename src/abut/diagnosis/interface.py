@@ -99,7 +99,8 @@ def _gaps(model: Model, pair: Pair) -> list[Finding]:
     contact = pair.contact
     where = f"contact '{contact.name}'"
     reach = default_reach(pair.contactor, pair.target)
-    at = couple(pair.contactor, pair.target, 0, CouplingOptions(points=2, reach=reach, keep_points=True)).points
+    options = CouplingOptions(points=2, reach=reach, keep_points=True, adjust=contact.adjust)
+    at = couple(pair.contactor, pair.target, 0, options).points
     if at is None or not len(at.gap):
         return []
     gap = at.gap + smallest_offset(contact)

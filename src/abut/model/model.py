@@ -203,12 +203,6 @@ class Model:
         for i, (contact, surfaces) in enumerate(zip(self.contacts, every)):
             if not self.finite or contact.kind == "tied":
                 check_own(surfaces, contact.contactor, contact.target, f"contacts[{i}]")
-            common = np.intersect1d(surfaces[0].node_ids, surfaces[1].node_ids)
-            if self.finite and self.dim == 3 and contact.frictional and len(common):
-                raise InputError(
-                    f"contacts[{i}].friction: a body in contact with itself has no friction in 3D; leave it out, or name "
-                    "surfaces without common points"
-                )
         check_twice([contact.name for contact in self.contacts], every)
 
     def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:

@@ -41,10 +41,10 @@ def exchanged(system: Linearised, here: State, there: State, closings: NDArray[n
 
 
 def _pressures(system: Linearised) -> NDArray[np.bool_]:
-    """(n,) multipliers that are pressures and not those of a tie."""
+    """(n,) multipliers that are pressures of points which open where they pull."""
     result = np.zeros(len(system), dtype=bool)
     for pair, part in zip(system.pairs, system.split(result)):
-        if not pair.tied:
+        if not (pair.tied or pair.smooth):
             part[pair.normal] = True
     return result
 

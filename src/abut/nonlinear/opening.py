@@ -6,9 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.nonlinear.friction_newton import next_status
+from abut.nonlinear.finite_laws import Asked, barely_covered, wanted_status
 from abut.nonlinear.iteration import FLAT, Increment
-from abut.problem.finite import bare
 from abut.problem.linearised import Linearised
 from abut.solution.state import CLOSED, OPEN, State
 
@@ -17,7 +16,7 @@ NEAREST = 0.01  # the same by which points may be farther than the nearest, to s
 Status = NDArray[np.int8]
 
 
-def following_status(system: Linearised, state: State, increment: Increment, guessed: bool) -> Status:
+def following_status(system: Linearised, state: State, increment: Increment, asked: Asked, guessed: bool) -> Status:
     """The status (n,) that the laws ask for, but for points that are closed and press: they stay closed.
 
     An iteration has closed them in the linear problem. The gap that they have nevertheless is what that has left out; the
@@ -25,13 +24,13 @@ def following_status(system: Linearised, state: State, increment: Increment, gue
     the state; points that press stay closed only where otherwise all of a contact would open."""
     gap = system.gap(state)
     presses = state.closed & (state.multipliers > 0.0)
-    asked = next_status(system, state, increment, gap)
-    for pair, own, part, status in zip(system.pairs, system.split(presses), system.split(gap), system.split(asked)):
+    wanted = wanted_status(system, state, increment, asked)
+    for pair, own, part, status in zip(system.pairs, system.split(presses), system.split(gap), system.split(wanted)):
         if pair.tied or (guessed and (status[pair.normal] != OPEN).any()):
             continue
         near = own[pair.normal] & (part[pair.normal] < BENT * pair.size * pair.weight[pair.normal])
         part[pair.normal] = np.where(near, np.minimum(part[pair.normal], 0.0), part[pair.normal])
-    return np.where(uncovered(system), OPEN, next_status(system, state, increment, gap)).astype(np.int8)
+    return wanted_status(system, state, increment, asked, gap)
 
 
 def without_pulling(system: Linearised, state: State, there: State, increment: Increment) -> State | None:
@@ -43,7 +42,7 @@ def without_pulling(system: Linearised, state: State, there: State, increment: I
     status = state.status.copy()
     parts = zip(system.pairs, system.split(status), system.split(state.closed), system.split(there.multipliers))
     for pair, own, closed, multipliers in parts:
-        if pair.tied or not closed[pair.normal].any():
+        if pair.tied or pair.smooth or not closed[pair.normal].any():
             continue
         pulls = closed[pair.normal] & (multipliers[pair.normal] < -least)
         if (closed[pair.normal] & ~pulls).any():
@@ -56,7 +55,7 @@ def without_pulling(system: Linearised, state: State, there: State, increment: I
 def nearest_kept(system: Linearised, before: State, state: State) -> State:
     """A guess in which a contact has come off that was closed at the state ``before``: what is nearest stays closed for an
     iteration, which tells whether it pulls. Else the guess itself."""
-    wanted, gaps, idle = state.status.copy(), system.gap(state), uncovered(system)
+    wanted, gaps, idle = state.status.copy(), system.gap(state), barely_covered(system)
     first = 0
     for pair in system.pairs:
         own = slice(first, first := first + len(pair))
@@ -68,9 +67,3 @@ def nearest_kept(system: Linearised, before: State, state: State) -> State:
         near = np.isfinite(clearance) & (clearance <= clearance.min() + NEAREST)
         wanted[own] = np.where(pair.of_functions(near), CLOSED, wanted[own])
     return state if np.array_equal(wanted, state.status) else state.with_status(wanted)
-
-
-def uncovered(system: Linearised) -> NDArray[np.bool_]:
-    """(n,) multipliers with hardly any target opposite."""
-    parts = [np.zeros(len(pair), bool) if pair.tied else pair.of_functions(bare(pair)) for pair in system.pairs]
-    return np.concatenate([np.zeros(0, bool), *parts])

@@ -8,23 +8,24 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.exchange import exchanged
+from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import FINE, forcing
-from abut.nonlinear.friction_newton import friction_laws, next_status
-from abut.nonlinear.holding import resisting, sticking, thrown_apart
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
-from abut.nonlinear.opening import following_status, nearest_kept, uncovered, without_pulling
+from abut.nonlinear.friction_newton import friction_laws
+from abut.nonlinear.holding import flies_off, not_adrift, resisting, sticking, thrown_apart
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
+from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
 from abut.nonlinear.smallest import smallest, yielding
+from abut.nonlinear.smooth_laws import NO_PRESSURE
 from abut.problem.finite import FiniteProblem
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, OPEN, Largest, State
+from abut.solution.state import CLOSED, Largest, State
 
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
 ROUNDING = 1e-7  # the same that may be left where it no longer falls
@@ -36,7 +37,8 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Balance:
-    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together."""
+    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together;
+    rounding: of forces over the largest."""
 
     system: Linearised
     state: State
@@ -45,6 +47,7 @@ class Balance:
     law: float
     size: float
     changed: NDArray[np.bool_]
+    rounding: float
 
     @property
     def error(self) -> float:
@@ -53,8 +56,9 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search. prepared:
-    the linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; asked:
+    which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
+    ended without a solution."""
 
     problem: FiniteProblem
     before: State
@@ -63,6 +67,7 @@ class Step:
     limit: int
     observe: Callable[[Iteration], None]
     careful: bool = False
+    asked: Asked = field(default_factory=Asked)
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
@@ -75,7 +80,35 @@ class Step:
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     """The state at ``time``, from a guess there; None: from the last converged state, whose tangent carries what is
-    prescribed further."""
+    prescribed further.
+
+    Laws of one's own begin from the solution of complementarity where nothing has pressed yet, and where they do not
+    converge otherwise. The constraint function does in any case; its smoothing goes with the largest pressure there."""
+    pairs = [pair for pair in step.problem.pairs if pair.smooth]
+    own = any(not isinstance(pair.contact.law, str) for pair in pairs)
+    ways = [_solved, _by_complementarity] if own else [_solved]
+    if own and step.before.largest.pressure == 0.0:
+        ways.reverse()
+    for way in ways:
+        step.failed = ""
+        found = way(step, guess, time)
+        if found.converged:
+            break
+    if found.converged and any(isinstance(pair.contact.law, str) for pair in pairs):
+        reference = largest_pressure(found.state, step.increment)
+        if reference > NO_PRESSURE * max(pair.stiffness * pair.size for pair in pairs):
+            found = _solved_again(step, Asked(reference=reference), found.state, time)
+    return found
+
+
+def _by_complementarity(step: Step, guess: State | None, time: float) -> Found:
+    """With laws of one's own from the solution of complementarity, whose pressures they meet to begin with."""
+    found = _solved_again(step, Asked(own=False), guess, time)
+    return _solved_again(step, Asked(by_pressure=True), found.state, time) if found.converged else found
+
+
+def _solved(step: Step, guess: State | None, time: float) -> Found:
+    """With the laws that the step asks for."""
     none = np.zeros(len(step.before.status), dtype=bool)
     try:
         here = _newton(step, guess, time)
@@ -86,6 +119,15 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
 
 
+def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) -> Found:
+    """With other laws, and as many iterations more; by a line search where they are smooth."""
+    careful = step.careful or asked.reference is not None
+    again = replace(step, asked=asked, limit=step.limit + len(step.done), careful=careful, failed="")
+    found = _solved(again, guess, time)
+    step.failed, step.prepared = again.failed, again.prepared
+    return found
+
+
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
     closings = np.zeros(len(step.before.status), dtype=np.int64)
@@ -94,7 +136,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
         begun = _report(step, here, begun)
     if guess is not None or not _balanced(here, before):
         state = nearest_kept(here.system, step.before, here.state)
-        here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state))
+        here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
     while guess is not None or not _balanced(here, before):
         if len(step.done) >= step.limit:
             step.failed = (
@@ -103,9 +145,13 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
             )
             break
         following, swapped = _following(step, here, closings, forcing(here.error, before, BALANCED))
+        step.failed = flies_off(step.problem, step.before, following)
+        if step.failed:
+            break
+        step.asked = replace(step.asked, by_pressure=False)
         there = _balance(step, following)
         closings += there.state.closed & ~here.state.closed
-        if step.careful and not swapped:
+        if (step.careful and not swapped) or not np.isfinite(there.size):
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
             step.failed = "forces are not finite"
@@ -120,7 +166,7 @@ def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy:
     laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
 
     def solved(state: State) -> State:
-        return step.advanced(here.system, state, laws_of(here.system, state), accuracy)
+        return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
 
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
     other = exchanged(here.system, here.state, there, closings, solved)
@@ -128,7 +174,7 @@ def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy:
         return other, True
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
-        wanted = np.where(uncovered(here.system), OPEN, next_status(here.system, there, step.increment)).astype(np.int8)
+        wanted = wanted_status(here.system, there, step.increment, step.asked)
         if wanted.tobytes() in seen:
             break
         seen.add(wanted.tobytes())
@@ -139,13 +185,16 @@ def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy:
 def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
     there = step.advanced(system, state, laws, accuracy)
-    stuck = sticking(step.problem, system, step.before, state, there)
-    return there if stuck is state else step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+    stuck = sticking(step.problem, system, state, there)
+    if stuck is not state:
+        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+    return not_adrift(step.problem, system, stuck, there)
 
 
 def _balanced(here: Balance, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    return here.error <= BALANCED or (here.error <= ROUNDING and here.error > 0.5 * before)
+    idle = here.error > 0.5 * before and here.law <= ROUNDING and here.force <= max(ROUNDING, here.rounding)
+    return here.error <= BALANCED or idle
 
 
 def _carried(step: Step, time: float) -> State:
@@ -153,55 +202,34 @@ def _carried(step: Step, time: float) -> State:
     as far as it takes to hold every body."""
     system = step.problem.ahead(step.before, time)
     state = replace(step.before, time=time)
-    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~uncovered(system)
+    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~barely_covered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
-        there = _iterated(step, resisting(step.problem, system, state), state, laws_of(system, state), FINE)
+        laws = laws_of(system, state, step.asked)
+        there = _iterated(step, resisting(step.problem, system, state), state, laws, FINE)
         fewer = without_pulling(system, state, there, step.increment)
         if fewer is None:
             return there
         state = fewer
 
 
-def laws_of(system: Linearised, state: State) -> list[LawRows]:
-    """The laws of all pairs with the status as it is; multipliers of friction without a past carry nothing."""
-    laws = friction_laws(system, state)
-    if system.forgotten is None or not system.forgotten.any():
-        return laws
-    parts = zip(system.pairs, laws, system.split(system.forgotten), system.split(state.multipliers))
-    return [_without(law, forgotten, pair.scale, slips) for pair, law, forgotten, slips in parts]
-
-
-def _without(law: LawRows, forgotten: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
-    """Rows that set some multipliers to zero."""
-    if not forgotten.any():
-        return law
-    keep = sp.diags((~forgotten).astype(float))
-    return replace(
-        law,
-        residual=np.where(forgotten, -scale * multipliers, law.residual),
-        by_gap=(keep @ law.by_gap).tocsr(),
-        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(forgotten, scale, 0.0))).tocsr(),
-        decoupled=law.decoupled | forgotten,
-    )
-
-
 def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
     system = step.problem.linearise(step.before, state)
-    wanted = following_status(system, state, step.increment, guessed)
-    changed = wanted != state.status
-    state = state.with_status(wanted)
-    laws = laws_of(system, state)
+    before = state.status
+    state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))
+    laws = laws_of(system, state, step.asked)
+    state = state.with_status(status_of(system, state, laws, step.asked))
+    changed = state.status != before
     so_far = largest_of(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
     forces, pressures = max(so_far.force, 1e-300), max(so_far.pressure, FAINT * modulus)
     left = system.unbalanced(state) / forces
-    open_ = [law.residual / pair.weight * pair.stiffness / pressures for pair, law in zip(system.pairs, laws)]
-    law = np.concatenate([np.zeros(0), *open_])
+    law = left_open(system, laws, step.asked) / pressures
     return Balance(
         system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
         float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+        0.0 if system.about is None else system.about.rounding / forces,
     )  # fmt: skip
 
 

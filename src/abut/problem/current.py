@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
-from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
+from abut.problem.adjusted import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixed, Mixture, inner_now, mixed_part
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
@@ -25,6 +26,7 @@ from abut.types import Sparse
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
+GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class ContactNow:
 @dataclass(frozen=True)
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
-    None without friction; offset: what is added to the gap now; inner: (n_facets,) not zero where functions of a dual
+    None without friction; offset: what is added to all gaps now; inner: (n_facets,) not zero where functions of a dual
     space are the ordinary ones in this step, None for nowhere."""
 
     displacement: Array
@@ -56,10 +58,11 @@ class Place:
 @dataclass(frozen=True)
 class Current:
     """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
-    and integrates, here or on several processes."""
+    and integrates, here or on several processes; adjusted: as from ``taken_off``, None for nothing."""
 
     pair: Pair
     differentiate: Differentiate = differentiated
+    adjusted: Array | None = None
 
     def at(self, place: Place, multipliers: Array) -> ContactNow:
         """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
@@ -75,22 +78,18 @@ class Current:
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]
+        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
         weight = np.asarray(down @ by.weight_value)
-        slope = down @ by.slope(np.array([1.0, place.offset]))
+        gap, by_position = self._gaps(down, by, mixed, place.offset)
+        bending = by.force_tangent.tocsr()
         now = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
                 rows=block_rows(in_place(along[..., :dim], operators), points).tocsr(),
             ),
-            np.asarray(down @ by.gap_value + place.offset * weight),
-            slope.tocsr(), by.force_tangent.tocsr(), np.zeros(len(pair.space), dtype=bool),
+            gap, by_position, bending if mixed is None else bending + mixed.pressed(multipliers[pair.normal]),
+            np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
-        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
-        if mixed is not None:
-            p = multipliers[pair.normal]
-            now = replace(
-                now, by_position=now.by_position + mixed.gap(place.offset), bending=now.bending + mixed.pressed(p)
-            )
         if not pair.frictional:
             return now
         assert place.points is not None
@@ -109,6 +108,28 @@ class Current:
         covered = pair.space.plain.T @ place.points.moments(len(contactor))
         return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
 
+    def _gaps(self, down: Sparse, by: CouplingTangent, mixed: Mixed | None, offset: float) -> tuple[Array, Sparse]:
+        """Weighted gaps (n_functions,) with their derivative, theory (G2), (G15); where the law looks at the mean gap, as if
+        the whole function was covered, theory (G16)."""
+
+        def moment(shares: Array) -> tuple[Array, Sparse]:
+            value = shares[0] * by.gap_value + shares[1] * by.weight_value
+            slope = (down @ by.slope(shares)).tocsr()
+            return np.asarray(down @ value), slope if mixed is None else slope + mixed.moment(value)
+
+        means = self.pair.smooth
+        if self.adjusted is None and not means:
+            return moment(np.array([1.0, offset]))
+        (gap, by_gap), (weight, by_weight) = moment(np.array([1.0, 0.0])), moment(np.array([0.0, 1.0]))
+        added = np.full(len(gap), offset) if self.adjusted is None else offset + self.adjusted
+        if not means:
+            return gap + added * weight, (by_gap + sp.diags(added) @ by_weight).tocsr()
+        whole = self.pair.weight[self.pair.normal]
+        seen = weight >= BARELY * whole
+        share = np.where(seen, whole / np.where(seen, weight, 1.0), 0.0)
+        mean = np.where(seen, gap / np.where(seen, weight, 1.0), 0.0)
+        return whole * (mean + added), (sp.diags(share) @ (by_gap - sp.diags(mean) @ by_weight)).tocsr()
+
     def surfaces(self, displacement: Array) -> tuple[Surface, Surface]:
         """Contactor and target at a displacement (dim n_points,)."""
         points = np.ascontiguousarray(self.pair.contactor.points + displacement.reshape(-1, self.pair.contactor.dim))
@@ -120,9 +141,13 @@ class Current:
         return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
 
     def shown(self, displacement: Array, points: bool = False) -> Coupling:
-        """With what results ask for beside it; points: integration points, too."""
+        """With what results ask for beside it, the gaps at samples adjusted; points: integration points, too."""
         options = replace(self._options(np.zeros_like(displacement)), keep_gap_samples=True, keep_points=points)
-        return couple(*self.surfaces(displacement), self.pair.coupling.degree, options, across=self._across)
+        contactor, target = self.surfaces(displacement)
+        seen = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        if self.adjusted is None:
+            return seen
+        return replace(seen, gap_samples=with_adjusted(self.pair.space, contactor, seen, self.adjusted))
 
     def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
         """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""
@@ -149,7 +174,8 @@ class Current:
         rule = self.pair.contact.integration
         nodes = self._nodes
         way = np.linalg.norm(moved.reshape(-1, self.pair.contactor.dim)[nodes], axis=1).max(initial=0.0)
-        return CouplingOptions(rule.rule, rule.points, reach=NEAR * self._facet + 2.0 * float(way))
+        near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
+        return CouplingOptions(rule.rule, rule.points, reach=near * self._facet + 2.0 * float(way))
 
     @cached_property
     def _across(self) -> Smoothing:

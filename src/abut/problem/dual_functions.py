@@ -76,9 +76,8 @@ class Mixed:
     by: CouplingTangent
     differences: Sequence[Sparse]
 
-    def gap(self, offset: float) -> Sparse:
-        """Of the weighted gaps, (n, dim n_points)."""
-        value = self.by.gap_value + offset * self.by.weight_value
+    def moment(self, value: Array) -> Sparse:
+        """Of integrals, (n, dim n_points), that are ``value`` (9 n_facets,) facet by facet."""
         return (self.differences[0].T @ sp.diags(value) @ self.change).tocsr()
 
     def pressed(self, pressure: Array) -> Sparse:
@@ -115,12 +114,11 @@ class Mixed:
         )
 
     def _along(self, turned: bool = False) -> Sparse:
-        """int H_k (N_C - N_T) N, facet by facet, (9 n_facets, dim n_points); turned: along the normal's right angle."""
+        """Forces of unit pressures, facet by facet, (9 n_facets, dim n_points); turned: in 2D of unit tractions."""
         value, column, start = self.by.operators
         points = self.by.turning.shape[1]
         dim = 3 if value.shape[2] in (3, 12) else 2
-        value = value[..., :dim]
-        value = np.stack([-value[..., 1], value[..., 0]], axis=-1) if turned else value
+        value = value[..., dim:] if turned else value[..., :dim]
         return block_rows((value, column, start), points // dim).tocsr()
 
 

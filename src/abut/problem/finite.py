@@ -14,17 +14,18 @@ from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.problem.contact_pairs import Pair
+from abut.problem.adjusted import BARELY, taken_off
+from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import SlipPoints
 from abut.problem.terms import Motion, Share
+from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
-BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 Array = NDArray[np.float64]
 
 
@@ -55,9 +56,11 @@ class Latest:
 
 @dataclass(frozen=True)
 class FiniteProblem(ContactProblem):
-    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties."""
+    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties; ties: of
+    those across a gap, None of all others."""
 
     moving: Sequence[Current | None] = ()
+    ties: Sequence[TurningTie | None] = ()
     latest: Latest = field(default_factory=Latest, repr=False, compare=False)
 
     @property
@@ -141,7 +144,7 @@ class FiniteProblem(ContactProblem):
             pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
-        about = self._expansion(shares, now.unknowns, force, stiffness)
+        about = self._expansion(shares, now.unknowns, here, force, stiffness)
         assert about is not None
         operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
         pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
@@ -177,9 +180,9 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
-        for pair, kind, part in zip(self.pairs, self.moving, self.split(at.multipliers)):
+        for pair, kind, tie, part in zip(self.pairs, self.moving, self.ties, self.split(at.multipliers)):
             if kind is None:
-                result.append(_tie(pair, here))
+                result.append(_tie(pair, tie, here))
                 continue
             constant, varying = offsets(self.model, pair.contact)
             mark = marks.get(pair.contact.name)
@@ -205,14 +208,21 @@ def bare(pair: Pair) -> NDArray[np.bool_]:
     return np.asarray(pair.space.weight < BARELY * pair.weight[pair.normal])
 
 
-def _tie(pair: Pair, displacement: Array) -> ContactNow:
-    """A tie, which holds undeformed surfaces together."""
+def _tie(pair: Pair, tie: TurningTie | None, displacement: Array) -> ContactNow:
+    """A tie, which holds surfaces together as they were at the outset."""
     none = sp.csr_matrix((len(displacement),) * 2)
-    return ContactNow(pair, pair.rows @ displacement, pair.rows, none, np.zeros(len(pair.space), dtype=bool))
+    gap, rows = (pair.rows @ displacement, pair.rows) if tie is None else tie.at(displacement)
+    return ContactNow(replace(pair, rows=rows), gap, rows, none, np.zeros(len(pair.space), dtype=bool))
 
 
 def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
     """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
-    moving = [None if pair.tied else Current(pair, differentiate) for pair in problem.pairs]
-    return FiniteProblem(**{**values, "stiffness": None}, moving=moving)
+    apart = [reach_of(problem.constraints, pair.contactor, pair.target) for pair in problem.pairs]
+    moving = [None if pair.tied else _current(pair, reach, differentiate) for pair, reach in zip(problem.pairs, apart)]
+    ties = [turning_tie(pair, reach) if pair.tied else None for pair, reach in zip(problem.pairs, apart)]
+    return FiniteProblem(**{**values, "stiffness": None}, moving=moving, ties=ties)
+
+
+def _current(pair: Pair, reach: float, differentiate: Differentiate) -> Current:
+    return Current(pair, differentiate, taken_off(pair, reach) if pair.contact.adjust else None)

@@ -30,15 +30,13 @@ class Rubbing:
 
 
 def rub_in_plane(part: Sparse, by: CouplingTangent, operators: CompressedRows, slip: SlipNow) -> Rubbing:
-    """2D: forces of a traction are those of a pressure, turned by a right angle at every point. part: (m, 9 n_facets);
-    operators: blocks (n, 1, 2) along the normal, functions added up."""
-    value = operators[0]
+    """2D: one component along the normals turned by a right angle. part: (m, 9 n_facets); operators: as in
+    ``CouplingTangent``, functions added up."""
     points, normals = by.turning.shape[1] // 2, by.turning.shape[0] // 2
-    rows = np.stack([-value[..., 1], value[..., 0]], axis=-1)
     by_normals = block_rows(added_up(part, slip.by_normals, normals), normals)
     by_points = block_rows(added_up(part, slip.by_points, points), points)
     return Rubbing(
-        block_rows(in_place(rows, operators), points).tocsr(),
+        block_rows(in_place(operators[0][..., 2:], operators), points).tocsr(),
         np.asarray(part @ slip.value[:, 0]),
         (by_points + by_normals @ by.turning).tocsr(),
     )
@@ -64,7 +62,7 @@ def rub_in_space(
     down: Sparse, by: CouplingTangent, operators: CompressedRows, slip: SlipNow, tangents: Tangents, contactor: Surface
 ) -> Rubbing:
     """3D: two components along tangents that turn with the surface. down: (n, 9 n_facets); operators: blocks (n, 3, 3)
-    square to the normal, functions added up."""
+    of tractions along the axes, functions added up."""
     at, kept = tangents.now, tangents.kept
     points, normals = by.turning.shape[1] // 3, by.turning.shape[0] // 3
     value = down @ slip.value

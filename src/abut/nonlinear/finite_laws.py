@@ -1,0 +1,149 @@
+"""The laws of all pairs near a state at large displacements, the status they ask for, and what they leave open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.contact.laws import ConstraintFunction, Law, LawState
+from abut.contact.smooth_friction import SmoothCoulomb
+from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.iteration import Increment
+from abut.problem.contact_pairs import Pair
+from abut.problem.finite import bare
+from abut.problem.laws import LawRows, at_multipliers
+from abut.problem.linearised import Linearised
+from abut.solution.state import CLOSED, OPEN, State
+
+SHORTEST, DOUBLINGS, BISECTIONS = (
+    1e-9,
+    40,
+    50,
+)  # of a gap over the facet size, in the search for one that meets a pressure
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Which laws hold for now. own: laws of one's own, else complementarity in their place; reference: the largest pressure,
+    to which the constraint function is relative; without one complementarity (Coulomb's law) in its place; by_pressure: laws
+    of one's own are linearised at the gaps that meet the pressures of the state."""
+
+    own: bool = True
+    reference: float | None = None
+    by_pressure: bool = False
+
+    def of(self, pair: Pair, system: Linearised) -> Law | None:
+        """The law of a pair, if it is another one than complementarity or Coulomb's."""
+        if not pair.smooth:
+            return None
+        law = pair.contact.law
+        if not isinstance(law, str):
+            return law if self.own else None
+        if self.reference is None:
+            return None
+        epsilon = pair.contact.epsilon
+        if pair.frictional:
+            return SmoothCoulomb(pair.stiffness, pair.friction(system.factors), float(np.sqrt(epsilon)), self.reference)
+        return ConstraintFunction(np.full(len(pair), pair.stiffness), epsilon, self.reference)
+
+
+def barely_covered(system: Linearised) -> NDArray[np.bool_]:
+    """(n,) multipliers with hardly any target opposite, which carry nothing."""
+    parts = [np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]
+    return np.concatenate([np.zeros(0, bool), *parts])
+
+
+def laws_of(system: Linearised, state: State, asked: Asked) -> list[LawRows]:
+    """The laws of all pairs with the status as it is; multipliers of friction without a past carry nothing."""
+    laws = friction_laws(system, state)
+    forgotten = np.zeros(len(system), bool) if system.forgotten is None else system.forgotten
+    parts = zip(
+        system.pairs, laws, system.split(forgotten),
+        *map(system.split, (system.gap(state), state.multipliers, state.closed)),
+    )  # fmt: skip
+    result = []
+    for pair, usual, idle, gap, multipliers, closed in parts:
+        own, law = asked.of(pair, system), usual
+        if own is not None:
+            idle = idle | pair.of_functions(bare(pair))
+            meeting = asked.by_pressure and not isinstance(pair.contact.law, str)
+            met = _met(pair, own, gap, multipliers, closed) if meeting else gap
+            with np.errstate(over="ignore", invalid="ignore"):
+                law = at_multipliers(pair, own, met, multipliers, closed)
+            law = replace(law, residual=law.residual + law.by_gap @ (gap - met)) if meeting else law
+        result.append(_without(law, idle, pair.scale, multipliers))
+    return result
+
+
+def _met(pair: Pair, law: Law, gap: Vector, pressure: Vector, closed: NDArray[np.bool_]) -> Vector:
+    """Weighted gaps (n,), smaller than those given, at which the law is met by the pressures that there are: theory (G17).
+    Those given where there is none. A law that knows no pressure at a gap of zero would let go of what it holds there."""
+
+    def sign(mean: Vector) -> NDArray[np.bool_]:
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = law.evaluate(mean[:, None], pressure[:, None], LawState(closed)).residual[:, 0]
+        return np.asarray(found > 0.0)
+
+    high = gap / pair.weight
+    low, first = high.copy(), sign(high)
+    searched = pressure > 0.0
+    for k in range(DOUBLINGS):
+        same = searched & (sign(low) == first)
+        high, low = np.where(same, low, high), np.where(same, low - SHORTEST * pair.size * 2.0**k, low)
+    found = searched & (sign(low) != first)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = sign(middle) == first
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return np.where(found, pair.weight * low, gap)
+
+
+def _without(law: LawRows, idle: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
+    """Rows that set some multipliers to zero."""
+    if not idle.any():
+        return law
+    keep = sp.diags((~idle).astype(float))
+    return replace(
+        law,
+        residual=np.where(idle, -scale * multipliers, law.residual),
+        closed=law.closed & ~idle,
+        by_gap=(keep @ law.by_gap).tocsr(),
+        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(idle, scale, 0.0))).tocsr(),
+        decoupled=law.decoupled | idle,
+    )
+
+
+def wanted_status(
+    system: Linearised, state: State, increment: Increment, asked: Asked, gap: Vector | None = None
+) -> NDArray[np.int8]:
+    """The status (n,) that complementarity and Coulomb's law ask for; that of other laws stays. gap: (n,) to judge by; left
+    out: that of the state."""
+    wanted = np.where(barely_covered(system), OPEN, next_status(system, state, increment, gap))
+    kept = [np.full(len(pair), not pair.frictional and asked.of(pair, system) is not None) for pair in system.pairs]
+    return np.where(system.join(kept).astype(bool), state.status, wanted).astype(np.int8)
+
+
+def status_of(system: Linearised, state: State, laws: Sequence[LawRows], asked: Asked) -> NDArray[np.int8]:
+    """The status (n,) with that of other laws than complementarity and Coulomb's as these say."""
+    parts = [
+        np.where(law.closed, CLOSED, OPEN) if not pair.frictional and asked.of(pair, system) is not None else own
+        for pair, law, own in zip(system.pairs, laws, system.split(state.status))
+    ]
+    return system.join(parts).astype(np.int8)
+
+
+def left_open(system: Linearised, laws: Sequence[LawRows], asked: Asked) -> Vector:
+    """By how much (pressure) each multiplier breaks its law, (n,): of a law that gives way, with what it gives way by."""
+    result = []
+    for pair, law in zip(system.pairs, laws):
+        missed = law.residual / pair.weight * pair.stiffness
+        if asked.of(pair, system) is not None:
+            give = np.abs(law.by_gap.diagonal()) + np.abs(law.by_pressure.diagonal()) / pair.scale
+            missed = missed / np.maximum(give, 1e-300)
+        result.append(missed)
+    return np.concatenate([np.zeros(0), *result])
