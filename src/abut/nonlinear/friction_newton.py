@@ -148,14 +148,16 @@ def coulomb(pair: Pair, system: Linearised) -> Coulomb:
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
-def next_status(system: Linearised, state: State, increment: Increment) -> Status:
-    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays."""
+def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays.
+    gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
     reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
     small = FLAT * max(reference, NO_PRESSURE)
-    gaps, multipliers, before = (system.split(part) for part in (system.gap(state), state.multipliers, state.status))
+    gap = system.gap(state) if gap is None else gap
+    gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
     return system.join(
         [
             np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, part, status, small)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver, NotConverged
+from abut.nonlinear.hanging import hanging
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
@@ -55,7 +56,8 @@ def march_finite(
         cuts += 1
         pace.halve()
         if pace.stuck:
-            yield attempt
+            where = hanging(problem, before, attempt.cycling)
+            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where))))
             return
         control.halves(attempt, pace.end or time)
 
