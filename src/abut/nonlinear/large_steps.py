@@ -38,6 +38,8 @@ def march_finite(
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
+        if guess is not None:
+            begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -83,11 +85,14 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was if that fails."""
+    """Once more with the functions of "dual-P1" where contact is closed at the end of the step, and with slips of what has
+    come to be covered in it; as it was if that fails."""
     if not found.converged:
         return step, found
-    here = step.problem.displacement(replace(found.state, time=time))
-    before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
+    problem, closed = step.problem, found.state.closed
+    here = problem.displacement(replace(found.state, time=time))
+    before = problem.with_ordinary_inside(step.before, here, closed)
+    before = problem.with_late_points(before, here, closed)
     if before is step.before:
         return step, found
     again = replace(step, before=before, limit=step.limit + len(step.done))
