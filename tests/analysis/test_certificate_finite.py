@@ -22,6 +22,7 @@ from abut.problem.contact_pairs import pair
 from abut.solution import Check, Solution
 from abut.solution.contacts import worst
 from abut.solution.state import State
+from models.convergence import quadratic_falls
 from models.folding import accordion
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -36,10 +37,12 @@ def failed(solution: Solution) -> set[str]:
     "name", ["accordion", "crushed-ring", pytest.param("o-ring", marks=LONG), pytest.param("snap-joint", marks=LONG)]
 )
 def test_examples_pass_every_line(name: str) -> None:
-    """First touch of a few nodes among them, and noses that slide over bumps."""
+    """First touch of a few nodes among them, and noses that slide over bumps. Each step ends quadratically: a fold that
+    touches changes the slope of its forces faster than the bodies of tests/nonlinear/test_quadratic_sliding.py."""
     solution = abut.solve(load_job(EXAMPLES / name / "job.toml").model)
     assert solution.converged
     assert failed(solution) == set()
+    assert quadratic_falls(solution, factor=20.0, rounding=3e-10)[1] == []
 
 
 def test_a_coarse_accordion_fails() -> None:

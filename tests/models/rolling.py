@@ -1,4 +1,4 @@
-"""Bodies that contact alone holds: a rubber roller between two plates, a block pushed across a plate."""
+"""Bodies that contact alone holds: a rubber roller between two plates, a wheel, a block pushed across a plate."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ RUBBER = abut.NeoHooke(young=5.0, poisson=0.4)
 STEEL = abut.LinearElastic(young=5e3, poisson=0.3)
 DOWN, LENGTH = 0.08, 2.0  # in radii of the roller: together, and the upper plate along
 FRICTION, LOAD = 0.3, 4.5  # of the block: coefficient, and what presses it down
+TURN = 1.5  # of the wheel
 TREAD = [f"roller.{side}" for side in ("left", "bottom", "right", "top")]
 
 
@@ -42,6 +43,19 @@ def roller(cells: int = 8, friction: float = 0.4) -> abut.Model:
             abut.Contact(TREAD, "road.top", name="road", friction=friction),
             abut.Contact(TREAD, "roof.bottom", name="roof", friction=friction),
         ],
+    )  # fmt: skip
+
+
+def wheel(cells: int, friction: float) -> abut.Model:
+    """A rigid wheel of radius 1, faceted all round, lowered into a slab and turned, free to roll along."""
+    rim = make.cylinder(1.0, (0.0, 0.5), (cells, 1), cell="hex8")
+    slab = make.box((-1, 3), (-1, 0), (0, 0.5), (40, 4, 1), "hex8")
+    return abut.Model(
+        make.join({"slab": slab, "wheel": bent(rim, lambda x: x + np.array([0.0, 1.0, 0.0]))}), kinematics="finite",
+        solids=[abut.Solid("slab", abut.LinearElastic(young=1e3, poisson=0.3))],
+        rigid=[abut.Rigid("wheel", reference=(0.0, 1.0, 0.25), y=-0.03, z=0.0, rx=0.0, ry=0.0, rz=-TURN)],
+        supports=[abut.Support("slab.front", x=0, y=0, z=0)],
+        contacts=[abut.Contact("slab.back", "wheel.round", friction=friction)],
     )  # fmt: skip
 
 

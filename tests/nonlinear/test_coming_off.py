@@ -1,4 +1,4 @@
-"""How a load step begins where a contact comes off, or seems to."""
+"""How a load step begins where a contact comes off, or seems to, and bodies that are apart."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+import abut
 from abut.linear.choice import Direct
+from abut.mesh import make
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.large_steps import let_go
 from abut.nonlinear.semismooth import Step, solve_finite
@@ -48,3 +50,18 @@ def test_a_guess_that_comes_off_does_not_let_go() -> None:
     again, depths = solved(pressed, apart, 0.21)
     assert np.abs(again.unknowns - held.unknowns).max() < 1e-9
     assert max(depths) < 0.05
+
+
+def test_a_stiff_body_comes_from_afar_to_a_soft_one() -> None:
+    """Nothing touches. What double precision leaves of the stiff body's forces is 1e-7 of the scale of the soft one's."""
+    soft = make.rectangle([0, 1], [0, 1], cells=[12, 12], cell="quad8")
+    stiff = make.rectangle([0, 1], [40, 41], cells=[5, 5], cell="quad4")
+    model = abut.Model(
+        make.join({"soft": soft, "stiff": stiff}), plane="strain", kinematics="finite",
+        solids=[abut.Solid("soft", abut.NeoHooke(5.0, 0.45)), abut.Solid("stiff", abut.LinearElastic(2e5, 0.3))],
+        supports=[abut.Support("soft.bottom", x=0, y=0), abut.Support("stiff.top", x=0, y=-38.9)],
+        contacts=[abut.Contact("soft.top", "stiff.bottom")],
+    )  # fmt: skip
+    solution = abut.solve(model)
+    assert solution.converged
+    assert max(len(step.iterations) for step in solution.steps) <= 5

@@ -9,10 +9,8 @@ import pytest
 
 import abut
 from abut.benchmarks.finite_contact import _crushed, ironing
+from models.convergence import quadratic_falls
 from models.sliding import arched, pressed_in_space
-
-ROUNDING = 1e-10  # of forces and pressures: less may be left by chance
-ORDER, FACTOR = 1.7, 10.0  # what is left is at most FACTOR times the ORDER-th power of what was left before
 
 
 def _ironed() -> abut.Model:
@@ -33,10 +31,6 @@ def _ironed() -> abut.Model:
 def test_the_last_residuals_fall_quadratically(model: Callable[[], abut.Model]) -> None:
     solution = abut.solve(model())
     assert solution.converged
-    pairs = []
-    for step in solution.steps:
-        rows = step.iterations[-3:]
-        left = [max(row.residual, row.contact_residual) for row in rows]
-        pairs += [(a, b) for a, b, row in zip(left, left[1:], rows) if not row.changed]
-    assert len(pairs) >= len(solution.steps)
-    assert [(a, b) for a, b in pairs if b > max(ROUNDING, FACTOR * a**ORDER)] == []
+    falls, slow = quadratic_falls(solution)
+    assert falls >= len(solution.steps)
+    assert slow == []

@@ -88,6 +88,15 @@ def test_block_pushed_with_nothing_behind_it(space: str, unit: str, gap: float) 
     assert abut.solve(pressed).converged
 
 
+def test_pushed_at_large_displacements() -> None:
+    """Functions of the block's side that have no punch opposite count for nothing."""
+    mesh = side_by_side("strain", {"punch": (1.0, 0.0, 1.0), "block": (4.0, -1.0, 0.0)}, 1.0)
+    supports = [abut.Support("punch.top", y=-0.02, x=0.0)]
+    model = replace(assembled("strain", mesh, supports, [], 1.0), kinematics="finite")
+    with np.errstate(all="raise"):
+        fails_with(model, "body 'block' is free to translate along -y: contact can only push it that way")
+
+
 @pytest.mark.parametrize("space", SPACES)
 def test_blocks_one_behind_the_other(space: str) -> None:
     """Each of them can go, and both together; only what stands behind the last one helps."""

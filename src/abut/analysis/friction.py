@@ -222,4 +222,4 @@ def friction_checks(
         ("friction left out", left_out, NEW,
          "share of what friction can carry where none counts in the step, as the target was not opposite before"),
     )  # fmt: skip
-    return tuple(Check(name, *line) for line in (values if left_out else values[:-1]))
+    return tuple(Check(name, *line, pressure=largest) for line in (values if left_out else values[:-1]))

@@ -14,30 +14,65 @@ from abut.problem.problem import ContactProblem
 from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_rows, resistance_of_supports, rigid_modes
 from abut.solution.state import CLOSED, State
 
-FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step, and bodies move in an iteration
+FLIGHT = 10.0  # sizes of the model by which nothing moves in a step
+ROUNDS = 3  # a nearly singular system may carry a body so far that rounding of it is more than a facet
+FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step
+NEAR = 0.1  # facet sizes by which an iteration may move bodies along motions that nothing resists
 
 
-def sticking(problem: ContactProblem, system: Linearised, before: State, state: State, thrown: State) -> State:
+def sticking(problem: ContactProblem, system: Linearised, state: State, thrown: State) -> State:
     """The state for an iteration that would end at ``thrown``: where that throws a body which slips all over, all of it
-    sticks, which tells the tractions that it takes; else as it is. before: the last converged state."""
-    if system.restraint.by_supports or not _all_slips(system, state) or not _far(problem, before, state, thrown):
+    sticks, which tells the tractions that it takes; else as it is."""
+    if system.restraint.by_supports or not _all_slips(system, state):
         return state
     rigid, supports = _now(problem, system)
-    if not _free(system, rigid, supports, state):
-        return state
+    loose = _free(system, rigid, supports, state)
     parts = zip(system.pairs, system.split(state.status), system.split(state.slipping))
     status = [
         np.where(slips & _rubs(pair, system), CLOSED, own) if pair.frictional else own for pair, own, slips in parts
     ]
     stuck = state.with_status(np.concatenate(status).astype(np.int8))
-    return stuck if _free(system, rigid, supports, stuck) < _free(system, rigid, supports, state) else state
+    held = _free(system, rigid, supports, stuck)
+    if held.shape[1] >= loose.shape[1]:
+        return state
+    way = problem.displacement(thrown) - problem.displacement(state)
+    return stuck if _reach(rigid, loose - held @ (held.T @ loose), way) > NEAR * _facet(problem) else state
 
 
-def _far(problem: ContactProblem, before: State, state: State, thrown: State) -> bool:
-    """Whether an iteration moves points by more than a facet, and twice as far as any have moved in the step."""
-    start, here, there = (problem.displacement(each) for each in (before, state, thrown))
-    size = max(pair.size for pair in problem.pairs)
-    return bool(np.abs(there - here).max() > FAR * size + 2.0 * np.abs(here - start).max())
+def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State) -> State:
+    """The end of an iteration, without what carries a body far along motions that nothing resists while it touches nothing:
+    its linear system knows nothing of them."""
+    way = problem.displacement(there) - problem.displacement(state)
+    if system.restraint.by_supports or np.abs(way).max() <= NEAR * _facet(problem):
+        return there
+    rigid, supports = _now(problem, system)
+    rows = sum(_closed(system, rigid, state), np.zeros_like(supports))
+    touched = np.repeat(rows.diagonal().reshape(-1, rigid.per_group).any(axis=1), rigid.per_group)
+    axes = free_motions([supports, rows, np.diag(touched.astype(float))])
+    assert system.about is not None
+    near = problem.constraints.near(system.about.at, system.factors)
+    for _ in range(ROUNDS):
+        drift = _along(rigid, axes, problem.displacement(there) - problem.displacement(state))
+        if np.abs(drift).max() <= NEAR * _facet(problem):
+            break
+        there = replace(there, unknowns=there.unknowns - near.coordinates(drift))
+    return there
+
+
+def _along(rigid: RigidModes, axes: NDArray[np.float64], way: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The share (dim n_points,) of displacements in some rigid motions, orthonormal axes (n_modes, k)."""
+    share = np.linalg.lstsq(rigid.modes, way, rcond=None)[0]
+    return np.asarray(rigid.modes @ (axes @ (axes.T @ share)))
+
+
+def _reach(rigid: RigidModes, motions: NDArray[np.float64], way: NDArray[np.float64]) -> float:
+    """How far displacements (dim n_points,) take a point along some of the rigid motions, (n_modes, k)."""
+    axes, size, _ = np.linalg.svd(motions, full_matrices=False)
+    return float(np.abs(_along(rigid, axes[:, size > 1e-6], way)).max(initial=0.0))
+
+
+def _facet(problem: ContactProblem) -> float:
+    return max(pair.size for pair in problem.pairs)
 
 
 def _rubs(pair: Pair, system: Linearised) -> NDArray[np.bool_]:
@@ -60,14 +95,30 @@ def _now(problem: ContactProblem, system: Linearised) -> tuple[RigidModes, NDArr
     return rigid, resistance_of_supports(rigid, problem.constraints.near(at, system.factors))
 
 
-def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State) -> int:
-    """How many motions neither supports, ties, closed gaps nor what sticks resists."""
-    grams = [supports]
+def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State) -> NDArray[np.float64]:
+    """Motions (n_modes, k) that neither supports, ties, closed gaps nor what sticks resists."""
+    return free_motions([supports, *_closed(system, rigid, state)])
+
+
+def _closed(system: Linearised, rigid: RigidModes, state: State) -> list[NDArray[np.float64]]:
+    """Resistance of ties, closed gaps and what sticks, by pair."""
+    grams = []
     for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):
         resists = closed & ~slips
         resists[pair.normal] = closed[pair.normal]
         grams.append(resistance_of_rows(rigid, pair.rows[np.ones(len(pair), bool) if pair.tied else resists]))
-    return int(free_motions(grams).shape[1])
+    return grams
+
+
+def flies_off(problem: ContactProblem, before: State, now: State) -> str:
+    """Why the state ``now`` has lost a body, which is far beyond where the last converged one ``before`` had it; empty where
+    it has not."""
+    mesh = problem.model.mesh
+    way = np.abs(problem.displacement(now) - problem.displacement(before)).reshape(mesh.points.shape).max(axis=1)
+    if way.max(initial=0.0) <= FLIGHT * np.ptp(mesh.points, axis=0).max():
+        return ""
+    body = max(mesh.bodies, key=lambda name: float(way[mesh.nodes_of(name)].max(initial=0.0)))
+    return f"body '{body}' flies off: hold it by a support, by friction, or in steps that its contact follows"
 
 
 def thrown_apart(system: Linearised, before: State, now: State) -> str:

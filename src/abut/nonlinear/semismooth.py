@@ -15,7 +15,7 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws, next_status
-from abut.nonlinear.holding import sticking, thrown_apart
+from abut.nonlinear.holding import flies_off, not_adrift, sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, part_of, points
 from abut.nonlinear.smallest import smallest, yielding
 from abut.problem.finite import FiniteProblem, bare
@@ -35,7 +35,8 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Balance:
-    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together."""
+    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together;
+    rounding: of forces over the largest."""
 
     system: Linearised
     state: State
@@ -44,6 +45,7 @@ class Balance:
     law: float
     size: float
     changed: NDArray[np.bool_]
+    rounding: float
 
     @property
     def error(self) -> float:
@@ -99,7 +101,11 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        there = _balance(step, _following(step, here, forcing(here.error, before, BALANCED)))
+        next_ = _following(step, here, forcing(here.error, before, BALANCED))
+        step.failed = flies_off(step.problem, step.before, next_)
+        if step.failed:
+            break
+        there = _balance(step, next_)
         if step.careful:
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
@@ -127,13 +133,16 @@ def _following(step: Step, here: Balance, accuracy: float) -> State:
 def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
     there = step.advanced(system, state, laws, accuracy)
-    stuck = sticking(step.problem, system, step.before, state, there)
-    return there if stuck is state else step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+    stuck = sticking(step.problem, system, state, there)
+    if stuck is not state:
+        there = step.advanced(system, stuck, laws_of(system, stuck), accuracy)
+    return not_adrift(step.problem, system, stuck, there)
 
 
 def _balanced(here: Balance, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    return here.error <= BALANCED or (here.error <= ROUNDING and here.error > 0.5 * before)
+    idle = here.error > 0.5 * before and here.law <= ROUNDING and here.force <= max(ROUNDING, here.rounding)
+    return here.error <= BALANCED or idle
 
 
 def _carried(step: Step, time: float) -> State:
@@ -205,6 +214,7 @@ def _balance(step: Step, state: State) -> Balance:
     return Balance(
         system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
         float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+        0.0 if system.about is None else system.about.rounding / forces,
     )  # fmt: skip
 
 

@@ -165,7 +165,7 @@ class FiniteProblem(ContactProblem):
             pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
-        about = self._expansion(shares, now.unknowns, force, stiffness)
+        about = self._expansion(shares, now.unknowns, here, force, stiffness)
         assert about is not None
         operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
         pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]

@@ -107,10 +107,12 @@ def _springs(
     moved = constraints.coordinates(whole)
     columns = np.sort(scipy.linalg.qr(moved.T, mode="r", pivoting=True)[1][:m]).astype(np.int64)
     resisted = constraints.coordinates(rigid.modes)[columns]
+    diagonal = np.asarray(stiffness.diagonal())
+    unit = float(np.median(diagonal)) if len(diagonal) else 1.0  # rigid bodies have no stiffness of their own
     return FreeModeSprings(
         motions=np.asarray(scipy.linalg.qr(whole, mode="economic")[0], dtype=np.float64),
         columns=columns,
-        stiffness=np.asarray(stiffness.diagonal()[columns]),
+        stiffness=np.where(diagonal[columns] > 0.0, diagonal[columns], unit),
         gram=np.asarray(resisted.T @ resisted) / m,
         notes=notes,
     )

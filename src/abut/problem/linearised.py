@@ -45,12 +45,14 @@ class Rows:
 @dataclass(frozen=True)
 class Expansion:
     """A state of finite deformation that a problem is linearised about. at: (n_free,) displacements; unbalanced: (n_free,)
-    forces of stresses less loads there; reference: size of forces against which that is judged; symmetric: the stiffness."""
+    forces of stresses less loads there; reference: size of forces against which that is judged; symmetric: the stiffness;
+    rounding: what double precision may leave of forces that balance each other."""
 
     at: Vector
     unbalanced: Vector
     reference: float
     symmetric: bool
+    rounding: float = 0.0
 
 
 @dataclass(frozen=True)

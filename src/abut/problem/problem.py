@@ -137,14 +137,17 @@ class ContactProblem:
             load = stiffness @ at - force - self.springs.forces(at)
         return Linearised(
             now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
-            self.restraint, load, self.unit or unit_of(stiffness), about=self._expansion(shares, at, force, stiffness),
+            self.restraint, load, self.unit or unit_of(stiffness),
+            about=self._expansion(shares, at, self.displacement(now), force, stiffness),
         )  # fmt: skip
 
     def _expansion(
-        self, shares: Sequence[Share], at: NDArray[np.float64], force: NDArray[np.float64], stiffness: Operator
-    ) -> Expansion | None:
-        """The state of finite deformation; forces are judged against the largest one, reactions among them, and at least
-        against what a strain of ``SLIGHT`` makes of a cell, theory (D13)."""
+        self, shares: Sequence[Share], at: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
+        stiffness: Operator,
+    ) -> Expansion | None:  # fmt: skip
+        """The state of finite deformation, with points moved by (dim n_points,); forces are judged against the largest one,
+        reactions among them, and at least against what a strain of ``SLIGHT`` makes of a cell, theory (D13). A stiff body
+        that moves far leaves more than that in a soft one's scale."""
         if not self.model.finite:
             return None
         points = self.model.mesh.points
@@ -152,7 +155,10 @@ class ContactProblem:
         largest = max(float(np.abs(share.force).max(initial=0.0)) for share in shares)
         symmetric = all(share.symmetric for share in shares)
         unbalanced = force + self.springs.forces(at)
-        return Expansion(at, unbalanced, max(largest, SLIGHT * unit_of(stiffness) * size), symmetric)
+        unit = unit_of(stiffness)
+        moduli = [solid.material.modulus for solid in self.model.solids]
+        rounding = 4.0 * np.finfo(float).eps * unit * max(moduli) / min(moduli) * float(np.abs(moved).max(initial=0.0))
+        return Expansion(at, unbalanced, max(largest, SLIGHT * unit * size), symmetric, rounding)
 
     def accepted(self, before: State, now: State) -> State:
         """As in ``Problem``."""

@@ -102,12 +102,13 @@ class Restraint:
         opens = np.zeros(plain.shape[1])
         for pair in self.pairs:
             operator = pair.operator if pair.tied else pair.operator[pair.normal]
-            moved = np.asarray(operator @ moves) / np.asarray(abs(operator).sum(axis=1)).ravel()[:, None]
+            size = np.asarray(abs(operator).sum(axis=1)).ravel()[:, None]  # none where no target is opposite yet
+            moved = np.asarray(operator @ moves) / np.where(size > 0.0, size, 1.0)
             stays &= (np.abs(moved) < SLIGHT).all(axis=0) if pair.tied else (moved > -SLIGHT).all(axis=0)
             opens += np.where(moved > SLIGHT, moved, 0.0).sum(axis=0)
         for force in forces:
-            work, size = moves.T @ force, UNBALANCED * float(np.abs(force).sum())
-            stays &= work > size if driven else work >= -size
+            work, least = moves.T @ force, UNBALANCED * float(np.abs(force).sum())
+            stays &= work > least if driven else work >= -least
         if not driven:
             stays &= opens > 0.0
         best = plain[:, stays][:, 0] if stays.any() else motion
