@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple
-from abut.contact.coupling_tangent import ContactLoad, Differentiate, differentiated
+from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
@@ -126,7 +126,9 @@ class Current:
         """From where the next step's slip counts, of a converged state with multipliers (n,) closed there."""
         points = self._points(displacement)
         shift = self._apart(points, displacement)
-        return Past(points, np.where(self.pair.of_functions(closed[self.pair.normal])[self.pair.tangential], 0.0, shift))
+        return Past(
+            points, np.where(self.pair.of_functions(closed[self.pair.normal])[self.pair.tangential], 0.0, shift)
+        )
 
     def with_late(self, past: Past, before: Array, now: Array, asked: NDArray[np.bool_]) -> Past:
         """With points at displacements ``now`` for those of the functions asked for, (n,) multipliers, that were hardly

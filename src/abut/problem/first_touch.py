@@ -11,7 +11,9 @@ from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipPoints
 
-ROLLING = 1.0 / 3.0  # share of the contactor's normal in the way on which surfaces that roll on each other come together
+ROLLING = (
+    1.0 / 3.0
+)  # share of the contactor's normal in the way on which surfaces that roll on each other come together
 Array = NDArray[np.float64]
 
 
