@@ -13,7 +13,7 @@ import abut
 from abut.analysis.run import Run
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
-from abut.problem.finite import FiniteProblem
+from abut.problem.finite import POINTS, FiniteProblem
 from abut.solution.state import State
 
 SOFT = abut.LinearElastic(young=100.0, poisson=0.3)
@@ -59,10 +59,21 @@ def finite(model: abut.Model) -> FiniteProblem:
     return problem
 
 
-def tangent_errors(problem: FiniteProblem, size: float) -> tuple[float, float]:
-    """Of the derivatives of balance and of gaps (slips) near random displacements of that size."""
+def forgetful(problem: FiniteProblem, size: float) -> State:
+    """The start, as if nothing had been opposite the contactors: all slips count at points of another state, random
+    displacements of that size from it."""
+    start = problem.start()
+    none = {name: values[:0] for name, values in start.history.of(POINTS).items()}
+    before = replace(start, history=start.history.with_term(POINTS, none))
+    there = replace(before, unknowns=size * np.random.default_rng(5).standard_normal(problem.n_free))
+    return problem.with_late_points(before, problem.displacement(there), np.ones(len(start.status), dtype=bool))
+
+
+def tangent_errors(problem: FiniteProblem, size: float, start: State | None = None) -> tuple[float, float]:
+    """Of the derivatives of balance and of gaps (slips) near random displacements of that size. start: what the step begins
+    from, the problem's own where left out."""
     rng = np.random.default_rng(3)
-    before, n = problem.start(), problem.operator.shape[0]
+    before, n = start or problem.start(), problem.operator.shape[0]
     at = replace(
         before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
     )

@@ -41,6 +41,8 @@ def march_finite(
         begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
         following = problem.following(begin, problem.displacement(guess or before), before.closed)
         begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
+        if guess is not None:
+            begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -87,12 +89,14 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions of "dual-P1" where contact is closed at the end of the step; as it was if that fails."""
+    """Once more with the functions of "dual-P1" where contact is closed at the end of the step, and with slips of what has
+    come to be covered in it; as it was if that fails."""
     if not found.converged:
         return step, found
-    here = step.problem.displacement(replace(found.state, time=time))
-    before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
-    following = step.problem.following(before, here, found.state.closed, settled=True)
+    problem, closed = step.problem, found.state.closed
+    here = problem.displacement(replace(found.state, time=time))
+    before = problem.with_late_points(problem.with_ordinary_inside(step.before, here, closed), here, closed)
+    following = problem.following(before, here, closed, settled=True)
     if before is step.before and not following:
         return step, found
     before, guess = (step.problem.led(each, following) for each in (before, found.state))
