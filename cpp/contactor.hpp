@@ -54,7 +54,7 @@ struct Contactor3 {
   }
 
   // The foot, and the contactor point's reference coordinates xi: outside the facet those of its nearest point, whose
-  // normal is used. Not `upright` where the normal leans too much.
+  // normal is used. Not `upright` where the normal leans too much, or where v has no foot; then its plain projection.
   struct Foot {
     Point2 p;
     bool upright;
@@ -62,7 +62,7 @@ struct Contactor3 {
   Foot foot(const double *v, double *xi) const {
     const Point2 start = plane.flat(v);
     const double height = plane.height(v);
-    double x[3], n[3], dx[2][3], dn[2][3], last[2] = {0, 0};
+    double x[3], n[3], dx[2][3], dn[2][3], last[2] = {0, 0}, size = 0;
     facet.centre(xi);
     Point2 p = start;
     for (int i = 0; i < 12; ++i) {
@@ -87,10 +87,11 @@ struct Contactor3 {
       if (leaning(n))
         return {p, false};
       p = start - (height - x[2]) / n[2] * Point2{n[0], n[1]};
-      if (std::abs(step[0]) + std::abs(step[1]) < (cut ? SETTLED_AT_RIM : SETTLED))
+      size = std::abs(step[0]) + std::abs(step[1]);
+      if (size < (cut ? SETTLED_AT_RIM : SETTLED))
         break;
     }
-    return {p, true};
+    return size < LOST ? Foot{p, true} : Foot{start, false};
   }
 
   Polynomial<3> position, direction; // of the facet and its normals, in the plane's frame
@@ -98,6 +99,7 @@ struct Contactor3 {
 private:
   static constexpr double SETTLED = 1e-7; // of the reference domain: what Newton's next step leaves is rounding
   static constexpr double SETTLED_AT_RIM = 1e-10;
+  static constexpr double LOST = 0.1; // still after all steps: v lies further away than the normals meet
 
   // Steps that are cut off at the rim shrink by a factor only, so the point goes on to where they lead: Aitken.
   void go_on(double *xi, const double *step, double *last) const {

@@ -59,27 +59,29 @@ def finite(model: abut.Model) -> FiniteProblem:
     return problem
 
 
-def tangent_errors(
-    problem: FiniteProblem, size: float, before: State | None = None, about: State | None = None
-) -> tuple[float, float]:
-    """Of the derivatives of balance and of gaps (slips) against central differences, relative, in all displacements at once
-    and near random ones of that size, in a step from ``before`` to near ``about``, by default from the start."""
+def tangent_errors(problem: FiniteProblem, size: float) -> tuple[float, float]:
+    """Of the derivatives of balance and of gaps (slips) near random displacements of that size."""
     rng = np.random.default_rng(3)
-    before, n = problem.start() if before is None else before, problem.operator.shape[0]
-    there = before.unknowns if about is None else about.unknowns
+    before, n = problem.start(), problem.operator.shape[0]
     at = replace(
-        before, time=0.7, unknowns=there + size * rng.standard_normal(problem.n_free),
-        multipliers=rng.uniform(0.0, 5.0, n),
-    )  # fmt: skip
-    system, way = problem.linearise(before, at), rng.standard_normal(problem.n_free)
+        before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
+    )
+    return tangent_errors_at(problem, before, at, rng.standard_normal(problem.n_free), 1e-6)
+
+
+def tangent_errors_at(
+    problem: FiniteProblem, before: State, at: State, way: NDArray[np.float64], step: float
+) -> tuple[float, float]:
+    """The same near a state, against central differences of a step along a way (n_free,), relative."""
+    system = problem.linearise(before, at)
 
     def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         state = replace(at, unknowns=at.unknowns + step * way)
         near = problem.linearise(before, state)
         return near.unbalanced(state), near.gap(state)
 
-    (force, gap), (force_back, gap_back) = there(1e-6), there(-1e-6)
-    forces, gaps = (force - force_back) / 2e-6, (gap - gap_back) / 2e-6
+    (force, gap), (force_back, gap_back) = there(step), there(-step)
+    forces, gaps = (force - force_back) / (2.0 * step), (gap - gap_back) / (2.0 * step)
     left = np.abs(forces - system.stiffness @ way).max() / np.abs(forces).max()
     return float(left), float(np.abs(gaps - system.operator @ way).max() / np.abs(gaps).max())
 

@@ -95,11 +95,12 @@ def test_jaws_pushed_across_and_turned(cell: str) -> None:
 
 
 def test_tangent_is_the_derivative() -> None:
-    """Of balance, gaps and slips where the jaws touch, with random multipliers: as between two bodies."""
+    """Of balance, gaps and slips where the jaws touch, with random multipliers: as between two bodies. In the bend a facet
+    looks at others beyond the place where its normals meet."""
     model = wrung("hex8", friction=0.3)
     states: list[State] = []
     abut.solve(replace(model, solve=abut.SolveOptions(times=(0.5, 0.75))), on_step=lambda _, s: states.append(s.state))
-    assert max(tangent_errors(finite(model), 1e-4, *states[-2:])) < 1e-7
+    assert max(tangent_errors(finite(model), 1e-3, *states[-2:])) < 1e-7
 
 
 def test_every_pair_of_bodies_found(tmp_path: Path) -> None:

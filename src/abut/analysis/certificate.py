@@ -39,14 +39,15 @@ class Surroundings:
     """What else a pair's checks are judged by. reference: its largest pressure of the steps before; beside: that of all
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
-    moving: the sides may meet anywhere, so that what has no target opposite now is no sign of wrong surfaces."""
+    support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
+    opposite now is no sign of wrong surfaces; else None."""
 
     reference: float = 0.0
     beside: float = 0.0
     overlap: NDArray[np.float64] | None = None
     free: NDArray[np.bool_] | None = None
     elsewhere: NDArray[np.float64] | None = None
-    moving: bool = False
+    support: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -176,7 +177,7 @@ def _cover(case: _Case) -> Iterator[Check]:
     yield case.check(
         "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
     )
-    if not case.around.moving:
+    if case.around.support is None:
         total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
         yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
             "share of the contactor's multipliers removed: no target opposite, or constrained")  # fmt: skip
@@ -216,7 +217,7 @@ def _moment_error(case: _Case) -> float:
     at_end = np.zeros(len(pair.contactor.points), dtype=bool)
     nodes = pair.contactor.nodes
     at_end[nodes[~whole][nodes[~whole] >= 0]] = True
-    if case.around.moving:
+    if case.around.support is not None:
         at_end[rim(pair.contactor).ends] = True
     whole &= case.loaded & ~(at_end[np.maximum(nodes, 0)] & (nodes >= 0)).any(axis=1)
     if not whole.any():

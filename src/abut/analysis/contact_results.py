@@ -29,7 +29,7 @@ from abut.contact.nodal_recovery import (
     corner_values,
     facet_node_values,
 )
-from abut.contact.pressure_space import WEAK_SUPPORT, covered_share
+from abut.contact.pressure_space import WEAK_SUPPORT
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -111,6 +111,7 @@ class PairState:
 
 
 EDGE = 0.05  # share of the force that functions with hardly any support may carry
+LITTLE = 0.8 * WEAK_SUPPORT  # the iterations that end a step may move the edge a little
 FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
 
 
@@ -168,17 +169,18 @@ def _checks(
     return (
         *certificate(pair, state.values, nodal, state.penetration, residual, share, around, balanced),
         *friction_checks(pair, state.multipliers, state.status, state.slips, state.limit, largest),
-        *(_edge_check(state) if around.moving and not pair.tied else ()),
+        *(() if around.support is None else _edge_check(state, around.support)),
     )
 
 
-def _edge_check(state: PairState) -> Iterator[Check]:
-    """How much is carried by functions that small displacements would remove, since their support is hardly covered."""
+def _edge_check(state: PairState, support: NDArray[np.float64]) -> Iterator[Check]:
+    """How much is carried by functions that have hardly any target opposite and no neighbour to follow. support:
+    (n_functions,) int H_k over all of the contactor."""
     pair = state.pair
     force = np.maximum(state.pressure, 0.0) * pair.space.weight
-    weak = covered_share(pair.space, pair.contactor, pair.coupling) < WEAK_SUPPORT
+    weak = pair.space.weight < LITTLE * support
     if force[weak].any():
-        text = f"share of the force at nodes less than {WEAK_SUPPORT:.0%} of whose facets has a target opposite"
+        text = f"share of the force at nodes less than {LITTLE:.0%} of whose facets has a target opposite"
         yield Check(
             pair.contact.name, "force at the target's edge", float(force[weak].sum() / force.sum()), EDGE, text,
             pressure=float(state.pressure[~weak].max(initial=0.0)),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.friction import touches_itself
 from abut.contact.coupling import Coupling
+from abut.contact.geometry import full_moments
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.contact_pairs import Pair
@@ -55,6 +56,17 @@ def covered(
     history = state.history.with_term(CONTACTS, slips)
     kept = replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
     return smaller, kept, keep
+
+
+def whole_supports(problem: FiniteProblem, system: Linearised, keep: NDArray[np.bool_]) -> list[Array | None]:
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair in a system as from ``covered``,
+    without what follows it; None of ties. keep: (n,) multipliers of the problem that are left."""
+    return [
+        None
+        if pair.tied
+        else (whole.space.plain.T @ full_moments(pair.contactor, pair.coupling.degree).ravel())[own[whole.normal]]
+        for pair, whole, own in zip(system.pairs, problem.pairs, problem.split(keep))
+    ]
 
 
 def _seen_slip(pair: Pair, seen: Coupling) -> Slip | None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
 from abut.analysis.contact_results import PairState, contact_result
-from abut.analysis.covered import covered
+from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
@@ -41,7 +41,8 @@ class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
     pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; stored: strain energy, with finite kinematics
-    only."""
+    only; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the target
+    anywhere, else None."""
 
     problem: ContactProblem
     system: Linearised
@@ -54,7 +55,8 @@ class _End:
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
     cycling: NDArray[np.bool_]
-    stored: float = 0.0
+    stored: float
+    supports: Sequence[NDArray[np.float64] | None]
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -118,9 +120,10 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     if not problem.model.finite:  # small turns would strain it
         displacement = problem.springs.without_motions(displacement)
     system = problem.linearise(state, state)
+    supports: Sequence[NDArray[np.float64] | None] = [None] * len(system.pairs)
     if isinstance(problem, FiniteProblem):
         system, state, kept = covered(problem, system, state, displacement)
-        cycling = cycling[kept]
+        cycling, supports = cycling[kept], whole_supports(problem, system, kept)
     pressures = system.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(system.pairs, pressures):
@@ -135,7 +138,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     reaction = internal - loads - contact_force
     stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else 0.0
     return _End(
-        problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored
+        problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
+        supports,
     )  # fmt: skip
 
 
@@ -197,12 +201,12 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
     around = []
-    for pair, reference, elsewhere in zip(system.pairs, references, covered_elsewhere(system.pairs, end.pressures)):
+    others = covered_elsewhere(system.pairs, end.pressures)
+    for pair, reference, elsewhere, support in zip(system.pairs, references, others, end.supports):
         constant, varying = offsets(model, pair.contact)
-        moving = system.pushing is not None and not pair.tied
-        moved = np.zeros_like(end.nodal) if moving else end.nodal
+        moved = end.nodal if support is None else np.zeros_like(end.nodal)
         overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
-        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere, moving))
+        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere, support))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(

@@ -197,24 +197,10 @@ def reduce(
     kept = np.flatnonzero(keep)
     position = np.full(n, -1)
     position[kept] = np.arange(len(kept))
-    pattern = space.plain.copy()
-    pattern.data = np.ones_like(pattern.data)
-    facets = sp.csr_matrix(
-        (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // MAX_FACET_NODES, np.arange(pattern.shape[0] + 1))
-    )
-    by_facet = facets.T @ pattern
-    neighbours = (by_facet.T @ by_facet).tocsr()
-    rows, columns = [*kept], [*position[kept]]
-    named = np.full(n, -1) if onto is None else np.where(keep, -1, onto)
-    rows += np.flatnonzero(named >= 0).tolist()
-    columns += position[named[named >= 0]].tolist()
-    for k in np.flatnonzero(~keep & exists & (named < 0)):
-        near = neighbours.indices[neighbours.indptr[k] : neighbours.indptr[k + 1]]
-        near = near[keep[near]]
-        if len(near):
-            best = near[space.weight[near] >= (1.0 - EVEN) * space.weight[near].max()].min()  # not by rounding
-            rows.append(k)
-            columns.append(position[best])
+    to = np.full(n, -1) if onto is None else np.where(keep, -1, onto)
+    to = np.where(to >= 0, to, leaders(space, keep, ~keep & exists & (to < 0)))
+    followers = np.flatnonzero(to >= 0)
+    rows, columns = np.concatenate([kept, followers]), np.concatenate([position[kept], position[to[followers]]])
     follow = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, len(kept)))
     plain = (space.plain @ follow).tocsr()
     transfer = plain if space.ordinary else (space.transfer @ follow).tocsr()
@@ -227,6 +213,32 @@ def reduce(
         side=space.side[kept],
         removed=space.removed + n - len(kept),
     )
+
+
+def leaders(space: PressureSpace, keep: NDArray[np.bool_], goes: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The best supported one of ``keep`` that shares a facet with each of ``goes``, theory (P6), (n,); -1 where there is
+    none, and for all others. keep, goes: (n,) bool."""
+    pattern = space.plain.copy()
+    pattern.data = np.ones_like(pattern.data)
+    facets = sp.csr_matrix(
+        (np.ones(pattern.shape[0]), np.arange(pattern.shape[0]) // MAX_FACET_NODES, np.arange(pattern.shape[0] + 1))
+    )
+    by_facet = facets.T @ pattern
+    near = (by_facet.T @ by_facet).tocoo()
+    use = goes[near.row] & keep[near.col]
+    row, column = near.row[use], near.col[use]
+    most = np.zeros(len(space))
+    np.maximum.at(most, row, space.weight[column])
+    best = space.weight[column] >= (1.0 - EVEN) * most[row]  # not by rounding
+    result = np.full(len(space), len(space))
+    np.minimum.at(result, row[best], column[best])
+    return np.where(result < len(space), result, -1)
+
+
+def beside(space: PressureSpace, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Some functions and those that share a facet with one, (n,). some: (n,) bool."""
+    uses = abs(space.plain)
+    return _touched(uses, (uses @ some.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0)
 
 
 def only(space: PressureSpace, keep: NDArray[np.bool_]) -> PressureSpace:

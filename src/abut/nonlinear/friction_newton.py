@@ -29,7 +29,7 @@ from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 
 TOLERANCE = 1e-10  # of the laws over the largest pressure, and of equilibrium over the largest force
-ROUNDING = 1e-7  # the same that may be left where it no longer falls
+STALLED = 1e-7  # the same that may be left where it no longer falls
 PATIENCE = 3  # iterations in which neither fewer change than ever nor less is left than half of ever
 RECENT = 6  # iterations whose statuses tell which multipliers keep changing
 Vector = NDArray[np.float64]
@@ -102,7 +102,7 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
         changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
         left = course.add(state, changed, clock)
-        if not changed and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
+        if not changed and (left <= tolerance or (left <= STALLED and left > 0.5 * before)):
             return course.found(state)
         better = changed < fewest or (changed == 0 and left < 0.5 * least)
         idle = 0 if better else idle + 1

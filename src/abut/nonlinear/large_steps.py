@@ -38,6 +38,8 @@ def march_finite(
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         begin = problem.with_ordinary_inside(before, problem.displacement(before), before.closed)
+        following = problem.following(begin, problem.displacement(guess or before), before.closed)
+        begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -88,10 +90,12 @@ def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
         return step, found
     here = step.problem.displacement(replace(found.state, time=time))
     before = step.problem.with_ordinary_inside(step.before, here, found.state.closed)
-    if before is step.before:
+    following = step.problem.following(before, here, found.state.closed, settled=True)
+    if before is step.before and not following:
         return step, found
+    before, guess = (step.problem.led(each, following) for each in (before, found.state))
     again = replace(step, before=before, limit=step.limit + len(step.done))
-    inside = solve_finite(again, found.state, time)
+    inside = solve_finite(again, guess, time)
     return (again, inside) if inside.converged else (step, found)
 
 

@@ -26,7 +26,7 @@ from abut.solution import Iteration
 from abut.solution.state import CLOSED, Largest, State
 
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
-ROUNDING = 1e-7  # the same that may be left where it no longer falls
+STALLED = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
 NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
@@ -182,7 +182,7 @@ def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRo
 
 def _balanced(here: Balance, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    idle = here.error > 0.5 * before and here.law <= ROUNDING and here.force <= max(ROUNDING, here.rounding)
+    idle = here.error > 0.5 * before and here.law <= STALLED and here.force <= max(STALLED, here.rounding)
     return here.error <= BALANCED or idle
 
 

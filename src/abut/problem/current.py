@@ -18,6 +18,7 @@ from abut.mesh.surface import Surface
 from abut.problem.adjusted import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixed, Mixture, inner_now, mixed_part
+from abut.problem.edge_functions import Following, led
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
@@ -46,13 +47,15 @@ class ContactNow:
 class Place:
     """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
     None without friction; offset: what is added to all gaps now; inner: (n_facets,) not zero where functions of a dual
-    space are the ordinary ones in this step, None for nowhere."""
+    space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this
+    step, None for itself."""
 
     displacement: Array
     before: Array
     points: SlipPoints | None
     offset: float
     inner: Array | None = None
+    following: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -69,8 +72,9 @@ class Current:
         contactor, target = self.surfaces(place.displacement)
         options = self._options(place.displacement - place.before)
         mixture = self._mixture(contactor, target, options, place.inner)
-        pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
-        down = self._down if mixture is None else weights_of_rows(pair.space.transfer.T)
+        unmixed = self.pair if place.following is None else led(self.pair, place.following.astype(np.int64))
+        pair = unmixed if mixture is None else mixed_part(unmixed, mixture)
+        down = weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)
         tangents = self._tangents(contactor, normals, multipliers)
         load = _load(pair, multipliers, tangents)
@@ -78,7 +82,7 @@ class Current:
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]
-        mixed = None if mixture is None else Mixed(mixture.change(contactor, by.weight), by, self._differences)
+        mixed = None if mixture is None else Mixed.of(mixture.change(contactor, by.weight), by, unmixed)
         weight = np.asarray(down @ by.weight_value)
         gap, by_position = self._gaps(down, by, mixed, place.offset)
         bending = by.force_tangent.tocsr()
@@ -96,7 +100,7 @@ class Current:
         slip = slip_now(place.points, contactor, target, normals)
         if tangents is None:
             turned = tangents_2d(normals, *self._anchors)
-            part = self._down_along if mixture is None else weights_of_rows(pair.components[1].transfer.T)
+            part = weights_of_rows(pair.components[1].transfer.T)
             made = rub_in_plane(part, by, added_up(part, by.operators, points), slip)
             if mixed is not None:
                 made = mixed.rubbed_in_plane(made, slip, multipliers[pair.tangential])
@@ -156,6 +160,13 @@ class Current:
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
         return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
+    def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
+        """Which functions follow others where the pair is now, with multipliers (n,) closed."""
+        contactor, target = self.surfaces(displacement)
+        options = self._options(np.zeros_like(displacement))
+        covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal])
+
     def _mixture(
         self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None
     ) -> Mixture | None:
@@ -164,11 +175,6 @@ class Current:
             return None
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
         return Mixture.of(contactor, covered, inner)
-
-    @cached_property
-    def _differences(self) -> list[Sparse]:
-        """Dual less ordinary functions, by component, (9 n_facets, n) each."""
-        return [(part.transfer - part.plain).tocsr() for part in self.pair.components]
 
     def _options(self, moved: Array) -> CouplingOptions:
         rule = self.pair.contact.integration
@@ -202,16 +208,6 @@ class Current:
     @cached_property
     def _normals(self) -> NormalPattern:
         return normal_pattern(self.pair.contactor, self._across)
-
-    @cached_property
-    def _down(self) -> Sparse:
-        """(n_functions, 9 n_facets)."""
-        return weights_of_rows(self.pair.space.transfer.T)
-
-    @cached_property
-    def _down_along(self) -> Sparse:
-        """The same for tractions in 2D."""
-        return weights_of_rows(self.pair.components[1].transfer.T)
 
     @cached_property
     def _kept(self) -> NDArray[np.int64]:

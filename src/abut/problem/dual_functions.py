@@ -76,6 +76,11 @@ class Mixed:
     by: CouplingTangent
     differences: Sequence[Sparse]
 
+    @classmethod
+    def of(cls, change: Sparse, by: CouplingTangent, pair: Pair) -> Mixed:
+        """Of a pair with dual functions all over."""
+        return cls(change, by, [(part.transfer - part.plain).tocsr() for part in pair.components])
+
     def moment(self, value: Array) -> Sparse:
         """Of integrals, (n, dim n_points), that are ``value`` (9 n_facets,) facet by facet."""
         return (self.differences[0].T @ sp.diags(value) @ self.change).tocsr()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -17,6 +17,7 @@ from abut.model.offset import offsets
 from abut.problem.adjusted import BARELY, taken_off
 from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
+from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import SlipPoints
@@ -25,6 +26,7 @@ from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
+FOLLOWING = "following"  # whose history is which function each one followed, in the step that ended
 POINTS = "points"  # whose history is the integration points of the last step
 Array = NDArray[np.float64]
 
@@ -115,6 +117,35 @@ class FiniteProblem(ContactProblem):
             return before
         return replace(before, history=before.history.with_term(INNER, inner))
 
+    def following(
+        self, before: State, here: Array, closed: NDArray[np.bool_], settled: bool = False
+    ) -> dict[str, Array]:
+        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here``
+        (dim n_points,) with (n,) multipliers closed. Nothing of contacts where that is as at ``before``, or, at the end of a
+        step (settled), doesn't matter."""
+        result, old = {}, before.history.of(FOLLOWING)
+        for kind, touching in zip(self.moving, self.split(closed)):
+            if kind is None:
+                continue
+            now, name = kind.following(here, touching), kind.pair.contact.name
+            known = old.get(name, np.arange(len(now.to))).astype(np.int64)
+            if not np.array_equal(now.to, known) and not (
+                settled and not now.matters(known, touching[kind.pair.normal])
+            ):
+                result[name] = now.to.astype(float)
+        return result
+
+    def led(self, state: State, following: Mapping[str, Array]) -> State:
+        """A state whose functions follow others, as from ``following``, with the pressures and tractions that they had."""
+        old, parts = state.history.of(FOLLOWING), zip(self.split(state.multipliers), self.split(state.status))
+        values, status = [np.zeros(0)], [np.zeros(0, np.int8)]
+        for pair, (multipliers, touching) in zip(self.pairs, parts):
+            to, known = following.get(pair.contact.name), old.get(pair.contact.name)
+            for held, part in ((values, multipliers), (status, touching)):
+                held.append(part if to is None else handed_over(pair, part, known, to.astype(np.int64)))
+        history = state.history.with_term(FOLLOWING, following)
+        return replace(state, multipliers=np.concatenate(values), status=np.concatenate(status), history=history)
+
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
         here = self.displacement(state)
@@ -180,6 +211,7 @@ class FiniteProblem(ContactProblem):
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
         marks, inner, result = before.history.of(POINTS), before.history.of(INNER), []
+        following = before.history.of(FOLLOWING)
         for pair, kind, tie, part in zip(self.pairs, self.moving, self.ties, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, tie, here))
@@ -190,7 +222,12 @@ class FiniteProblem(ContactProblem):
             if pair.frictional:
                 points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
             offset = constant + float(varying @ factors)
-            result.append(kind.at(Place(here, there, points, offset, inner.get(pair.contact.name)), part))
+            result.append(
+                kind.at(
+                    Place(here, there, points, offset, *(each.get(pair.contact.name) for each in (inner, following))),
+                    part,
+                )
+            )
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
