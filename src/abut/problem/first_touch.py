@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
+from abut.contact.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipPoints
 
@@ -34,7 +35,9 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
     across = -_unit(_interpolated(points.own, sides.normals[own]))
     facing = _unit(_interpolated(points.other, sides.target_normals[other]))
     between = _at(sides.contactor, own, points.own) - _at(sides.target, other, points.other)
-    moved = _turned_along(between, _unit(ROLLING * across + (1.0 - ROLLING) * facing), across)
+    bends, target_bends = _bend(sides.contactor, sides.normals)[own], _bend(sides.target, sides.target_normals)[other]
+    share = (ROLLING * (bends + 2.0 * target_bends) / np.maximum(bends + target_bends, 1e-300))[:, None]
+    moved = _turned_along(between, _unit(share * across + (1.0 - share) * facing), across)
     if sides.contactor.dim == 2:
         moved = (across[:, 0] * moved[:, 1] - across[:, 1] * moved[:, 0])[:, None]
     else:
@@ -42,6 +45,12 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
     result = np.zeros((len(sides.contactor), MAX_FACET_NODES, moved.shape[1]))
     np.add.at(result, own, (points.weight[:, None] * points.pressure)[..., None] * moved[:, None])
     return result.reshape(-1, moved.shape[1])
+
+
+def _bend(surface: Surface, normals: Array) -> Array:
+    """How much the normal turns over each facet, by its size, (n_facets,)."""
+    turn = np.linalg.norm(normals - normals[:, :1], axis=2)
+    return np.asarray(np.where(surface.nodes >= 0, turn, 0.0).max(axis=1) / facet_sizes(surface) + 1e-12)
 
 
 def _turned_along(vectors: Array, start: Array, end: Array) -> Array:
