@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import pytest
 
 import abut
+from abut.problem.finite import FiniteProblem
 from models.sliding import sharp
 
 
@@ -14,13 +15,10 @@ def left_out(model: abut.Model) -> list[float]:
     return [check.value for check in solution.certificate if check.name.endswith("friction left out")]
 
 
-def test_nodes_that_come_under_a_sharp_edge() -> None:
-    """A plate's nodes carry no friction in the step in which they come under the block's edge, where the pressure peaks."""
+def test_nodes_that_come_under_a_sharp_edge(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where slips cannot be looked at in what is covered late, as when the step does not converge with them, a plate's nodes
+    carry no friction in the step in which they come under the block's edge, where the pressure peaks."""
+    assert left_out(sharp(0.3, 9)) == []
+    monkeypatch.setattr(FiniteProblem, "with_late_points", lambda _, before, *rest: before)
     (share,) = left_out(sharp(0.3, 9))
     assert share > 0.02  # the limit of the line
-
-
-def test_a_contactor_that_stays_opposite_its_target() -> None:
-    model = sharp(0.3, 9)
-    (contact,) = model.contacts
-    assert not left_out(replace(model, contacts=[replace(contact, contactor=contact.target, target=contact.contactor)]))

@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from tests.models.lever import couples
-from tests.models.sheets import chain, sheet, together, turn
 
 from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
@@ -19,6 +17,8 @@ from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
 from abut.types import Array, Sparse
+from models.lever import couples
+from models.sheets import chain, sheet, together, turn
 
 LINES = ("line2", "line3")
 FACES = ("tri3", "tri6", "quad4", "quad8", "quad9")

@@ -229,6 +229,11 @@ def test_rigid_body(tmp_path):
     assert solution.contacts[0].force[2] == pytest.approx(-E * 0.01, rel=1e-9)  # the lower one is the contactor
     assert any("as the slave is rigid" in note for note in load(tmp_path, text + step()).notes)
     assert tops(solution) == pytest.approx(-0.01, rel=1e-12)
+    turned = text + step("*BOUNDARY", "99, 3, 3, -0.01") + step("*BOUNDARY", "98, 3, 3, 0.2")
+    body = load(tmp_path, turned).model.rigid[0]
+    assert (body.z, body.rz) == pytest.approx((-0.01, 0.2))
+    assert [body.history("z")(t) for t in (0.5, 1.0)] == [1.0, 1.0]  # comes down in the first step
+    assert [body.history("rz")(t) for t in (0.5, 1.0)] == [0.0, 1.0]  # and turns in the second
     with pytest.raises(InputError, match="forces on a rigid body are not supported"):
         load(tmp_path, text + step("*CLOAD", "99, 3, -1."))
     with pytest.raises(InputError, match="rigid in part only"):

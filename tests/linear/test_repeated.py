@@ -10,22 +10,6 @@ from abut.linear.repeated import Repeated
 pytestmark = pytest.mark.skipif(direct.pardiso() is None, reason="PARDISO is not installed")
 
 
-class Counted(Repeated):
-    """What it had to do."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.analyses = self.factorisations = 0
-
-    def _from_scratch(self, *arguments):
-        self.analyses += 1
-        return super()._from_scratch(*arguments)
-
-    def _factorise(self, matrix):
-        self.factorisations += 1
-        return super()._factorise(matrix)
-
-
 def saddle(n: int, seed: int, contacts: int) -> sp.csr_matrix:
     """Laplace on a cube of n^3 points, unsymmetric by a little, and rows of multipliers with nothing on the diagonal."""
     rng = np.random.default_rng(7)
@@ -47,9 +31,8 @@ def residual(matrix: sp.csr_matrix, x: np.ndarray, rhs: np.ndarray) -> float:
 
 def test_old_factors_serve_a_matrix_that_changes_little() -> None:
     """Exact for the new matrix all the same."""
-    repeated, first, second = Counted(), saddle(20, 1, 60), saddle(20, 2, 60)
+    repeated, first, second = Repeated(), saddle(20, 1, 60), saddle(20, 2, 60)
     rhs = np.random.default_rng(3).standard_normal(first.shape[0])
-    repeated.begin(1.0)
     assert residual(first, repeated.solve(first, rhs, symmetric=False), rhs) < 1e-12
     assert residual(second, repeated.solve(second, rhs, symmetric=False), rhs) < 1e-10
     assert residual(first, repeated.solve(second, rhs, symmetric=False), rhs) > 1e-4
@@ -59,30 +42,17 @@ def test_old_factors_serve_a_matrix_that_changes_little() -> None:
 def test_one_analysis_while_entries_come_and_go() -> None:
     """A matrix far from the first is factorised anew; entries that the pattern lacks are in the solution, not in the
     factors."""
-    repeated, first = Counted(), saddle(8, 1, 20)
+    repeated, first = Repeated(), saddle(8, 1, 20)
     rhs = np.random.default_rng(3).standard_normal(first.shape[0])
     other = (2.0 * first).tolil()
     other[3, 100] = other[450, 7] = 0.05
     other = other.tocsr()
-    repeated.begin(1.0)
     repeated.solve(first, rhs, symmetric=False)
     assert residual(other, repeated.solve(other, rhs, symmetric=False), rhs) < 1e-10
     assert (repeated.analyses, repeated.factorisations) == (1, 2)
     dense = (first + sp.random(*first.shape, 0.01, random_state=5)).tocsr()
     assert residual(dense, repeated.solve(dense, rhs, symmetric=False), rhs) < 1e-10
     assert repeated.analyses == 2
-
-
-def test_a_load_step_leaves_nothing_to_the_next() -> None:
-    """To the last digit, so that a run goes on from a restart as it would have."""
-    first, second = saddle(12, 1, 30), saddle(12, 2, 30)
-    rhs = np.random.default_rng(3).standard_normal(first.shape[0])
-    kept, fresh = Repeated(), Repeated()
-    kept.begin(0.5)
-    kept.solve(first, rhs, symmetric=False)
-    for each in (kept, fresh):
-        each.begin(1.0)
-    assert np.array_equal(kept.solve(second, rhs, symmetric=False), fresh.solve(second, rhs, symmetric=False))
 
 
 def test_a_singular_matrix_is_said_to_be_one() -> None:

@@ -13,7 +13,7 @@ import abut
 from abut.analysis.run import Run
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
-from abut.problem.finite import FiniteProblem
+from abut.problem.finite import POINTS, FiniteProblem
 from abut.solution.state import State
 
 SOFT = abut.LinearElastic(young=100.0, poisson=0.3)
@@ -59,27 +59,40 @@ def finite(model: abut.Model) -> FiniteProblem:
     return problem
 
 
-def tangent_errors(
-    problem: FiniteProblem, size: float, before: State | None = None, about: State | None = None
-) -> tuple[float, float]:
-    """Of the derivatives of balance and of gaps (slips) against central differences, relative, in all displacements at once
-    and near random ones of that size, in a step from ``before`` to near ``about``, by default from the start."""
+def forgetful(problem: FiniteProblem, size: float) -> State:
+    """The start, as if nothing had been opposite the contactors: all slips count at points of another state, random
+    displacements of that size from it."""
+    start = problem.start()
+    none = {name: values[:0] for name, values in start.history.of(POINTS).items()}
+    before = replace(start, history=start.history.with_term(POINTS, none))
+    there = replace(before, unknowns=size * np.random.default_rng(5).standard_normal(problem.n_free))
+    return problem.with_late_points(before, problem.displacement(there), np.ones(len(start.status), dtype=bool))
+
+
+def tangent_errors(problem: FiniteProblem, size: float, start: State | None = None) -> tuple[float, float]:
+    """Of the derivatives of balance and of gaps (slips) near random displacements of that size. start: what the step begins
+    from, the problem's own where left out."""
     rng = np.random.default_rng(3)
-    before, n = problem.start() if before is None else before, problem.operator.shape[0]
-    there = before.unknowns if about is None else about.unknowns
+    before, n = start or problem.start(), problem.operator.shape[0]
     at = replace(
-        before, time=0.7, unknowns=there + size * rng.standard_normal(problem.n_free),
-        multipliers=rng.uniform(0.0, 5.0, n),
-    )  # fmt: skip
-    system, way = problem.linearise(before, at), rng.standard_normal(problem.n_free)
+        before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
+    )
+    return tangent_errors_at(problem, before, at, rng.standard_normal(problem.n_free), 1e-6)
+
+
+def tangent_errors_at(
+    problem: FiniteProblem, before: State, at: State, way: NDArray[np.float64], step: float
+) -> tuple[float, float]:
+    """The same near a state, against central differences of a step along a way (n_free,), relative."""
+    system = problem.linearise(before, at)
 
     def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         state = replace(at, unknowns=at.unknowns + step * way)
         near = problem.linearise(before, state)
         return near.unbalanced(state), near.gap(state)
 
-    (force, gap), (force_back, gap_back) = there(1e-6), there(-1e-6)
-    forces, gaps = (force - force_back) / 2e-6, (gap - gap_back) / 2e-6
+    (force, gap), (force_back, gap_back) = there(step), there(-step)
+    forces, gaps = (force - force_back) / (2.0 * step), (gap - gap_back) / (2.0 * step)
     left = np.abs(forces - system.stiffness @ way).max() / np.abs(forces).max()
     return float(left), float(np.abs(gaps - system.operator @ way).max() / np.abs(gaps).max())
 

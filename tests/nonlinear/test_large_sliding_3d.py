@@ -13,7 +13,7 @@ from abut.contact.moving_normals import normal_pattern
 from abut.problem.slip_points import SlipPoints, slip_now
 from abut.problem.turns import rotation
 from abut.solution.state import State
-from models.sliding import finite, pressed_in_space, tangent_errors
+from models.sliding import finite, forgetful, pressed_in_space, tangent_errors
 
 
 @pytest.mark.parametrize("cell", ["hex8", "tet10"])
@@ -21,6 +21,11 @@ from models.sliding import finite, pressed_in_space, tangent_errors
 def test_tangent_is_the_derivative(friction: float, cell: str) -> None:
     """As in 2D, with both components of slip and traction along tangents that turn with the surface."""
     assert max(tangent_errors(finite(pressed_in_space(friction, cell)), 3e-3)) < 1e-7
+
+
+def test_tangent_where_slip_counts_at_late_points() -> None:
+    problem = finite(pressed_in_space(0.3))
+    assert max(tangent_errors(problem, 3e-3, forgetful(problem, 3e-3))) < 1e-7
 
 
 def test_sliding() -> None:

@@ -13,6 +13,7 @@ import pytest
 import abut
 from abut.errors import InputError, SingularModelError
 from abut.job import load_job
+from abut.job.convert import write_job
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.output.results import write
@@ -166,6 +167,22 @@ def test_a_tool_comes_and_goes() -> None:
     assert np.abs(steps[-1].displacement).max() < 1e-12 * 0.01
 
 
+FIRST, THEN = ((0, 0), (0.5, 1), (1, 1)), ((0, 0), (0.5, 0), (1, 1))
+TURNED = {"y": abut.Amplitude(FIRST), "rz": abut.Amplitude(THEN)}
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_a_tool_comes_down_and_turns_then(kinematics: str) -> None:
+    """Components with amplitudes of their own, beside one that follows the ramp."""
+    model = pressed(x=0.004, y=-0.01, rz=0.002, reference=(0.0, 1.0), amplitudes=TURNED)
+    steps = abut.solve(
+        replace(model, kinematics=kinematics, solve=abut.SolveOptions(times=(0.25, 0.5, 0.75, 1.0)))
+    ).steps
+    moved = [[*step.rigid["tool"].displacement, *step.rigid["tool"].rotation] for step in steps]
+    expected = [[0.001, -0.005, 0.0], [0.002, -0.01, 0.0], [0.003, -0.01, 0.001], [0.004, -0.01, 0.002]]
+    assert np.allclose(moved, expected, rtol=0.0, atol=1e-9)
+
+
 def glue(mesh: Mesh, body: str, surface: str) -> Mesh:
     """Points of a surface become those of a body at the same place."""
     twins = {n: at(mesh, body, *mesh.points[n]) for n in mesh.nodes_of(surface)}
@@ -221,6 +238,11 @@ def test_a_rigid_back_on_a_free_pad(condensed: bool, law: str, monkeypatch: pyte
     assert step.converged
     assert np.nanmax(np.abs(step.contacts[0].pressure / 2.0 - 1.0)) < tolerance
     assert step.rigid["back"].displacement[1] == pytest.approx(-2.0 * 2.0 / 1e3, rel=tolerance)
+
+
+def test_amplitudes_of_what_is_not_given() -> None:
+    with pytest.raises(InputError, match="rigid 'tool': amplitudes: 'rz' is none of the components that are given: y"):
+        pressed(y=-0.01, amplitudes=TURNED)
 
 
 @pytest.mark.parametrize(
@@ -308,6 +330,18 @@ def test_job_with_rigid_body_and_equation(tmp_path: Path) -> None:
     assert float(body["moment_z"]) == tool.moment[0]
     job.write_text(JOB.replace('body = "tool"\nreference = [0, 1]', 'body = "tool"\nreference = [0, 1]\nrz_ = 1'))
     with pytest.raises(InputError, match=r"rigid\[0\].rz_: unknown key"):
+        load_job(job)
+    single = "amplitudes = { y = [[0, 0], [1, 0.25]] }\n[[equations]]"
+    job.write_text(JOB.replace("[[equations]]", single))
+    assert load_job(job).model.rigid[0].history("y") == abut.Amplitude(((0, 0), (1, 0.25)))
+    assert load_job(job).model.rigid[0].history("rz") == abut.Amplitude(((0, 0), (1, 0.5)))
+    again = write_job(tmp_path / "again.toml", load_job(job))[0]
+    assert load_job(again).model.rigid == load_job(job).model.rigid
+    job.write_text(JOB.replace("[[equations]]", single.replace("[0, 0]", "[0]")))
+    with pytest.raises(InputError, match=r"rigid\[0\].amplitudes"):
+        load_job(job)
+    job.write_text(JOB.replace("[[equations]]", single.replace("[0, 0]", "[2, 0]")))
+    with pytest.raises(InputError, match=r"rigid\[0\].amplitudes.y: "):
         load_job(job)
     job.write_text(JOB.replace('component = "x", coefficient = 2.0', 'component = "w", coefficient = 2.0'))
     with pytest.raises(InputError, match=r"equations\[0\].terms\[0\].component"):

@@ -13,7 +13,7 @@ from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import facet_sizes, full_moments
 from abut.problem.contact_pairs import Pair
 
-ROUNDING = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
+SOLVED = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 
 
 def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> NDArray[np.float64]:
@@ -35,7 +35,7 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
         nodes = np.maximum(surface.nodes[facet], 0)  # shape functions are zero where padded
         for a in range(surface.dim):
             change += sign * at.normal[:, a] * (shapes * displacement[nodes, a]).sum(axis=1)
-    depth = -(at.gap + offset + change) - ROUNDING * float(np.abs(change).max())
+    depth = -(at.gap + offset + change) - SOLVED * float(np.abs(change).max())
     chords = misfit(pair)
     if chords is not None:
         depth = np.minimum(depth, depth - unseen(pair, chords))

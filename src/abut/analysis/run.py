@@ -147,8 +147,8 @@ class Run:
             self.clock.mark("solve")
             observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
             self._end(attempt)
-        if self.solver.count is not None:
-            self.told.note(f"{self.solver.count.iterations} linear iterations in all")
+        if self.solver.effort:
+            self.told.note(self.solver.effort)
 
     def so_far(self, complete: bool) -> Solution:
         """The steps up to here; complete: there are no more to come."""

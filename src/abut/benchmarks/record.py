@@ -13,7 +13,7 @@ from abut.analysis import solve
 from abut.errors import InputError
 from abut.model import Model
 
-ROUNDING = 1e-10  # errors below are rounding: they follow no power of the mesh size
+NO_RATE = 1e-10  # errors below are rounding: they follow no power of the mesh size
 Measure = Callable[[Any], Mapping[str, float]]
 
 
@@ -108,6 +108,6 @@ def _rate(sizes: Sequence[float], errors: Sequence[float]) -> float | None:
     """Order p of errors ~ h^p by a fit over all levels."""
     if not np.isfinite(errors).all():
         return float("nan")  # which passes no comparison
-    if len(errors) < 2 or min(errors) < ROUNDING:
+    if len(errors) < 2 or min(errors) < NO_RATE:
         return None
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])

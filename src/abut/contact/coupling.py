@@ -24,7 +24,7 @@ from abut.types import Array, Json, Sparse
 
 CURVED_POINTS = {2: 6, 3: 3}  # by dimension, per direction, where the contactor's normal turns within a facet
 SAME_NORMAL = 1e-9
-ROUNDING = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
+NO_GAP = 16 * np.finfo(float).eps  # of the largest coordinate: a gap below it cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def default_reach(contactor: Surface, target: Surface) -> float:
 
 def no_gap(contactor: Surface, target: Surface, adjust: float) -> float:
     """Size up to which a gap counts as none: ``adjust``, or rounding of the coordinates."""
-    rounding = ROUNDING * max(np.abs(s.points).max() for s in (contactor, target))
+    rounding = NO_GAP * max(np.abs(s.points).max() for s in (contactor, target))
     return float(adjust + rounding)
 
 

@@ -21,7 +21,7 @@ from abut.mesh.surface import Surface
 Names = str | Sequence[str]  # of surfaces or bodies
 Rows = NDArray[np.int64]  # (n, 2): cell, local facet
 Sides = tuple[Surface, Surface]  # contactor, target
-ROUNDING = 1e-9
+SAME_DISTANCE = 1e-9  # of a distance: another one that differs by less is the same
 SLIVER = 1e-9  # of a facet's area: less is rounding where edges of both sides coincide
 ON_AXIS = 1e-9  # of the largest radius: facets at smaller ones have no area
 
@@ -158,7 +158,7 @@ def _not_through(contactor: Surface, seen: Coupling, n_target: int) -> set[tuple
     x = np.einsum("ik,ikd->id", at.contactor_shapes, contactor.points[np.maximum(contactor.nodes[at.facet], 0)])
     place = x - at.gap[:, None] * at.normal
     around = cKDTree(contactor.points[np.unique(contactor.nodes[contactor.nodes >= 0])])
-    near = (at.gap >= 0.0) | (-at.gap <= around.query(place)[0] * (1.0 + ROUNDING))
+    near = (at.gap >= 0.0) | (-at.gap <= around.query(place)[0] * (1.0 + SAME_DISTANCE))
     near &= at.target_facet < n_target
     return set(zip(at.facet[near].tolist(), at.target_facet[near].tolist()))
 

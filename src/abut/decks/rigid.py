@@ -17,24 +17,21 @@ from abut.model import Amplitude, Rigid
 
 def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Rigid]:
     """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one that carries a
-    force or follows several amplitudes."""
+    force."""
     result = []
     supported = courses(deck, "boundary") if deck.rigid else {}
     for name, body in zip(names, deck.rigid):
         _check_forces(deck, body)
         components = _components(supported, body, plane)
-        units = {scaled(course)[1] for course in components.values() if not zero(course)}
-        if len(units) > 1:
-            raise DeckError(
-                body.place, "*RIGID BODY: its displacements and turns follow different amplitudes; give them one"
-            )
         values = {name: scaled(course)[0] for name, course in components.items()}
-        unit = next(iter(units), None)
-        amplitude = None if unit is None else Amplitude(unit)
+        units = {name: scaled(course)[1] for name, course in components.items() if not zero(course)}
+        own = {name: Amplitude(unit) for name, unit in units.items() if unit is not None}
+        alike = len(own) == len(units) and len(set(own.values())) == 1
+        amplitude = next(iter(own.values())) if alike else None
         if body.reference not in deck.nodes:
             raise DeckError(body.place, f"*RIGID BODY: REF NODE {body.reference} does not exist; give it in *NODE")
         reference = tuple(coordinates(deck, np.array([body.reference]))[0][: 2 if plane else 3].tolist())
-        result.append(Rigid(name, reference, **values, amplitude=amplitude))
+        result.append(Rigid(name, reference, **values, amplitude=amplitude, amplitudes={} if alike else own))
     return result
 
 

@@ -111,6 +111,8 @@ def _value(value: Any, name: str) -> Any:
         return [component.text for component in value.components]
     if callable(value) and not isinstance(value, Amplitude):
         raise InputError(f"{name}: a job file holds numbers and expressions of position, not functions")
+    if isinstance(value, Mapping):
+        return {key: _value(each, name) for key, each in value.items()}
     if isinstance(value, Amplitude):
         return [list(point) for point in value.points]
     if isinstance(value, (Integration, SolveOptions)):

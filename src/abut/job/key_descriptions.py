@@ -127,6 +127,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rx": "small rotation about x; left out: free [radian]",
         "ry": "small rotation about y; left out: free [radian]",
         "rz": "small rotation about z (in 2D the only one); left out: free [radian]",
+        "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
     "ContactTable": {
         "name": "a name of your choice; left out: CONTACTOR-TARGET",

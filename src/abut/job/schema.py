@@ -161,6 +161,7 @@ class RigidTable(Table):
     ry: Number | None = None
     rz: Number | None = None
     amplitude: Points | None = None
+    amplitudes: dict[str, Points] = {}
 
 
 class RotationTable(Table):

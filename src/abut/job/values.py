@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 from pydantic import BaseModel
 
@@ -23,4 +24,16 @@ def values(table: BaseModel, where: str, leave_out: Collection[str] = ()) -> Jso
                 result[key] = Amplitude(result[key])
             except InputError as error:
                 raise InputError(f"{where}.{str(error).replace('amplitude', key, 1)}") from None
+    if "amplitudes" in result:
+        single: Json = given["amplitudes"]
+        result["amplitudes"] = {
+            name: _amplitude(points, f"{where}.amplitudes.{name}") for name, points in single.items()
+        }
     return result
+
+
+def _amplitude(points: Any, where: str) -> Amplitude:
+    try:
+        return Amplitude(tuple(points))
+    except InputError as error:
+        raise InputError(f"{where}: {str(error).partition(': ')[2]}") from None

@@ -77,7 +77,6 @@ class Direct:
             return replace(previous, system=system)
         if system.compliance is not None:
             return dense(system)
-        self.repeated.begin(system.time)
         pairs = system.pairs
         moved = np.asarray(system.operator @ system.motions)
         return SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved), repeated=self.repeated)
@@ -88,3 +87,11 @@ class Direct:
             return f"direct solver {solver_name()}"
         kept = len(prepared.system.load)
         return f"direct solver {solver_name()}; displacements condensed ({kept} retained), dense interface system"
+
+    @property
+    def effort(self) -> str:
+        """As in ``LinearSolver``."""
+        done = self.repeated
+        if not done.factorisations:
+            return ""
+        return f"{done.factorisations} factorisations in all, with {done.analyses} symbolic analyses"

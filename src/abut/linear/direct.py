@@ -235,6 +235,26 @@ def residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], s
     return float(min(plain, (miss / np.maximum(bound, 1e-300)).max()))
 
 
+def store_diagonal(matrix: Sparse) -> Sparse:
+    """The same matrix with every diagonal entry stored (PARDISO wants zeros on the diagonal to be present)."""
+    n = matrix.shape[0]
+    rows = np.repeat(np.arange(n), np.diff(matrix.indptr))
+    present = np.zeros(n, dtype=bool)
+    present[rows[matrix.indices == rows]] = True
+    missing = np.flatnonzero(~present)
+    if len(missing):
+        coo = matrix.tocoo()
+        matrix = sp.csr_matrix(
+            (
+                np.concatenate([coo.data, np.zeros(len(missing))]),
+                (np.concatenate([coo.row, missing]), np.concatenate([coo.col, missing])),
+            ),
+            shape=matrix.shape,
+        )
+    matrix.sort_indices()
+    return matrix
+
+
 def _solve_pardiso(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
     solver = solver_of(symmetric, SETTINGS)
     try:

@@ -188,6 +188,11 @@ class Multigrid:
         """As in ``LinearSolver``."""
         return prepared.hierarchy.summary if isinstance(prepared, Iterative) else self.name
 
+    @property
+    def effort(self) -> str:
+        """As in ``LinearSolver``."""
+        return self.count.effort
+
 
 def wholly_covered(pair: Pair) -> Pair:
     """With products of functions over the whole contactor, whatever is opposite."""

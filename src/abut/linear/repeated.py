@@ -14,12 +14,12 @@ from abut.linear.krylov import fgmres
 from abut.types import Foreign, Sparse
 
 EXACT = 1e-12  # reduction of the residual that stands for an exact solution
-WORTH = (
-    36.0  # entries of the factors by row, for every iteration with old factors that half a factorisation would pay for
-)
+# Entries of the factors by row, for every iteration with old factors that half a factorisation would pay for.
+WORTH = 36.0
 FEW = 9  # such iterations, below which old factors are not tried; as many are spent to spare an analysis
 LOST = 0.01  # share of the entries that have no place in the pattern, above which it is made anew
-ROOM = 1.1  # growth of a pattern by entries that others had, up to which they are kept
+ROOM = 1.05  # growth of a pattern by entries that others had, up to which they are kept
+SMALL = 200_000  # entries up to which minimum degree fills less than nested dissection
 Vector = NDArray[np.float64]
 
 
@@ -34,19 +34,13 @@ class Repeated:
         self._solver: Foreign = None
         self._factorised: Sparse | None = None
         self._symmetric = False
-        self._time: float | None = None
-
-    def begin(self, time: float) -> None:
-        """Of a load step that ends at a time: what an earlier one has left is given up."""
-        if time != self._time:
-            self._forget()
-        self._time = time
+        self.analyses = self.factorisations = 0
 
     def solve(self, matrix: Sparse, rhs: Vector, *, symmetric: bool) -> Vector:
         """As ``direct.solve``, which takes over where this one is not accurate. Raises SingularModelError."""
         size = np.abs(rhs).max(initial=0.0)
         if direct.pardiso() is None or size == 0.0:
-            return direct.solve(_with_diagonal(matrix), rhs, symmetric=symmetric)
+            return direct.solve(direct.store_diagonal(matrix), rhs, symmetric=symmetric)
         matrix.sort_indices()
         if self._factorised is None or self._factorised.shape != matrix.shape or self._symmetric != symmetric:
             self._forget()
@@ -56,7 +50,7 @@ class Repeated:
             if x is not None and direct.residual(matrix, x, rhs / size, symmetric) < direct.ACCURATE:
                 return size * x
         self._forget()
-        return direct.solve(_with_diagonal(matrix), rhs, symmetric=symmetric)
+        return direct.solve(direct.store_diagonal(matrix), rhs, symmetric=symmetric)
 
     def _by_old_factors(self, matrix: Sparse, rhs: Vector) -> Vector | None:
         """Where it pays, and as long as it is on course."""
@@ -104,17 +98,15 @@ class Repeated:
         return x + more
 
     def _from_scratch(self, matrix: Sparse, rhs: Vector) -> Vector | None:
-        before = matrix if self._factorised is None else self._factorised
+        whole = _grown(direct.store_diagonal(matrix), self._factorised)
         self._forget()
-        indptr, indices = joined_pattern(matrix.indptr, matrix.indices, before.indptr, before.indices)
-        if len(indices) > ROOM * (matrix.nnz + matrix.shape[0]):
-            indptr, indices = joined_pattern(matrix.indptr, matrix.indices, matrix.indptr, matrix.indices)
-        values, _ = values_in(indptr, indices, matrix.indptr, matrix.indices, matrix.data)
-        whole = sp.csr_matrix((values, indices, indptr), shape=matrix.shape)
         # The analysis also scales and permutes by the values, which symmetric matrices can do without.
         settings = direct.SETTINGS | {18: -1} | ({11: 0, 13: 0} if self._symmetric else {})
+        if matrix.nnz <= SMALL:
+            settings |= {2: 0}
         self._solver = direct.solver_of(self._symmetric, settings)
         weakref.finalize(self, self._solver.free_memory, everything=True)
+        self.analyses += 1
         try:
             direct.analyse(self._solver, whole, np.zeros(len(rhs)))
         except direct.failures():
@@ -123,6 +115,7 @@ class Repeated:
 
     def _factorise(self, matrix: Sparse) -> bool:
         """Whether there are new factors."""
+        self.factorisations += 1
         try:
             self._solver.set_phase(22)
             self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
@@ -142,9 +135,12 @@ class Repeated:
         self._solver, self._factorised = None, None
 
 
-def _with_diagonal(matrix: Sparse) -> Sparse:
-    """Every diagonal entry stored."""
-    matrix.sort_indices()
-    indptr, indices = joined_pattern(matrix.indptr, matrix.indices, matrix.indptr, matrix.indices)
+def _grown(matrix: Sparse, before: Sparse | None) -> Sparse:
+    """With the entries that another matrix has, as zeros, where they are few: they are likely to come back."""
+    if before is None:
+        return matrix
+    indptr, indices = joined_pattern(matrix.indptr, matrix.indices, before.indptr, before.indices)
+    if len(indices) > ROOM * matrix.nnz:
+        return matrix
     values, _ = values_in(indptr, indices, matrix.indptr, matrix.indices, matrix.data)
     return sp.csr_matrix((values, indices, indptr), shape=matrix.shape)

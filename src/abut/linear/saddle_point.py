@@ -81,12 +81,12 @@ def newton_step(
     stiffness: (n_u, n_u) sparse, symmetric if the rows are; operator and residual as in ``saddle``; repeated: of the
     systems before it, None where there is none like it."""
     if len(pressure) == 0:
-        matrix = sp.triu(stiffness, format="csr") if rows.symmetric else store_diagonal(stiffness)
+        matrix = sp.triu(stiffness, format="csr") if rows.symmetric else direct.store_diagonal(stiffness)
         return direct.solve(matrix, -residual, symmetric=rows.symmetric), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
     matrix, rhs = _whole(stiffness, s), np.concatenate([s.rhs_u, s.rhs_p])
     if repeated is None:
-        solution = direct.solve(store_diagonal(matrix), rhs, symmetric=s.symmetric)
+        solution = direct.solve(direct.store_diagonal(matrix), rhs, symmetric=s.symmetric)
     else:
         solution = repeated.solve(matrix, rhs, symmetric=s.symmetric)
     return solution[: len(residual)], s.pressure(solution[len(residual) :])
@@ -96,7 +96,7 @@ def factorise(stiffness: Sparse, operator: Sparse, rows: Rows) -> Solve:
     """The same for several right-hand sides (residual of equilibrium, residual of the law) with one factorisation; of
     symmetric rows."""
     unit, n = np.median(stiffness.diagonal()), stiffness.shape[0]
-    factors = direct.Factorization(store_diagonal(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n)))))
+    factors = direct.Factorization(direct.store_diagonal(_whole(stiffness, saddle(unit, operator, rows, np.zeros(n)))))
 
     def solve(
         residual: NDArray[np.float64], of_law: NDArray[np.float64]
@@ -135,7 +135,7 @@ class SaddlePoint:
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As in ``Prepared``."""
         sprung = self.system.stiffness + sp.diags(springs)
-        return direct.Factorization(store_diagonal(sp.triu(sprung, format="csr"))).solve(force)
+        return direct.Factorization(direct.store_diagonal(sp.triu(sprung, format="csr"))).solve(force)
 
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
@@ -172,23 +172,3 @@ def _row_max(matrix: Sparse, empty: float = 1.0) -> NDArray[np.float64]:
     if matrix.nnz:
         size[filled] = np.maximum.reduceat(np.abs(matrix.data), matrix.indptr[:-1][filled])
     return np.where(size > 0.0, size, empty)
-
-
-def store_diagonal(matrix: Sparse) -> Sparse:
-    """The same matrix with every diagonal entry stored (PARDISO wants zeros on the diagonal to be present)."""
-    n = matrix.shape[0]
-    rows = np.repeat(np.arange(n), np.diff(matrix.indptr))
-    present = np.zeros(n, dtype=bool)
-    present[rows[matrix.indices == rows]] = True
-    missing = np.flatnonzero(~present)
-    if len(missing):
-        coo = matrix.tocoo()
-        matrix = sp.csr_matrix(
-            (
-                np.concatenate([coo.data, np.zeros(len(missing))]),
-                (np.concatenate([coo.row, missing]), np.concatenate([coo.col, missing])),
-            ),
-            shape=matrix.shape,
-        )
-    matrix.sort_indices()
-    return matrix

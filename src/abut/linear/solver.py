@@ -27,6 +27,11 @@ class Count:
 
     iterations: int = 0
 
+    @property
+    def effort(self) -> str:
+        """As in ``LinearSolver``."""
+        return f"{self.iterations} linear iterations in all"
+
 
 class Prepared(Protocol):
     """A linear solver set up for a linearised problem.
@@ -86,5 +91,10 @@ class LinearSolver(Protocol):
         ...
 
     def note(self, prepared: Prepared) -> str:
-        """For the log."""
+        """For the log, before the first step."""
+        ...
+
+    @property
+    def effort(self) -> str:
+        """For the log, at the end of a run: what all solutions took; empty where there is nothing to tell."""
         ...

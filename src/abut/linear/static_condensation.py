@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear import direct
-from abut.linear.saddle_point import store_diagonal
 from abut.linear.schur_preconditioner import Predict, foresight, half_spaces, interfaces
 from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.problem.contact_pairs import Pair
@@ -257,7 +256,9 @@ def condense(problem: ContactProblem) -> CondensedProblem | None:
         return None
     upper, none = sp.triu(problem.stiffness), sp.csr_matrix((n_p, n_p))
     matrix = sp.bmat([[upper, -problem.operator.T], [None, none]], format="csr")
-    factorization = direct.partial_factorization(store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)]))
+    factorization = direct.partial_factorization(
+        direct.store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)])
+    )
     if factorization is None:
         return None
     n_u, schur = len(kept), factorization.schur

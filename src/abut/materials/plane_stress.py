@@ -12,7 +12,7 @@ from abut.materials.material import Array, Evaluated
 
 OUT = np.array([2, 4, 5])  # zz yz zx
 LIMIT = 25  # iterations; Newton's method needs one for a linear material and about five for others
-ROUNDING = 1e-13  # stress left out of the plane, relative to tangent times strain
+STRESS_LEFT = 1e-13  # stress left out of the plane, relative to tangent times strain
 
 Evaluate = Callable[[Array, Array], Evaluated]
 
@@ -32,7 +32,7 @@ def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Evalua
         stress, tangent, after = evaluate(strain, history)
         block = tangent[:, OUT[:, None], OUT]
         scale = np.abs(tangent).max(axis=(1, 2), initial=0.0) * np.abs(strain).max(axis=1, initial=0.0)
-        if (np.abs(stress[:, OUT]) <= ROUNDING * scale[:, None]).all():
+        if (np.abs(stress[:, OUT]) <= STRESS_LEFT * scale[:, None]).all():
             return _condensed(stress, tangent, block, after)
         strain[:, OUT] -= np.linalg.solve(block, stress[:, OUT, None])[..., 0]
     raise ConvergenceError(

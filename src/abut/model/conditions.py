@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -86,7 +86,8 @@ def drives(condition: Any) -> bool:
     names = ("value", "normal", *COMPONENTS, *TURNS)
     values = [getattr(condition, name, None) for name in names]
     given = any(value is not None and (callable(value) or bool(np.any(value))) for value in values)
-    return given and (condition.amplitude is None or condition.amplitude.largest > 0.0)
+    histories = [condition.amplitude, *getattr(condition, "amplitudes", {}).values()]
+    return given and any(history is None or history.largest > 0.0 for history in histories)
 
 
 @dataclass(frozen=True)
@@ -167,9 +168,9 @@ class Equation:
 @dataclass(frozen=True)
 class Rigid:
     """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and
-    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``;
-    components left out are free. Reference: the mean of the body's points, where left out. The body needs no material, and
-    in contact it is the target.
+    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``, or
+    those named in ``amplitudes`` times their own; components left out are free. Reference: the mean of the body's points,
+    where left out. The body needs no material, and in contact it is the target.
 
     >>> import abut
     >>> punch = abut.Rigid("punch", y=-0.01, rz=0.0)  # pressed down, kept upright, free to move sideways
@@ -184,15 +185,25 @@ class Rigid:
     ry: float | None = None
     rz: float | None = None
     amplitude: History = None
+    amplitudes: Mapping[str, Amplitude] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         where = f"rigid '{self.body}'"
+        for name, amplitude in self.amplitudes.items():
+            if name not in (*COMPONENTS, *TURNS) or getattr(self, name) is None:
+                known = ", ".join(key for key in (*COMPONENTS, *TURNS) if getattr(self, key) is not None)
+                raise InputError(f"{where}: amplitudes: {name!r} is none of the components that are given: {known}")
+            _amplitude(amplitude, f"{where}: amplitudes.{name}")
         for name in (*COMPONENTS, *TURNS):
             if getattr(self, name) is not None:
                 checks.finite(getattr(self, name), f"{where}: {name}")
         if self.reference is not None:
             object.__setattr__(self, "reference", _vector(self.reference, f"{where}: reference"))
         _amplitude(self.amplitude, where)
+
+    def history(self, name: str) -> History:
+        """Of the component ``name``."""
+        return self.amplitudes.get(name, self.amplitude)
 
 
 @dataclass(frozen=True)

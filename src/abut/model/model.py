@@ -110,7 +110,8 @@ class Model:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
         friction = (contact.friction_amplitude for contact in self.contacts)
-        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction]))
+        of_rigid = (history for body in self.rigid for history in body.amplitudes.values())
+        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction, *of_rigid]))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -129,12 +130,9 @@ class Model:
     @property
     def _moved(self) -> float:
         """The largest displacement that is prescribed as a number."""
-        given: list[Support | Rigid] = [*self.supports, *self.rigid]
-        values = [
-            (getattr(each, name, None), 1.0 if each.amplitude is None else each.amplitude.largest)
-            for each in given
-            for name in (*COMPONENTS, "normal")
-        ]
+        supports = [(getattr(s, name), s.amplitude) for s in self.supports for name in (*COMPONENTS, "normal")]
+        rigid = [(getattr(body, name), body.history(name)) for body in self.rigid for name in COMPONENTS]
+        values = [(v, 1.0 if history is None else history.largest) for v, history in (*supports, *rigid)]
         return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
 
     def temperatures(self, time: float) -> dict[str, float]:

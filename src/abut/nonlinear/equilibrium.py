@@ -11,7 +11,7 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import Prepared
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.iteration import Found, active_laws, largest_force
-from abut.nonlinear.newton import BALANCED, ROUNDING, Task
+from abut.nonlinear.newton import BALANCED, STALLED, Task
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
@@ -47,7 +47,7 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
         task.observe(rows[-1])
         if not np.isfinite(error):
             break
-        if error <= BALANCED or (error <= ROUNDING and error > 0.5 * last):
+        if error <= BALANCED or (error <= STALLED and error > 0.5 * last):
             prepared = task.solver.prepare(system, prepared)
             return Found(state, tuple(rows), True, np.zeros(0, dtype=bool), active_laws), prepared
     if not np.isfinite(error):

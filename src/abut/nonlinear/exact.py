@@ -24,7 +24,7 @@ STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end 
 SURE, FURTHER = 0.3, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
 # another way than the norm of the residual; and the most at once
 TRUSTED = 0.1  # error from which on a set that stands still is not taken for the last one
-ROUNDING = 1e-8  # the same that may be left to rounding
+STALLED = 1e-8  # the same that may be left where it no longer falls
 SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
 
@@ -74,7 +74,7 @@ def solve_set(
 def settled(solver: Prepared, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
     """Whether a set that stands still has been solved well enough. before: its error after the solution before this one:
     what no longer falls is rounding."""
-    rounding = solved.error <= ROUNDING and solved.error > 0.5 * before
+    rounding = solved.error <= STALLED and solved.error > 0.5 * before
     return solver.exact or solved.error <= _wanted(solver, aim) or rounding
 
 

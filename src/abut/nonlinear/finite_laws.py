@@ -118,9 +118,12 @@ def _without(law: LawRows, idle: NDArray[np.bool_], scale: Vector, multipliers: 
     )
 
 
-def wanted_status(system: Linearised, state: State, increment: Increment, asked: Asked) -> NDArray[np.int8]:
-    """The status (n,) that complementarity and Coulomb's law ask for; that of other laws stays."""
-    wanted = np.where(barely_covered(system), OPEN, next_status(system, state, increment))
+def wanted_status(
+    system: Linearised, state: State, increment: Increment, asked: Asked, gap: Vector | None = None
+) -> NDArray[np.int8]:
+    """The status (n,) that complementarity and Coulomb's law ask for; that of other laws stays. gap: (n,) to judge by; left
+    out: that of the state."""
+    wanted = np.where(barely_covered(system), OPEN, next_status(system, state, increment, gap))
     kept = [np.full(len(pair), not pair.frictional and asked.of(pair, system) is not None) for pair in system.pairs]
     return np.where(system.join(kept).astype(bool), state.status, wanted).astype(np.int8)
 

@@ -29,7 +29,7 @@ from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 
 TOLERANCE = 1e-10  # of the laws over the largest pressure, and of equilibrium over the largest force
-ROUNDING = 1e-7  # the same that may be left where it no longer falls
+STALLED = 1e-7  # the same that may be left where it no longer falls
 PATIENCE = 3  # iterations in which neither fewer change than ever nor less is left than half of ever
 RECENT = 6  # iterations whose statuses tell which multipliers keep changing
 Vector = NDArray[np.float64]
@@ -102,7 +102,7 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
         changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
         left = course.add(state, changed, clock)
-        if not changed and (left <= tolerance or (left <= ROUNDING and left > 0.5 * before)):
+        if not changed and (left <= tolerance or (left <= STALLED and left > 0.5 * before)):
             return course.found(state)
         better = changed < fewest or (changed == 0 and left < 0.5 * least)
         idle = 0 if better else idle + 1
@@ -148,14 +148,16 @@ def coulomb(pair: Pair, system: Linearised) -> Coulomb:
     return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
-def next_status(system: Linearised, state: State, increment: Increment) -> Status:
-    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays."""
+def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays.
+    gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
     reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
     small = FLAT * max(reference, NO_PRESSURE)
-    gaps, multipliers, before = (system.split(part) for part in (system.gap(state), state.multipliers, state.status))
+    gap = system.gap(state) if gap is None else gap
+    gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
     return system.join(
         [
             np.full(len(pair), CLOSED) if pair.tied else _wanted(pair, system.factors, gap, part, status, small)

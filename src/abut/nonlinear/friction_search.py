@@ -21,7 +21,7 @@ LESS = 0.3  # of the dilatancy that is left by an iteration that close
 NONE = 1e-3  # dilatancy that is none
 STUCK, SHORT = 4, 0.05  # iterations in a row whose steps are shorter than that
 GONE = 1e-12  # of the largest pressure over that of the start, from which down nothing is pressed
-ROUNDING = 1e-9  # of forces over those that would hold a node where it was
+FORCE_LEFT = 1e-9  # of forces over those that would hold a node where it was
 FLOOR = 1e-14  # of the mean product over the largest pressure squared
 
 
@@ -82,7 +82,7 @@ def _apart(course: Course, programme: Programme, state: State) -> Found | None:
     size = system.unit * float(np.abs(state.unknowns).max(initial=0.0))
     if system.tied.any() or system.gap(state)[programme.normal].min() < 0.0:
         return None
-    if np.abs(system.unbalanced(state)).max(initial=0.0) > ROUNDING * size:
+    if np.abs(system.unbalanced(state)).max(initial=0.0) > FORCE_LEFT * size:
         return None
     course.add(state, 0, clock)
     return course.found(state)

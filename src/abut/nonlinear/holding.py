@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.problem.contact_pairs import Pair
@@ -18,6 +19,7 @@ FLIGHT = 10.0  # sizes of the model by which nothing moves in a step
 ROUNDS = 3  # a nearly singular system may carry a body so far that rounding of it is more than a facet
 FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step
 NEAR = 0.1  # facet sizes by which an iteration may move bodies along motions that nothing resists
+SLIGHT = 1e-12  # resistance over the largest entry of the stiffness: beyond rounding, below what pressures resist
 
 
 def sticking(problem: ContactProblem, system: Linearised, state: State, thrown: State) -> State:
@@ -37,6 +39,24 @@ def sticking(problem: ContactProblem, system: Linearised, state: State, thrown: 
         return state
     way = problem.displacement(thrown) - problem.displacement(state)
     return stuck if _reach(rigid, loose - held @ (held.T @ loose), way) > NEAR * _facet(problem) else state
+
+
+def resisting(problem: ContactProblem, system: Linearised, state: State) -> Linearised:
+    """The system, with a slight resistance to all displacements where supports, ties, closed gaps and what sticks leave a
+    body free to move: what is unbalanced moves it by ``NEAR`` of a facet. Without pressures nothing else resists."""
+    if system.restraint.by_supports:
+        return system
+    rigid, supports = _now(problem, system)
+    free = _free(system, rigid, supports, state)
+    if not free.shape[1]:
+        return system
+    assert system.about is not None
+    motions = problem.constraints.near(system.about.at, system.factors).free.T @ (rigid.modes @ free)
+    forces = np.abs(motions.T @ system.unbalanced(state)) / (motions**2).sum(axis=0)
+    least = SLIGHT * float(np.abs(system.stiffness.diagonal()).max())
+    resistance = max(float(forces.max()) / (NEAR * _facet(problem)), least)
+    more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
+    return replace(system, stiffness=(system.stiffness + more).tocsr())
 
 
 def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State) -> State:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver, NotConverged
+from abut.nonlinear.hanging import hanging
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
@@ -40,6 +41,8 @@ def march_finite(
         begin = problem.with_functions(before, before)
         following = problem.following(begin, problem.displacement(guess or before), before.closed)
         begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
+        if guess is not None:
+            begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
         step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
         try:
             attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
@@ -55,7 +58,8 @@ def march_finite(
         cuts += 1
         pace.halve()
         if pace.stuck:
-            yield attempt
+            where = hanging(problem, before, attempt.cycling)
+            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where))))
             return
         control.halves(attempt, pace.end or time)
 
@@ -85,13 +89,14 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions and gaps that belong to the end of the step; as it was if that fails."""
+    """Once more with the functions, gaps and points of slip that belong to the end of the step; as it was if that fails."""
     if not found.converged:
         return step, found
+    problem, closed = step.problem, found.state.closed
     end = replace(found.state, time=time)
-    here = step.problem.displacement(end)
-    before = step.problem.with_functions(step.before, end)
-    following = step.problem.following(before, here, found.state.closed, settled=True)
+    here = problem.displacement(end)
+    before = problem.with_late_points(problem.with_functions(step.before, end), here, closed)
+    following = problem.following(before, here, closed, settled=True)
     if before is step.before and not following:
         return step, found
     before, guess = (step.problem.led(each, following) for each in (before, found.state))

@@ -18,7 +18,7 @@ from abut.solution import Iteration
 from abut.solution.state import State
 
 BALANCED = 1e-9  # of nonlinear equilibrium, over the largest force
-ROUNDING = 1e-7  # the same that may be left where it no longer falls
+STALLED = 1e-7  # the same that may be left where it no longer falls
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def newton(
     while found.converged and not problem.constant:
         system = problem.linearise(task.before, found.state)
         before, error = error, _unbalanced(system, found.state, task.increment)
-        if error <= BALANCED or (error <= ROUNDING and error > 0.5 * before):
+        if error <= BALANCED or (error <= STALLED and error > 0.5 * before):
             break
         left = task.limit - len(found.iterations) + len(earlier)
         if left <= 0 or not np.isfinite(error):

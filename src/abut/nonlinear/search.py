@@ -21,7 +21,7 @@ from abut.solution.state import State
 SOLUTIONS, HALVED = 3, 0.5  # exact ones at a time, while ever fewer multipliers change; more while these halve
 SHARE = 0.02  # of the multipliers that may be undecided, or change, for exact solutions to be worth a try
 FLOOR = 1e-13  # of the mean product of gaps and pressures over the largest pressure squared
-ROUNDING = 1e-6  # violation of the law over the largest pressure that is left to rounding at the floor
+VIOLATION_LEFT = 1e-6  # violation of the law over the largest pressure that is left to rounding at the floor
 PATIENCE = 3  # iterations without progress that count as the floor
 
 
@@ -88,7 +88,7 @@ def search(
             return finish(solved)
         if floor:
             break
-    if solved is not None and solved.violation.max() <= ROUNDING * largest_pressure(solved.state, increment):
+    if solved is not None and solved.violation.max() <= VIOLATION_LEFT * largest_pressure(solved.state, increment):
         return finish(solved)
     return Found(here.state.with_closed(active), tuple(log.done), False, here.undecided, active_laws)
 

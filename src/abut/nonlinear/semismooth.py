@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import FINE, forcing
 from abut.nonlinear.friction_newton import friction_laws
-from abut.nonlinear.holding import flies_off, not_adrift, sticking, thrown_apart
+from abut.nonlinear.holding import flies_off, not_adrift, resisting, sticking, thrown_apart
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
+from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
 from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.smooth_laws import NO_PRESSURE
 from abut.problem.finite import FiniteProblem
@@ -26,9 +28,8 @@ from abut.solution import Iteration
 from abut.solution.state import CLOSED, Largest, State
 
 BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
-ROUNDING = 1e-7  # the same that may be left where it no longer falls
+STALLED = 1e-7  # the same that may be left where it no longer falls
 FAINT = 1e-5  # pressure over Young's modulus that counts as small
-NEAREST = 0.01  # gap over the facet size by which points may be farther than the nearest, to stay closed with it
 HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
 SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
@@ -129,11 +130,13 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
     begun, before = clocks.perf_counter(), np.inf
-    here = _balance(step, _carried(step, time) if guess is None else guess)
+    closings = np.zeros(len(step.before.status), dtype=np.int64)
+    here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
     if guess is None:
         begun = _report(step, here, begun)
     if guess is not None or not _balanced(here, before):
-        here = _kept(step, here)
+        state = nearest_kept(here.system, step.before, here.state)
+        here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
     while guess is not None or not _balanced(here, before):
         if len(step.done) >= step.limit:
             step.failed = (
@@ -141,13 +144,14 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
                 f"{int(here.changed.sum())} multipliers that change"
             )
             break
-        following = _following(step, here, forcing(here.error, before, BALANCED))
+        following, swapped = _following(step, here, closings, forcing(here.error, before, BALANCED))
         step.failed = flies_off(step.problem, step.before, following)
         if step.failed:
             break
         step.asked = replace(step.asked, by_pressure=False)
         there = _balance(step, following)
-        if step.careful or not np.isfinite(there.size):
+        closings += there.state.closed & ~here.state.closed
+        if (step.careful and not swapped) or not np.isfinite(there.size):
             there = _shortened(step, here, there)
         if not np.isfinite(there.size):
             step.failed = "forces are not finite"
@@ -157,18 +161,25 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
     return here
 
 
-def _following(step: Step, here: Balance, accuracy: float) -> State:
-    """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
+def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+    """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
+    laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
+
+    def solved(state: State) -> State:
+        return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
+
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
+    other = exchanged(here.system, here.state, there, closings, solved)
+    if other is not there:
+        return other, True
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < SETTLED:
         wanted = wanted_status(here.system, there, step.increment, step.asked)
         if wanted.tobytes() in seen:
             break
         seen.add(wanted.tobytes())
-        state = here.state.with_status(wanted)
-        there = step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
-    return there
+        there = solved(here.state.with_status(wanted))
+    return there, False
 
 
 def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
@@ -182,7 +193,7 @@ def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRo
 
 def _balanced(here: Balance, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    idle = here.error > 0.5 * before and here.law <= ROUNDING and here.force <= max(ROUNDING, here.rounding)
+    idle = here.error > 0.5 * before and here.law <= STALLED and here.force <= max(STALLED, here.rounding)
     return here.error <= BALANCED or idle
 
 
@@ -193,34 +204,20 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~barely_covered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
-    return _iterated(step, system, state, laws_of(system, state, step.asked), FINE)
+    while True:
+        laws = laws_of(system, state, step.asked)
+        there = _iterated(step, resisting(step.problem, system, state), state, laws, FINE)
+        fewer = without_pulling(system, state, there, step.increment)
+        if fewer is None:
+            return there
+        state = fewer
 
 
-def _kept(step: Step, here: Balance) -> Balance:
-    """A guess in which a contact has come off that was closed before: what is nearest stays closed for an iteration, which
-    tells whether it pulls. Without it bodies would spring back, and from there far into each other."""
-    wanted, gaps, idle = here.state.status.copy(), here.system.gap(here.state), barely_covered(here.system)
-    first = 0
-    for pair in here.system.pairs:
-        own = slice(first, first := first + len(pair))
-        closed, before = here.state.closed[own][pair.normal], step.before.closed[own][pair.normal]
-        if pair.tied or closed.any() or not before.any():
-            continue
-        clearance = (gaps[own] / (pair.weight * pair.size))[pair.normal]
-        clearance = np.where(idle[own][pair.normal], np.inf, clearance)
-        near = np.isfinite(clearance) & (clearance <= clearance.min() + NEAREST)
-        wanted[own] = np.where(pair.of_functions(near), CLOSED, wanted[own])
-    if np.array_equal(wanted, here.state.status):
-        return here
-    state = here.state.with_status(wanted)
-    return replace(here, state=state, laws=laws_of(here.system, state, step.asked))
-
-
-def _balance(step: Step, state: State) -> Balance:
+def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
     system = step.problem.linearise(step.before, state)
     before = state.status
-    state = state.with_status(wanted_status(system, state, step.increment, step.asked))
+    state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))
     laws = laws_of(system, state, step.asked)
     state = state.with_status(status_of(system, state, laws, step.asked))
     changed = state.status != before

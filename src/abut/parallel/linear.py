@@ -247,6 +247,11 @@ class PetscIterations:
             return self.name
         return f"{self.name}, {_processes(prepared.matrix.team)}"
 
+    @property
+    def effort(self) -> str:
+        """As in ``LinearSolver``."""
+        return self.count.effort
+
 
 def _require_general(system: Linearised) -> None:
     """Raises InputError for Krylov methods of symmetric matrices where the laws do not leave such."""
@@ -294,6 +299,11 @@ class PetscDirect:
     def note(self, prepared: Prepared) -> str:
         """As in ``LinearSolver``."""
         return f"PETSc's direct solver {direct_solver()}, {_processes(prepared.system.stiffness.team)}"
+
+    @property
+    def effort(self) -> str:
+        """Nothing to tell."""
+        return ""
 
 
 def choose(problem: ContactProblem) -> str:

@@ -23,7 +23,8 @@ from abut.types import Array, Sparse
 
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
 ON_AXIS = 1e-9  # radius over the model's size that counts as none
-ROUNDING = 1e-12  # of the largest prescribed value: functions of position that agree may differ by this
+CANCELLED = 1e-12  # coefficients over the largest of their row that are what putting in supports left
+AGREEING = 1e-12  # of the largest prescribed value: functions of position that agree may differ by this
 STUCK = 1e-12  # square of a point's motion over its largest, by unit free displacements, that counts as none
 ORTHONORMAL = 1e-12
 SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count as one
@@ -182,12 +183,12 @@ def _together(
     rows, values, names = [], [], []
     first = n_own
     for body in bodies:
-        given, value = body.prescribed()
+        given, value = body.prescribed(histories)
         given_rows = sp.csr_matrix(given)
         shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
                               shape=(given.shape[1], free.shape[1]))  # fmt: skip
         rows.append(given_rows @ shift)
-        values.append(np.multiply.outer(value, np.eye(len(histories))[histories.index(body.rigid.amplitude)]))
+        values.append(value)
         names += [f"rigid body '{body.rigid.body}'"] * len(value)
         first += given.shape[1]
     node, direction, value, origin = conditions
@@ -233,7 +234,7 @@ def equations(model: Model) -> tuple[Sparse, NDArray[np.float64]]:
 def _without_rounding(rows: Sparse, size: NDArray[np.float64]) -> Sparse:
     """Without entries that are nothing beside the size of their row before supports were put in."""
     entries = rows.tocoo()
-    keep = np.abs(entries.data) > ROUNDING * size[entries.row]
+    keep = np.abs(entries.data) > CANCELLED * size[entries.row]
     return sp.csr_matrix((entries.data[keep], (entries.row[keep], entries.col[keep])), shape=rows.shape)
 
 
@@ -261,7 +262,7 @@ def _node_by_node(
     mesh, dim = model.mesh, model.dim
     node, direction, value, origin = conditions
     prescribed = np.zeros((len(mesh.points), dim, value.shape[1]))
-    slack = max(ROUNDING * np.abs(value).max(initial=0.0), 1e-39)
+    slack = max(AGREEING * np.abs(value).max(initial=0.0), 1e-39)
     order = np.lexsort((np.abs(direction).argmax(axis=1), node))
     node, direction, value, origin = node[order], direction[order], value[order], origin[order]
     plain = _plain(node, direction)

@@ -3,40 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.clearance import of_corners, partly_adjusted
-from abut.contact.coupling import Couple, Coupling, CouplingOptions, couple, default_reach, surface_degree
+from abut.contact.coupling import Couple, Coupling, couple, default_reach
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
-from abut.contact.node_to_segment import node_to_segment
-from abut.contact.opposite import by_target
 from abut.contact.pressure_space import (
-    DUAL,
     DUAL_P1,
     PressureSpace,
     inner_facets,
-    pressure_space,
     reduce,
-    resolve,
     with_plain_facets,
 )
 from abut.contact.rim import Rim, ends_on_target, goes_on, rim
 from abut.contact.shared import Functions, functions, one_each
-from abut.contact.sides import Sides, words
+from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
-from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
 from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import contact_normals
+from abut.problem.coupled_surfaces import coupled
 from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
@@ -228,7 +221,7 @@ def pair(
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
     normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if contact.frictional else None
-    contactor, coupling, space = _couple(contact, contactor, target, reach, couple, normals)
+    contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
@@ -340,44 +333,6 @@ def _in_space(model: Model, earlier: Pair, space: PressureSpace, constraints: Co
     if earlier.slip is None or earlier.slip.at_facets is None:
         return changed
     return _with_friction(model, changed, earlier.slip.operators, earlier.slip.at_facets, constraints)
-
-
-def _couple(
-    contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple,
-    normals: Array | None,
-) -> tuple[Surface, Coupling, PressureSpace]:  # fmt: skip
-    """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space."""
-    space: PressureSpace | None
-    if contact.method != "segment-to-segment":
-        coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
-        seen = couple(
-            contactor, target, 0, CouplingOptions(points=1, reach=reach, keep_gap_samples=True, adjust=contact.adjust)
-        )
-        coupling = replace(coupling, gap_samples=seen.gap_samples)
-    else:
-        tied = contact.kind == "tied"
-        name, degree = resolve(contact.pressure, contactor, not tied and (contact.law == LAWS[0] or contact.frictional))
-        if contact.frictional and name == DUAL_P1:
-            name = DUAL  # the law of friction looks at pressure and traction node by node
-        of_dual = name in (DUAL, DUAL_P1)
-        degree = surface_degree(contactor) if of_dual else degree
-        options = CouplingOptions(
-            rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
-            keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_gap_samples=not tied,
-            normals=normals,
-        )  # fmt: skip
-        closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
-        without = partial(couple, contactor, target, degree, options)
-        coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without)
-        coupling = of_corners(contactor, coupling) if of_dual else coupling
-        contactor = contactor if tied else by_target(contactor, target, coupling)
-        space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
-    if space is None or not coupling.segments.any():
-        raise InputError(
-            f"contact '{contact.name}': no facet of {words(contact.contactor)} faces {words(contact.target)} within "
-            "reach; check the names, that both surfaces' normals point out of their bodies, and the distance between them"
-        )
-    return contactor, coupling, space
 
 
 def _points(

@@ -9,10 +9,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.cells import MAX_FACET_NODES
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
-from abut.contact.geometry import Smoothing, facet_sizes, full_moments, smoothing
+from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.rim import Rim, goes_on
 from abut.mesh.surface import Surface
@@ -20,14 +21,16 @@ from abut.problem.adjusted import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
-from abut.problem.gap_fit import Sides, Sight, fit_change
+from abut.problem.first_touch import Sides, apart
+from abut.problem.gap_fit import Sides as FitSides
+from abut.problem.gap_fit import Sight, fit_change
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
-from abut.problem.slip_points import SlipPoints, slip_now
+from abut.problem.slip_points import Past, SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse
 
 Array = NDArray[np.float64]
-KNOWN = 0.05  # share of a function that the last step must have covered, for its slip to count
+KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
 FAR = 8.0  # facets up to which a target counts as one that covers a facet, for its functions
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
 GIVING = 8.0  # the same where a law of one's own lets them into each other
@@ -48,14 +51,14 @@ class ContactNow:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; points: of that step,
+    """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; past: of that step,
     None without friction; offset: what is added to all gaps now; inner: (n_facets,) not zero where functions of a dual
     space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this
     step, None for itself; fit: (9 n_facets,) as from ``Current.fit``, or None."""
 
     displacement: Array
     before: Array
-    points: SlipPoints | None
+    past: Past | None
     offset: float
     inner: Array | None = None
     following: Array | None = None
@@ -101,21 +104,36 @@ class Current:
         )  # fmt: skip
         if not pair.frictional:
             return now
-        assert place.points is not None
-        slip = slip_now(place.points, contactor, target, normals)
-        if tangents is None:
-            turned = tangents_2d(normals, *self._anchors)
-            part = weights_of_rows(pair.components[1].transfer.T)
-            made = rub_in_plane(part, by, added_up(part, by.operators, points), slip)
-            if mixed is not None:
-                made = mixed.rubbed_in_plane(made, slip, multipliers[pair.tangential])
-        else:
-            square = in_place(along[..., dim:].reshape(-1, dim, dim), operators)
-            turned, made = tangents.now.tangents, rub_in_space(down, by, square, slip, tangents, contactor)
-            if mixed is not None:
-                made = mixed.rubbed_in_space(made, slip, tangents)
-        covered = pair.space.plain.T @ place.points.moments(len(contactor))
-        return _with(now, made, turned, covered < KNOWN * pair.weight[pair.normal])
+        assert place.past is not None
+        seen = _Seen(pair, now.pair.contactor, target, normals, tangents, by, down, mixed)
+        past = place.past if place.following is None else self._led(place.past, place.following.astype(np.int64))
+        made, without = self._rubbed(seen, past, multipliers)
+        turned = tangents_2d(normals, *self._anchors) if tangents is None else tangents.now.tangents
+        return _with(now, made, turned, without)
+
+    def _led(self, past: Past, to: NDArray[np.int64]) -> Past:
+        """With the slips at which functions close added to those of the functions that they follow."""
+        along, n = self.pair.index[:, 1:], len(self.pair.space)
+        leader = np.where((to >= 0)[:, None], along[to], -1)
+        both = (along >= 0) & (leader >= 0)
+        shift = np.zeros_like(past.shift)
+        np.add.at(shift, leader[both] - n, past.shift[along[both] - n])
+        return replace(past, shift=shift)
+
+    def _rubbed(self, seen: _Seen, past: Past, multipliers: Array) -> tuple[Rubbing, NDArray[np.bool_]]:
+        """With slips from where they count, and the functions (n_functions,) whose slip does not."""
+        made, unknown = seen.rubbed(past.points, multipliers), ~self._covers(past.points, KNOWN)
+        shift = past.shift
+        if past.late is not None:
+            late, other = unknown & self._covers(past.late, BARELY), seen.rubbed(past.late, multipliers)
+            unknown &= ~late
+            made = _either(made, other, self.pair.of_functions(late)[self.pair.tangential])
+        return replace(made, slip=made.slip - shift), unknown
+
+    def _covers(self, points: SlipPoints, share: float) -> NDArray[np.bool_]:
+        """(n_functions,) of which points cover so much."""
+        covered = self.pair.space.plain.T @ points.moments(len(self.pair.contactor))
+        return np.asarray(covered >= share * self.pair.weight[self.pair.normal])
 
     def _gaps(self, down: Sparse, by: CouplingTangent, mixed: Mixed | None, offset: float) -> tuple[Array, Sparse]:
         """Weighted gaps (n_functions,) with their derivative, theory (G2), (G16); where the law looks at the mean gap, as if
@@ -144,11 +162,6 @@ class Current:
         points = np.ascontiguousarray(self.pair.contactor.points + displacement.reshape(-1, self.pair.contactor.dim))
         return replace(self.pair.contactor, points=points), replace(self.pair.target, points=points)
 
-    def points(self, displacement: Array) -> SlipPoints:
-        """The integration points at a displacement, from which the next step's slip counts."""
-        options = self._options()
-        return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
-
     @cached_property
     def fits(self) -> bool:
         """Whether gaps are fitted: those of dual functions on quadratic facets, without friction."""
@@ -158,10 +171,49 @@ class Current:
     def fit(self, displacement: Array) -> Array:
         """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""
         contactor, target = self.surfaces(displacement)
-        sides = Sides(self.pair.contactor, self.pair.target, contactor, target)
+        sides = FitSides(self.pair.contactor, self.pair.target, contactor, target)
         sight = Sight.of(contactor, target, self._options(), self._across)
         share = dual_share(sight.covered(len(contactor)) / full_moments(contactor, 0)[:, 0])
         return fit_change(sides, sight, self._across, share)
+
+    def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past:
+        """From where the next step's slip counts, of a converged state with multipliers (n,) closed there."""
+        points = self._points(displacement)
+        shift = self._apart(points, displacement)
+        return Past(
+            points, np.where(self.pair.of_functions(closed[self.pair.normal])[self.pair.tangential], 0.0, shift)
+        )
+
+    def with_late(self, past: Past, before: Array, now: Array, asked: NDArray[np.bool_]) -> Past:
+        """With points at displacements ``now`` for those of the functions asked for, (n,) multipliers, that were hardly
+        covered at ``before``, the last converged ones. The same object where there are none."""
+        unknown = ~self._covers(past.points, KNOWN)
+        late = asked[self.pair.normal] & unknown
+        missing = late if past.late is None else late & ~self._covers(past.late, BARELY)
+        if not missing.any():
+            return past
+        used = np.flatnonzero(abs(self.pair.space.plain) @ late.astype(float))
+        points = self._points(now).on(np.unique(used // MAX_FACET_NODES))
+        late = unknown & self._covers(points, BARELY)
+        shift = np.where(self.pair.of_functions(late)[self.pair.tangential], self._apart(points, before), past.shift)
+        return Past(past.points, shift, points) if late.any() else past
+
+    def _points(self, displacement: Array) -> SlipPoints:
+        options = self._options()
+        return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
+
+    def _apart(self, points: SlipPoints, displacement: Array) -> Array:
+        """Weighted slips (n_tangential,) at which what is apart at a displacement closes, theory (G19)."""
+        contactor, target = self.surfaces(displacement)
+        normals = self._normals.at(contactor)
+        sides = Sides(contactor, target, normals.values, nodal_normals(target, self._target_across))
+        slip = apart(points, sides)
+        mixture = self._mixture(contactor, target, None)
+        pair = self.pair if mixture is None else mixed_part(self.pair, mixture)
+        if contactor.dim == 2:
+            return np.asarray(pair.components[1].transfer.T @ slip[:, 0])
+        turned = self._frames.at(contactor, normals).tangents
+        return np.asarray(np.einsum("nd,nbd->nb", pair.space.transfer.T @ slip, turned).ravel()[self._kept])
 
     def shown(self, displacement: Array, points: bool = False) -> Coupling:
         """With what results ask for beside it, the gaps at samples adjusted; points: integration points, too."""
@@ -213,6 +265,10 @@ class Current:
         return smoothing(self.pair.contactor)
 
     @cached_property
+    def _target_across(self) -> Smoothing:
+        return smoothing(self.pair.target)
+
+    @cached_property
     def _nodes(self) -> NDArray[np.int64]:
         return np.union1d(self.pair.contactor.node_ids, self.pair.target.node_ids)
 
@@ -245,6 +301,41 @@ class Current:
         index = self.pair.index[:, 1:]
         along = np.where(index >= 0, multipliers[np.maximum(index, 0)], 0.0)
         return Tangents(self._frames, self._frames.at(contactor, normals), along, self._kept)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A pair where it is, with its functions as they are mixed there. down: (n_functions, 9 n_facets) of the functions;
+    tangents: None in 2D; mixed: None where no function is a dual one."""
+
+    pair: Pair
+    contactor: Surface
+    target: Surface
+    normals: MovingNormals
+    tangents: Tangents | None
+    by: CouplingTangent
+    down: Sparse
+    mixed: Mixed | None
+
+    def rubbed(self, points: SlipPoints, multipliers: Array) -> Rubbing:
+        """With the slip of points, tractions being those of multipliers (n,)."""
+        slip, n_points = slip_now(points, self.contactor, self.target, self.normals), len(self.contactor.points)
+        if self.tangents is None:
+            part = weights_of_rows(self.pair.components[1].transfer.T)
+            made = rub_in_plane(part, self.by, added_up(part, self.by.operators, n_points), slip)
+            along = multipliers[self.pair.tangential]
+            return made if self.mixed is None else self.mixed.rubbed_in_plane(made, slip, along)
+        operators = added_up(self.down, self.by.operators, n_points)
+        square = in_place(operators[0][..., 3:].reshape(-1, 3, 3), operators)
+        made = rub_in_space(self.down, self.by, square, slip, self.tangents, self.contactor)
+        return made if self.mixed is None else self.mixed.rubbed_in_space(made, slip, self.tangents)
+
+
+def _either(one: Rubbing, other: Rubbing, those: NDArray[np.bool_]) -> Rubbing:
+    """With the slips of the other in ``those`` rows (m,); forces are the same."""
+    keep, take = (sp.diags(mask.astype(float)) for mask in (~those, those))
+    by_position = keep @ one.by_position + take @ other.by_position
+    return replace(one, slip=np.where(those, other.slip, one.slip), by_position=by_position.tocsr())
 
 
 def _load(pair: Pair, multipliers: Array, tangents: Tangents | None) -> ContactLoad:

@@ -13,7 +13,7 @@ from abut.errors import SingularModelError
 from abut.types import Sparse
 
 DEPENDENT = 1e-8  # coefficients over the constraint's own from which on it says something new
-ROUNDING = 1e-13  # coefficients over the largest that are what subtractions left
+CANCELLED = 1e-13  # coefficients over the largest that are what subtractions left
 PIVOT = 0.1  # coefficients over the largest among which the pivot may be chosen so that few others change
 AGREE = 1e-9  # of the values that make it up: what may be missing where constraints repeat each other
 NAMED = 6  # constraints named in an error
@@ -61,7 +61,7 @@ def eliminate(rows: Sparse, values: NDArray[np.float64], names: Sequence[str]) -
             if np.abs(value).max() > max(slack, AGREE * size):
                 raise SingularModelError(_contradiction(i, through, solved, names))
             continue
-        row = {k: c for k, c in row.items() if abs(c) > ROUNDING * largest}
+        row = {k: c for k, c in row.items() if abs(c) > CANCELLED * largest}
         pivot = min((k for k, c in row.items() if abs(c) >= PIVOT * largest), key=lambda k: (uses[k], -abs(row[k]), k))
         by = row.pop(pivot)
         solved[pivot] = Expression({k: -c / by for k, c in row.items()}, value / by, i, through)

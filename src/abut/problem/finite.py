@@ -20,7 +20,7 @@ from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
-from abut.problem.slip_points import SlipPoints
+from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.terms import Motion, Share
 from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
@@ -31,6 +31,8 @@ POINTS = "points"  # whose history is the integration points of the last step
 FIT = "fit"  # whose history is what fits add to the weighted gaps, in the step that ended
 SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
 SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
+SHIFT = "shift"  # whose history is where points touch that were apart
+LATE = "late"  # whose history is the points for functions that the last state's do not cover, in a step that is solved again
 Array = NDArray[np.float64]
 
 
@@ -75,7 +77,7 @@ class FiniteProblem(ContactProblem):
 
     def start(self) -> State:
         """As in ``Problem``: multipliers that touch at the outset are closed."""
-        rest = at_rest(self.n_free, int(self.operator.shape[0]))
+        rest = self._marked(at_rest(self.n_free, int(self.operator.shape[0])))
         rest, closed = self.with_functions(rest, rest), []
         for pair, now in zip(self.pairs, self._contacts(rest, rest, self.displacement(rest), rest)):
             touching = (now.gap <= TOUCHING * pair.size * pair.weight)[pair.normal] & ~bare(now.pair)
@@ -170,15 +172,38 @@ class FiniteProblem(ContactProblem):
         history = state.history.with_term(FOLLOWING, following)
         return replace(state, multipliers=np.concatenate(values), status=np.concatenate(status), history=history)
 
+    def with_late_points(self, before: State, here: Array, asked: NDArray[np.bool_]) -> State:
+        """A converged state from which a step begins that ends near displacements ``here`` (dim n_points,): with points for
+        multipliers (n,) that were hardly covered before. The same object where there is no such thing."""
+        late, shift, there = {}, {}, self.displacement(before)
+        for kind, part in zip(self.moving, self.split(asked)):
+            if kind is not None and kind.pair.frictional:
+                name, past = kind.pair.contact.name, self._past(kind, before)
+                again = kind.with_late(past, there, here, part)
+                if again is not past and again.late is not None:
+                    late[name], shift[name] = again.late.array, again.shift
+        if not late:
+            return before
+        return replace(before, history=before.history.with_term(LATE, late).with_term(SHIFT, shift))
+
     def _marked(self, state: State) -> State:
         """With the integration points from which the next step's slip counts."""
-        here = self.displacement(state)
-        points = {
-            kind.pair.contact.name: kind.points(here).array
-            for kind in self.moving
-            if kind is not None and kind.pair.frictional
-        }
-        return replace(state, history=state.history.with_term(POINTS, points))
+        here, points, shift = self.displacement(state), {}, {}
+        for kind, closed in zip(self.moving, self.split(state.closed)):
+            if kind is not None and kind.pair.frictional:
+                past = kind.past(here, closed)
+                points[kind.pair.contact.name], shift[kind.pair.contact.name] = past.points.array, past.shift
+        history = state.history.without(LATE).with_term(POINTS, points).with_term(SHIFT, shift)
+        return replace(state, history=history)
+
+    def _past(self, kind: Current, before: State) -> Past:
+        """As ``_marked`` left it."""
+        name, history = kind.pair.contact.name, before.history
+        late = history.of(LATE).get(name)
+        return Past(
+            SlipPoints.from_array(history.of(POINTS)[name]), history.of(SHIFT)[name],
+            None if late is None else SlipPoints.from_array(late),
+        )  # fmt: skip
 
     def _expanded(self, before: State, now: State, here: Array, change: Array) -> tuple[Linearised, list[Share]]:
         """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
@@ -234,21 +259,17 @@ class FiniteProblem(ContactProblem):
     def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
         factors, there = weights(self.model.histories, now.time), self.displacement(before)
-        marks, inner, fits = (before.history.of(term) for term in (POINTS, INNER, FIT))
-        following, result = before.history.of(FOLLOWING), []
+        inner, following, fits = (before.history.of(term) for term in (INNER, FOLLOWING, FIT))
+        result = []
         for pair, kind, tie, part in zip(self.pairs, self.moving, self.ties, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, tie, here))
                 continue
             constant, varying = offsets(self.model, pair.contact)
-            mark = marks.get(pair.contact.name)
-            points = None
-            if pair.frictional:
-                points = kind.points(there) if mark is None else SlipPoints.from_array(mark)
+            past = self._past(kind, before) if pair.frictional else None
             offset = constant + float(varying @ factors)
-            name = pair.contact.name
-            of_step = (each.get(name) for each in (inner, following, fits))
-            result.append(kind.at(Place(here, there, points, offset, *of_step), part))
+            chosen = (each.get(pair.contact.name) for each in (inner, following, fits))
+            result.append(kind.at(Place(here, there, past, offset, *chosen), part))
         return result
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.mesh.mesh import Mesh
 from abut.model import Model
-from abut.model.conditions import Rigid
+from abut.model.conditions import History, Rigid
 from abut.problem.rigid_modes import motions
 from abut.types import Sparse
 
@@ -49,21 +50,24 @@ class RigidBody:
         matrix.eliminate_zeros()
         return matrix
 
-    def prescribed(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Rows (m, n_unknowns) and values (m,) of the components that are given, at the reference."""
+    def prescribed(self, histories: Sequence[History]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Rows (m, n_unknowns) and values (m, n_histories) of the components that are given, at the reference."""
         shift = self.moved(self.reference[None])[0]
-        rows, values = [np.zeros((0, len(self.components)))], []
+        rows, values, columns = [np.zeros((0, len(self.components)))], [], []
         for k, name in enumerate(self.components):
             value = getattr(self.rigid, name)
             if value is None:
                 continue
+            columns.append(histories.index(self.rigid.history(name)))
             if name.startswith("r"):
                 rows.append(np.eye(len(self.components))[k : k + 1])
                 values.append(value * self.size)
             else:
                 rows.append(shift["xyz".index(name)][None])
                 values.append(value)
-        return np.concatenate(rows), np.array(values)
+        given = np.zeros((len(values), len(histories)))
+        given[np.arange(len(values)), columns] = values
+        return np.concatenate(rows), given
 
     def motion(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim)."""

@@ -64,11 +64,27 @@ class SlipPoints:
         """All of it, (n, 30), for a restart."""
         return np.column_stack([self.facet, self.target_facet, self.weight, self.pressure, self.own, self.other])
 
+    def on(self, facets: NDArray[np.int64]) -> SlipPoints:
+        """Those on some facets of the contactor."""
+        keep = np.isin(self.facet, facets)
+        parts = (self.weight, self.pressure, self.own, self.other)
+        return SlipPoints(self.facet[keep], self.target_facet[keep], *(part[keep] for part in parts))
+
     def moments(self, n_facets: int) -> Array:
         """int H_k over what was covered, facet by facet, (9 n_facets,)."""
         result = np.zeros((n_facets, MAX_FACET_NODES))
         np.add.at(result, self.facet, self.weight[:, None] * self.pressure)
         return result.ravel()
+
+
+@dataclass(frozen=True)
+class Past:
+    """From where slip counts in a step. points: of the last state; shift: (n_tangential,) weighted slips that do not count,
+    as points had not touched yet, theory (G19); late: points for functions that those of the last state do not cover."""
+
+    points: SlipPoints
+    shift: Array
+    late: SlipPoints | None = None
 
 
 @dataclass(frozen=True)

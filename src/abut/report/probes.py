@@ -20,7 +20,7 @@ CHARTS = (  # quantities of one chart: its title, its quantities
 )
 PLANE = ("stress_yz", "stress_zx")  # zero in two dimensions
 OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
-ROUNDING = 1e-9  # of a gap, over the length of the line
+NO_GAP = 1e-9  # of a gap, over the length of the line
 PEAK = "value farthest from zero"
 
 
@@ -71,7 +71,7 @@ def charts(solution: Solution) -> list[Chart]:
 
 def _opens(gap: NDArray[np.float64], distance: NDArray[np.float64]) -> bool:
     """Whether a gap is more than rounding anywhere."""
-    return bool(np.nanmax(np.abs(gap), initial=0.0) > ROUNDING * np.ptp(distance))
+    return bool(np.nanmax(np.abs(gap), initial=0.0) > NO_GAP * np.ptp(distance))
 
 
 def _over_time(results: Sequence[ProbeResult]) -> dict[str, NDArray[np.float64]]:

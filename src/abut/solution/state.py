@@ -31,6 +31,10 @@ class History:
             History({**self.arrays, **{f"{term}.{part}": values for part, values in parts.items()}}) if parts else self
         )
 
+    def without(self, term: str) -> History:
+        """The same without a term's arrays."""
+        return History({name: values for name, values in self.arrays.items() if name.partition(".")[0] != term})
+
 
 @dataclass(frozen=True)
 class Largest:

@@ -1,0 +1,41 @@
+"""Where a load step has failed: contact that hangs on one node, or goes on opening and closing, and how to mend it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.problem.contact_pairs import Pair
+from abut.problem.problem import ContactProblem
+from abut.solution.state import State
+
+FEW = 3  # nodes that go on changing, up to which they are named
+
+
+def hanging(problem: ContactProblem, state: State, changing: NDArray[np.bool_]) -> str:
+    """Which contacts press on one node of the contactor alone at the last converged state, or go on changing, where, and
+    what to do; empty where none does. changing: (n,) multipliers whose status the last iteration changed."""
+    told, first = [], 0
+    for pair in problem.pairs:
+        own = slice(first, first := first + len(pair))
+        if pair.tied:
+            continue
+        pressed, restless = (_nodes(pair, part[own][pair.normal]) for part in (state.closed, changing))
+        if len(pressed) == 1:
+            told.append(_told(problem, pair, pressed, "hangs on one node of the contactor"))
+        elif 0 < len(restless) <= FEW:
+            told.append(_told(problem, pair, restless, "goes on opening and closing"))
+    return "; ".join(told)
+
+
+def _nodes(pair: Pair, functions: NDArray[np.bool_]) -> NDArray[np.int64]:
+    nodes = np.unique(pair.space.node[functions])
+    return nodes[nodes >= 0]
+
+
+def _told(problem: ContactProblem, pair: Pair, nodes: NDArray[np.int64], what: str) -> str:
+    """A sharp corner has a function on each of its faces."""
+    sharp = any(int((pair.space.node == node).sum()) > 1 for node in nodes)
+    places = [f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})" for node in nodes]
+    cure = ", a sharp corner or edge: round it off by a few facets" if sharp else ": refine the contactor there"
+    return f"contact '{pair.contact.name}' {what}, at {' and '.join(places)} in the undeformed mesh{cure}"
