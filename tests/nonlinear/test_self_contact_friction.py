@@ -16,7 +16,7 @@ from abut.job import load_job
 from abut.solution import Solution
 from abut.solution.state import State
 from models.clamps import DEPTH, NAMED, WHOLE, balanced, clamp, tube, wrung
-from models.sliding import finite, tangent_errors
+from models.sliding import finite, tangent_errors_at
 
 TENTHS = abut.SolveOptions(times=tuple(np.linspace(0.1, 1.0, 10)))
 
@@ -59,19 +59,21 @@ def test_a_flattened_tube_touches_itself_inside() -> None:
 
 def test_extruded_by_one_cell() -> None:
     """Between two planes hex8 is quad4 in plane strain: to the square of the turn of normals within a facet, by which a
-    traction that is laid on the surface at each point (3D) is shorter than one that turns with it (2D)."""
+    traction that is laid on the surface at each point (3D) is shorter than one that turns with it (2D), and to the other
+    integration points of theory (G19), 1e-5."""
     flat, deep = (closed(clamp, cell, WHOLE).contacts[0] for cell in ("quad4", "hex8"))
-    assert np.abs(deep.force[:2] / DEPTH - flat.force).max() < 1e-6 * np.abs(flat.force).max()
-    assert deep.max_pressure == pytest.approx(flat.max_pressure, rel=1e-5)
+    assert np.abs(deep.force[:2] / DEPTH - flat.force).max() < 2e-5 * np.abs(flat.force).max()
+    assert deep.max_pressure == pytest.approx(flat.max_pressure, rel=2e-5)
     assert deep.friction is not None
     assert flat.friction is not None
-    assert np.abs(deep.friction.force[:2] / DEPTH - flat.friction.force).max() < 1e-5 * np.abs(flat.force).max()
+    assert np.abs(deep.friction.force[:2] / DEPTH - flat.friction.force).max() < 2e-5 * np.abs(flat.force).max()
 
 
 @pytest.mark.parametrize("cell", ["hex8", pytest.param("tet10", marks=pytest.mark.exhaustive)])
 def test_jaws_pushed_across_and_turned(cell: str) -> None:
     """Nothing of it is plane. The jaws slip all over: each function carries the coefficient times its pressure against its
-    slip, forces and moments of both sides add up to none, and the certificate's lines hold."""
+    slip, forces and moments of both sides add up to none, and the certificate's lines hold. Friction follows the load
+    steps, which tet10 has others of when it looks at the whole body: 1e-4."""
     states: list[State] = []
     model = wrung(cell, friction=0.3)
     whole = abut.solve(model, on_step=lambda _, saved: states.append(saved.state))
@@ -79,7 +81,7 @@ def test_jaws_pushed_across_and_turned(cell: str) -> None:
     assert whole.converged
     assert named.converged
     balanced(whole)
-    same(whole, named, 1e-9)
+    same(whole, named, 1e-9 if len(whole.steps) == len(named.steps) else 1e-4)
     wanted = {"friction cone", "friction direction", "force balance", "moment balance", "energy balance"}
     checks = {check.name: check.passed for check in whole.certificate}
     assert all(passed for name, passed in checks.items() if name in wanted)
@@ -100,7 +102,10 @@ def test_tangent_is_the_derivative() -> None:
     model = wrung("hex8", friction=0.3)
     states: list[State] = []
     abut.solve(replace(model, solve=abut.SolveOptions(times=(0.5, 0.75))), on_step=lambda _, s: states.append(s.state))
-    assert max(tangent_errors(finite(model), 1e-3, *states[-2:])) < 1e-7
+    problem, (before, about), rng = finite(model), states[-2:], np.random.default_rng(3)
+    unknowns = about.unknowns + 1e-3 * rng.standard_normal(problem.n_free)
+    at = replace(before, time=0.7, unknowns=unknowns, multipliers=rng.uniform(0.0, 5.0, len(before.multipliers)))
+    assert max(tangent_errors_at(problem, before, at, rng.standard_normal(problem.n_free), 1e-6)) < 1e-7
 
 
 def test_every_pair_of_bodies_found(tmp_path: Path) -> None:

@@ -12,9 +12,8 @@ from abut.contact.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipPoints
 
-ROLLING = (
-    1.0 / 3.0
-)  # share of the contactor's normal in the way on which surfaces that roll on each other come together
+ROLLING = 1.0 / 3.0  # share of a round contactor's normal in the way on which it and a flat target come together
+FLAT = 1e-9  # turn of the normal over a facet that is none
 Array = NDArray[np.float64]
 
 
@@ -36,7 +35,7 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
     facing = _unit(_interpolated(points.other, sides.target_normals[other]))
     between = _at(sides.contactor, own, points.own) - _at(sides.target, other, points.other)
     bends, target_bends = _bend(sides.contactor, sides.normals)[own], _bend(sides.target, sides.target_normals)[other]
-    share = (ROLLING * (bends + 2.0 * target_bends) / np.maximum(bends + target_bends, 1e-300))[:, None]
+    share = (ROLLING * (bends + 2.0 * target_bends) / (bends + target_bends))[:, None]
     moved = _turned_along(between, _unit(share * across + (1.0 - share) * facing), across)
     if sides.contactor.dim == 2:
         moved = (across[:, 0] * moved[:, 1] - across[:, 1] * moved[:, 0])[:, None]
@@ -48,9 +47,14 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
 
 
 def _bend(surface: Surface, normals: Array) -> Array:
-    """How much the normal turns over each facet, by its size, (n_facets,)."""
-    turn = np.linalg.norm(normals - normals[:, :1], axis=2)
-    return np.asarray(np.where(surface.nodes >= 0, turn, 0.0).max(axis=1) / facet_sizes(surface) + 1e-12)
+    """How much the normal turns along each facet, per length, (n_facets,)."""
+    points, used = surface.points[np.maximum(surface.nodes, 0)], surface.nodes >= 0
+    result = FLAT / facet_sizes(surface)
+    for k in range(MAX_FACET_NODES):
+        way, turn = (np.linalg.norm(each - each[:, k : k + 1], axis=2) for each in (points, normals))
+        along = np.where(used & used[:, k : k + 1] & (way > 0.0), turn / np.where(way > 0.0, way, 1.0), 0.0)
+        result = np.maximum(result, along.max(axis=1) + FLAT / facet_sizes(surface))
+    return np.asarray(result)
 
 
 def _turned_along(vectors: Array, start: Array, end: Array) -> Array:
