@@ -24,8 +24,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
-                                bool gap_samples, bool axisymmetric, double reach, double rounding, bool hidden,
-                                Matrix<double> kin_c, Matrix<double> kin_t) {
+                                bool gap_samples, bool axisymmetric, double reach, double largest_gap, double rounding,
+                                bool hidden, Matrix<double> kin_c, Matrix<double> kin_t) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
   add_kin(contactor, kin_c), add_kin(target, kin_t);
@@ -36,7 +36,8 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
   {
     nb::gil_scoped_release release;
     c = couple({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
-               rule_table, {degree, vectorial, keep_points, gap_samples, axisymmetric, reach, rounding, hidden});
+               rule_table,
+               {degree, vectorial, keep_points, gap_samples, axisymmetric, reach, largest_gap, rounding, hidden});
   }
   nb::dict out;
   auto entries = [&](const char *name, Entries &e) {
@@ -85,8 +86,8 @@ void bind_interface(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
-        nb::arg("gap_samples"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("rounding"), nb::arg("hidden"),
-        nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
+        nb::arg("gap_samples"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("largest_gap"), nb::arg("rounding"),
+        nb::arg("hidden"), nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
         "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
 }
 

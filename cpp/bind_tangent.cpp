@@ -17,10 +17,10 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
                                Matrix<std::int32_t> nodes_t, Tensor3<double> rules, Vector<std::int32_t> order_c,
                                Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                Vector<std::int32_t> subdivide_t, int degree, bool axisymmetric, double reach,
-                               double rounding, bool hidden, Matrix<double> kin_c, Matrix<double> kin_t,
-                               Matrix<double> pressure, Tensor3<double> traction, Matrix<double> turned,
-                               Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points,
-                               bool tangential) {
+                               double largest_gap, double rounding, bool hidden, Matrix<double> kin_c,
+                               Matrix<double> kin_t, Matrix<double> pressure, Tensor3<double> traction,
+                               Matrix<double> turned, Matrix<std::int32_t> normal_numbers, int target_offset,
+                               std::size_t n_points, bool tangential) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
   add_kin(contactor, kin_c), add_kin(target, kin_t);
@@ -37,7 +37,7 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
   {
     nb::gil_scoped_release release;
     lists = tangent({contactor, order_c.data(), subdivide_c.data()}, {target, order_t.data(), subdivide_t.data()},
-                    rule_table, {degree, true, false, false, axisymmetric, reach, rounding, hidden}, load,
+                    rule_table, {degree, true, false, false, axisymmetric, reach, largest_gap, rounding, hidden}, load,
                     {normal_numbers.data(), target_offset});
   }
   nb::dict out;
@@ -94,9 +94,10 @@ void bind_tangent(nb::module_ &m) {
         nb::arg("kinds_t").noconvert(), nb::arg("nodes_t").noconvert(), nb::arg("rules").noconvert(),
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("axisymmetric"), nb::arg("reach"),
-        nb::arg("rounding"), nb::arg("hidden"), nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
-        nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(), nb::arg("turned").noconvert(),
-        nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"), nb::arg("tangential"),
+        nb::arg("largest_gap"), nb::arg("rounding"), nb::arg("hidden"), nb::arg("kin_c").noconvert(),
+        nb::arg("kin_t").noconvert(), nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(),
+        nb::arg("turned").noconvert(), nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"),
+        nb::arg("n_points"), nb::arg("tangential"),
         "The coupling and its derivatives by points and nodal normals; see abut.contact.coupling_tangent.");
   m.def("slip_tangent", &slip_tangent, nb::arg("points_c").noconvert(), nb::arg("nodes_c").noconvert(),
         nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(), nb::arg("nodes_t").noconvert(),

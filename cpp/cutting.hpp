@@ -264,7 +264,8 @@ private:
 
   Reach reach(std::size_t f, int t) const {
     const double far = both_.options.reach;
-    return {far, std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
+    return {both_.options.largest_gap,
+            std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
   }
 
   // Says what each segment is for.

@@ -60,14 +60,15 @@ struct Piece {
 
 // What is asked of the integration.
 struct Options {
-  int degree;        // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
-  bool vectorial;    // couple along the normal (dim values an entry) or componentwise (1 value an entry)
-  bool keep_points;  // also return every integration point
-  bool gap_samples;  // also return where each segment's corners and middle see the target
-  bool axisymmetric; // coordinates are (r, z): integrals run round the axis
-  double reach;      // largest distance between the surfaces, either sign
-  double rounding;   // gaps below this are rounding errors of the coordinates: none
-  bool hidden;       // count also what lies behind something nearer: theory (S12)
+  int degree;         // of the pressure functions: 0, 1 (corners), 2 (the facet's own)
+  bool vectorial;     // couple along the normal (dim values an entry) or componentwise (1 value an entry)
+  bool keep_points;   // also return every integration point
+  bool gap_samples;   // also return where each segment's corners and middle see the target
+  bool axisymmetric;  // coordinates are (r, z): integrals run round the axis
+  double reach;       // largest distance between the surfaces, either sign
+  double largest_gap; // the same outside of the body; no more than reach
+  double rounding;    // gaps below this are rounding errors of the coordinates: none
+  bool hidden;        // count also what lies behind something nearer: theory (S12)
 };
 
 // Entries are (row, column, values): row MAX_FACET_NODES f + k for pressure function k of contactor facet f, column a

@@ -125,7 +125,8 @@ class CouplingOptions:
     rule:   "gauss" or "newton-cotes".
     points: per direction on each segment, or "auto": as many as let every facet meet its own int N_i N_j to 1e-12,
             theory (Q4), (Q5) (newton-cotes: as far as its nine points go); or what ``plan_pair`` decided.
-    reach:  largest distance between the surfaces, length; see ``default_reach``.
+    reach:  largest distance between the surfaces, length; see ``default_reach``. largest_gap: the same outside of the
+            bodies, where overlaps may be larger; ``reach`` where left out.
     adjust: gaps and overlaps up to this size count as zero, length.
     hidden: count targets behind a nearer one, too; else each point of the contactor is paired with the nearest target
             only, theory (S12).
@@ -138,6 +139,7 @@ class CouplingOptions:
     rule: str = "gauss"
     points: int | str | Plan = "auto"
     reach: float | None = None
+    largest_gap: float | None = None
     adjust: float = 0.0
     hidden: bool = False
     componentwise: bool = False
@@ -223,6 +225,7 @@ def cutting_arguments(
             contactor_points=plan.contactor_points[facets],
             contactor_divisions=plan.contactor_divisions[facets],
         )
+    reach = default_reach(contactor, target) if options.reach is None else options.reach
     return {
         "points_c": part.points,
         "kinds_c": part.kinds,
@@ -237,7 +240,8 @@ def cutting_arguments(
         "subdivide_c": plan.contactor_divisions,
         "subdivide_t": plan.target_divisions,
         "axisymmetric": contactor.axisymmetric,
-        "reach": default_reach(contactor, target) if options.reach is None else options.reach,
+        "reach": reach,
+        "largest_gap": reach if options.largest_gap is None else options.largest_gap,
         "rounding": no_gap(contactor, target, options.adjust),
         "hidden": options.hidden,
         **_kin(part, target),

@@ -31,7 +31,6 @@ from abut.types import Sparse
 
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
-FAR = 8.0  # facets up to which a target counts as one that covers a facet, for its functions
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
 GIVING = 8.0  # the same where a law of one's own lets them into each other
 
@@ -246,8 +245,7 @@ class Current:
         """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""
         if self.pair.space.ordinary:
             return None
-        options = replace(self._options(), reach=FAR * self._facet)
-        covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
+        covered = couple(contactor, target, self.pair.coupling.degree, self._options(), across=self._across)
         return Mixture.of(contactor, covered, inner)
 
     def _options(self, moved: Array | None = None) -> CouplingOptions:
@@ -256,8 +254,9 @@ class Current:
         if moved is not None:
             nodes = moved.reshape(-1, self.pair.contactor.dim)[self._nodes]
             way = float(np.linalg.norm(nodes, axis=1).max(initial=0.0))
-        near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
-        return CouplingOptions(rule.rule, rule.points, reach=near * self._facet + 2.0 * way)
+        near = float(__import__('os').environ.get('R',NEAR)) if isinstance(self.pair.contact.law, str) else GIVING
+        reach = near * self._facet
+        return CouplingOptions(rule.rule, rule.points, reach + 2.0 * way, largest_gap=reach)
 
     @cached_property
     def _across(self) -> Smoothing:
