@@ -89,8 +89,8 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
 
 
 def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions of "dual-P1" where contact is closed at the end of the step, and with slips of what has
-    come to be covered in it; as it was if that fails."""
+    """Once more with the functions that belong to the end of the step (those of "dual-P1" where contact is closed, those
+    that follow others) and with slips of what has come to be covered in it; as it was if that fails."""
     if not found.converged:
         return step, found
     problem, closed = step.problem, found.state.closed
