@@ -167,10 +167,10 @@ class Equation:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations: translation x, y, z of the ``reference`` point (length) and
-    rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric: only y), times ``amplitude``, or
-    those named in ``amplitudes`` times their own; components left out are free. Reference: the mean of the body's points,
-    where left out. The body needs no material, and in contact it is the target.
+    """A body that moves as a whole, by small rotations, or any with ``kinematics="finite"``: translation x, y, z of the
+    ``reference`` point (length) and rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric:
+    only y), times ``amplitude``, or those named in ``amplitudes`` times their own; components left out are free.
+    Reference: the mean of the body's points, where left out. The body needs no material, and in contact it is the target.
 
     >>> import abut
     >>> punch = abut.Rigid("punch", y=-0.01, rz=0.0)  # pressed down, kept upright, free to move sideways

@@ -19,11 +19,8 @@ from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
 from abut.solution.state import CLOSED, OPEN, State
 
-SHORTEST, DOUBLINGS, BISECTIONS = (
-    1e-9,
-    40,
-    50,
-)  # of a gap over the facet size, in the search for one that meets a pressure
+SHORTEST = 1e-9  # first step over the facet size, in the search for a gap that meets a pressure
+DOUBLINGS, BISECTIONS = 40, 50  # of that step, until there is such a gap in it, and then of the step
 Vector = NDArray[np.float64]
 
 

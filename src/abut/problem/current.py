@@ -163,9 +163,9 @@ class Current:
 
     @cached_property
     def fits(self) -> bool:
-        """Whether gaps are fitted: those of dual functions on quadratic facets, without friction."""
+        """Whether gaps are fitted: those of dual functions on quadratic facets."""
         pair = self.pair
-        return pair.space.degree < surface_degree(pair.contactor) and not pair.frictional and not pair.space.ordinary
+        return pair.space.degree < surface_degree(pair.contactor) and not pair.space.ordinary
 
     def fit(self, displacement: Array) -> Array:
         """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""

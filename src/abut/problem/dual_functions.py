@@ -23,8 +23,7 @@ from abut.problem.rubbing import Rubbing, Tangents
 from abut.problem.slip_points import SlipNow
 from abut.types import Sparse
 
-HALF = 0.5  # share of a facet covered by the target, from which down its functions are the ordinary ones
-SLOPE = 1.0 / (1.0 - WHOLE - HALF)
+CLOSE = 1.0 - WHOLE  # covered share of a facet from which up its functions are the dual ones
 Array = NDArray[np.float64]
 
 
@@ -41,7 +40,7 @@ class Mixture:
     @classmethod
     def of(cls, contactor: Surface, coupling: Coupling, inner: Array | None) -> Mixture:
         """Of a coupling by functions of the facets' corners. A facet and all that have a point with it covered wholly: dual
-        functions; half of one or less: ordinary ones. A dual function is negative on a part of its facet, which must not
+        functions; one not covered at all: ordinary ones. A dual function is negative on a part of its facet, which must not
         be all that is covered; and the gap at a node, which it gives, may be that beyond the edge of the target.
 
         inner: (n_facets,) not zero where functions are the ordinary ones in this step; None for nowhere."""
@@ -63,7 +62,8 @@ class Mixture:
         of = self.least[between]
         covered = _of_facets(of, len(self.share)).T @ by_weight
         ratio = sp.diags(self.covered[of] / self.area[of])
-        by_share = sp.diags(SLOPE / self.area[of]) @ (covered - ratio @ area_change(contactor, of))
+        slope = 2.0 / CLOSE**2 * self.covered[of] / self.area[of] ** 2
+        by_share = sp.diags(slope) @ (covered - ratio @ area_change(contactor, of))
         return (_of_facets(between, len(self.share)) @ by_share).tocsr()
 
 
@@ -128,8 +128,9 @@ class Mixed:
 
 
 def dual_share(covered: Array) -> Array:
-    """Share of dual functions on facets of which the target covers ``covered``, both (n_facets,)."""
-    return np.asarray(np.clip(SLOPE * (covered - HALF), 0.0, 1.0))
+    """Share of dual functions on facets of which the target covers ``covered``, both (n_facets,): the square leaves every
+    function a positive integral over whatever is covered, be it where the dual one is negative."""
+    return np.asarray(np.minimum(covered / CLOSE, 1.0) ** 2)
 
 
 def mixed_part(pair: Pair, mixture: Mixture) -> Pair:

@@ -49,12 +49,12 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
 def _bend(surface: Surface, normals: Array) -> Array:
     """How much the normal turns along each facet, per length, (n_facets,)."""
     points, used = surface.points[np.maximum(surface.nodes, 0)], surface.nodes >= 0
-    result = FLAT / facet_sizes(surface)
+    result = np.zeros(len(surface))
     for k in range(MAX_FACET_NODES):
         way, turn = (np.linalg.norm(each - each[:, k : k + 1], axis=2) for each in (points, normals))
         along = np.where(used & used[:, k : k + 1] & (way > 0.0), turn / np.where(way > 0.0, way, 1.0), 0.0)
-        result = np.maximum(result, along.max(axis=1) + FLAT / facet_sizes(surface))
-    return np.asarray(result)
+        result = np.maximum(result, along.max(axis=1))
+    return np.asarray(result + FLAT / facet_sizes(surface))
 
 
 def _turned_along(vectors: Array, start: Array, end: Array) -> Array:
