@@ -31,6 +31,7 @@ POINTS = "points"  # whose history is the integration points of the last step
 FIT = "fit"  # whose history is what fits add to the weighted gaps, in the step that ended
 SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
 SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
+RUBBING = 1e-2  # the same with friction, where states depend on their past anyway
 SHIFT = "shift"  # whose history is where points touch that were apart
 LATE = "late"  # whose history is the points for functions that the last state's do not cover, in a step that is solved again
 Array = NDArray[np.float64]
@@ -139,7 +140,8 @@ class FiniteProblem(ContactProblem):
             change, size = (
                 np.abs(down @ fit / weight)[touching].max() for fit in (fits[name] - known[name], fits[name])
             )
-            if change > SAME_FIT * size and pair.stiffness * change > SAME_PRESSURE * values[pair.normal].max():
+            most = (RUBBING if pair.frictional else SAME_PRESSURE) * values[pair.normal].max()
+            if change > SAME_FIT * size and pair.stiffness * change > most:
                 return False
         return True
 
