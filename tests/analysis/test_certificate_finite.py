@@ -95,9 +95,7 @@ def seen(model: abut.Model, state: State, solution: Solution) -> set[str]:
     return failed(replace(solution, steps=(*solution.steps[:-1], step)))
 
 
-def stepped(
-    model: abut.Model, state: State, solution: Solution, at: int, acted: Acted = None
-) -> tuple[Step, Acted]:
+def stepped(model: abut.Model, state: State, solution: Solution, at: int, acted: Acted = None) -> tuple[Step, Acted]:
     """A step of a solution with another state at its end, and what acts there. acted: the same of the step before."""
     assembled = Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled
     none, end = np.zeros(0, dtype=bool), solution.steps[at]

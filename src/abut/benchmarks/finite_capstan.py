@@ -1,14 +1,13 @@
-"""Large sliding with friction: a belt bent round a fixed pulley and drawn over it; tensions and pressure against the capstan.
+"""Large sliding: a belt bent round a fixed pulley and drawn over it; tensions and pressure by closed form.
 
 A thin belt of thickness t slides on a circle of radius R, its middle line at r = R + t / 2. Balance of moments about the
 pulley's axis and of forces along its radius give, with tension N, shear force V and pressure p, per unit width,
 
     N' r = mu p R^2,    V = mu p R - N',    N = p R + V',
 
-all of them in proportion to exp(l a) along the angle a, with l + l^2 mu t / (2 r) = mu R / r. Where the belt leaves the
-pulley its curvature falls from 1 / r to none at its straight end: it does so at an angle e before a string would,
-cos e = 1 - E I / (2 F r^2) under the force F, and presses with a force there, which takes friction as well. So the forces at the
-ends are as
+all of them in proportion to exp(l a) along the angle a, with l + l^2 mu t / (2 r) = mu R / r. Towards its straight end the
+belt's curvature falls from 1 / r to none: it leaves the pulley at an angle e before a string would, cos e = 1 - E I / (2 F r^2)
+under the force F, and presses with a force there, which takes friction as well. So the forces at the ends are as
 
     F_2 / F_1 = exp(l (pi - e_1 - e_2)) (cos e_1 + m sin e_1) / (cos e_2 - m sin e_2),    m = mu R / r.
 """
@@ -40,7 +39,12 @@ EDGE = 0.3  # radians beside the ends of contact where the pressure is that of b
 
 
 def belt(
-    level: int = 0, cell: str = "quad8", cells: int = 40, turned: bool = False, length: float = 1.0, young: float = YOUNG
+    level: int = 0,
+    cell: str = "quad8",
+    cells: int = 40,
+    turned: bool = False,
+    length: float = 1.0,
+    young: float = YOUNG,
 ) -> Model:
     """The belt above the pulley. cells: along the belt at level 0; turned: whether the pulley is the contactor; length,
     young: in other units."""
@@ -120,7 +124,9 @@ def around(solution: Solution) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return angle, contact.pressure[:, :2].ravel()[first]
 
 
-def _benchmark(name: str, title: str, model: Callable[[int], Model], tension: float, local: float, reason: str) -> Benchmark:
+def _benchmark(
+    name: str, title: str, model: Callable[[int], Model], tension: float, local: float, reason: str
+) -> Benchmark:
     """tension, local: tolerances of the ratio and of the pressure at a node."""
     return Benchmark(
         name, title, model, measure,

@@ -39,7 +39,9 @@ class Progress:
         self._began = self._spoke = self._first = self._since = time.monotonic()
         self._patience = PATIENCE
         self._step = self._iteration = 0
-        self._before = self._done = self._total = 0.0  # load steps, or the way: done before this run, by now, to be done
+        self._before = self._done = self._total = (
+            0.0  # load steps, or the way: done before this run, by now, to be done
+        )
         self._aim = ""  # of a step whose number among all nobody knows
 
     def __call__(self, item: Iteration | Phase | str) -> None:

@@ -165,8 +165,11 @@ def _solve(
             size = 1 if team is None else team.size
             return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored, processes=size)
 
+        latest: list[Solution] = []
+
         def keep(solution: Solution, saved: Saved) -> None:
-            stream.step(told(solution), saved)
+            latest[:] = [told(solution)]
+            stream.step(latest[0], saved)
 
         def observe(item: Iteration | Phase | str) -> None:
             stream.observe(item)
@@ -178,6 +181,8 @@ def _solve(
         except OutOfTime as reason:
             raise OutOfTime(_left(str(reason), stream.steps, stream.time, directory)) from None
         except Stopped:
+            for so_far in latest:
+                stream.finish(so_far, read_origin(job.path, job.text))
             raise Stopped(_left("stopped", stream.steps, stream.time, directory)) from None
         if text := _unused(arguments.petsc):
             _say(text)

@@ -97,8 +97,8 @@ def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
     if not contact.adjust:
         return refine
     return (
-        f"where adjust = {contact.adjust:g} ends within the contact it leaves a step that carries a peak: choose it larger than all "
-        f"gaps that close, or leave it out; else {refine}"
+        f"where adjust = {contact.adjust:g} ends within the contact it leaves a step that carries a peak: choose it larger "
+        f"than all gaps that close, or leave it out; else {refine}"
     )
 
 

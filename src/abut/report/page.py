@@ -83,7 +83,10 @@ def _head(solution: Solution, origin: Origin) -> str:
     failed = [check for check in solution.certificate if not check.passed]
     theory = [row for row in comparison(solution, origin.expected) if not row["passed"]]
     if not solution.converged:
-        good, verdict = False, f"Not converged at step {solution.steps[-1].number}{_reached(solution)}: what follows is the last state."
+        good, verdict = (
+            False,
+            f"Not converged at step {solution.steps[-1].number}{_reached(solution)}: what follows is the last state.",
+        )
     elif not solution.complete:
         good, verdict = False, f"Stopped after step {len(solution.steps)}{_reached(solution)}: there are steps left."
     elif failed:

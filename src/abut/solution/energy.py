@@ -43,7 +43,7 @@ class Energy:
 
     @property
     def limit(self) -> float:
-        """Of the error: what is left, at least and at most fixed shares of the size, and also beyond those nothing beside what
-        has been done before. A body that contact alone holds rocks within the tolerance of forces; beside a step in which
-        hardly anything else moves that is much."""
+        """Of the error: what is left, but for fixed shares of the size at least and at most; where the steps before did far
+        more, at most a share of that. A body that contact alone holds rocks within the tolerance of forces, which is much
+        beside a step in which hardly anything else moves."""
         return max(ENERGY, min(self.left / self.size, max(ROUNDED, ENERGY * self.earlier / self.size)))
