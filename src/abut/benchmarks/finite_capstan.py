@@ -6,8 +6,8 @@ pulley's axis and of forces along its radius give, with tension N, shear force V
     N' r = mu p R^2,    V = mu p R - N',    N = p R + V',
 
 all of them in proportion to exp(l a) along the angle a, with l + l^2 mu t / (2 r) = mu R / r. Towards its straight end the
-belt's curvature falls from 1 / r to none: it leaves the pulley at an angle e before a string would, cos e = 1 - E I / (2 F r^2)
-under the force F, and presses with a force there, which takes friction as well. So the forces at the ends are as
+belt's curvature falls from 1 / r to none: it leaves the pulley at an angle e before a string would, under the force F with
+cos e = 1 - E I / (2 F r^2), and presses with a force there, which takes friction as well. So the forces at the ends are as
 
     F_2 / F_1 = exp(l (pi - e_1 - e_2)) (cos e_1 + m sin e_1) / (cos e_2 - m sin e_2),    m = mu R / r.
 """
