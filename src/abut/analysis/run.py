@@ -14,7 +14,7 @@ from abut.analysis.linear_solvers import assembled_bodies, linear_solver, settin
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
-from abut.errors import ConvergenceError, SingularModelError
+from abut.errors import ConvergenceError, SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
@@ -179,7 +179,10 @@ class Run:
             self._keep()
         if not attempt.iterations:  # there is no state to show
             raise ConvergenceError(f"step {attempt.number} cannot be begun, however short: {attempt.reason}")
-        self.steps.append(self._result(attempt))
+        try:
+            self.steps.append(self._result(attempt))
+        except Unsound as reason:
+            raise ConvergenceError(f"step {attempt.number} did not converge; in its last state {reason}") from None
         self.clock.mark("results")
         count = len(attempt.iterations)
         self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")

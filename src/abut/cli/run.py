@@ -180,9 +180,11 @@ def _solve(
             solution = told(solve(job.model, observe, keep, before, team=team))
         except OutOfTime as reason:
             raise OutOfTime(_left(str(reason), stream.steps, stream.time, directory)) from None
-        except Stopped:
+        except (Stopped, ConvergenceError) as reason:  # of a step that has no state to show
             for so_far in latest:
                 stream.finish(so_far, read_origin(job.path, job.text))
+            if isinstance(reason, ConvergenceError):
+                raise
             raise Stopped(_left("stopped", stream.steps, stream.time, directory)) from None
         if text := _unused(arguments.petsc):
             _say(text)
