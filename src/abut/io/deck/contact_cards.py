@@ -99,12 +99,12 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
-    """Names of slave and master surface, line by line."""
+    """Names of slave and master surface, line by line; of a contact pair with one surface, which touches itself, twice that."""
     card.first("slave and master surface")
     for line in card.lines:
         names = []
         for i, what in enumerate(("slave", "master")):
-            text = line.text(i)
+            text = line.text(i) or (line.text(0) if card.key == "CONTACTPAIR" else "")
             if text.upper() not in mesh.surfaces:
                 spelled = [surface.name for surface in mesh.surfaces.values()]
                 raise line.unknown(f"no {what} surface named {text!r}{nearest(text, spelled)}")

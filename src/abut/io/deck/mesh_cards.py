@@ -69,7 +69,7 @@ class MeshCards:
 
 
 def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> MeshCards:
-    """Read the mesh cards: nodes, elements, then sets and surfaces in their order; ``notes`` gets what was left out,
+    """Read the mesh cards: nodes, elements, then sets in their order, then surfaces; ``notes`` gets what was left out,
     ``reasons`` what is wrong."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
@@ -98,7 +98,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
 
     there: Collection[int] = ()
-    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET", "SURFACE")):
+    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET"), ("SURFACE",)):
         there = {*nodes, *virtual}
         for card in cards:
             if card.key in keys:
