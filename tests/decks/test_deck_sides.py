@@ -23,7 +23,7 @@ def test_one_surface_alone_touches_itself(tmp_path):
     alone = DECK.replace("SLAVE, MASTER\n", "SLAVE,\n")
     contact = load(tmp_path, alone.replace("*STEP", "*STEP, NLGEOM")).model.contacts[0]
     assert contact.contactor == contact.target == "SLAVE"
-    with pytest.raises(InputError, match='a body touches itself only where it folds, .*kinematics = "finite"'):
+    with pytest.raises(InputError, match=r'a body touches itself only where it folds, .*kinematics = "finite"'):
         load(tmp_path, alone)
 
 
