@@ -99,7 +99,7 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
-    """Names of slave and master surface, line by line; both the same where a contact pair has but one, which touches itself."""
+    """Names of slave and master surface, line by line; of a contact pair with one, which touches itself, twice that."""
     card.first("slave and master surface")
     for line in card.lines:
         names = []
