@@ -144,3 +144,13 @@ def test_surfaces_may_stand_before_the_sets_they_are_made_of(tmp_path):
     late = DECK.replace("*ELSET, ELSET=_TOP_S2, INTERNAL\nALL\n", "")
     late = late.replace("*SOLID SECTION", "*ELSET, ELSET=_TOP_S2, INTERNAL\nALL\n*SOLID SECTION")
     assert "Brick-1.TOP" in read_deck(write(tmp_path, late)).surfaces
+
+
+def test_sets_that_abaqus_makes_for_itself_are_not_proposed(tmp_path):
+    with pytest.raises(InputError, match=r"no node set named 'QQQ'; known: Brick 2\.FOOT, Brick-1\.FOOT, FAR, SIDES$"):
+        load(
+            tmp_path,
+            DECK.replace("*END ASSEMBLY", "*NSET, NSET=_PICKED, INTERNAL\nFAR\n*END ASSEMBLY").replace(
+                "Assembly.FAR", "QQQ"
+            ),
+        )

@@ -122,7 +122,7 @@ def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
             raise card.error(f"ADJUST: expected a distance >= 0 or a node set, got {text}")
         return value
     if text.upper() not in mesh.node_sets.sets:
-        raise card.unknown(f"ADJUST: no node set named {text!r}{nearest(text, mesh.node_sets.spelled.values())}")
+        raise card.unknown(f"ADJUST: no node set named {text!r}{mesh.node_sets.like(text)}")
     return mesh.node_sets.sets[text.upper()]
 
 

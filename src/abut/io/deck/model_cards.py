@@ -109,7 +109,7 @@ def sections(
 def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) -> Section:
     name, material = card.need("ELSET"), card.need("MATERIAL")
     if name.upper() not in mesh.element_sets.sets:
-        raise card.unknown(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
+        raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
     if known is not None and material.upper() not in known:
         raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
     if card.has("NODAL THICKNESS"):
@@ -225,8 +225,7 @@ def _node(card: Card, parameter: str, mesh: MeshCards) -> int:
         return number
     if text.upper() not in mesh.node_sets.sets:
         raise card.unknown(
-            f"{parameter}: expected a node number or a set of one node, got {text!r}"
-            f"{nearest(text, mesh.node_sets.spelled.values())}"
+            f"{parameter}: expected a node number or a set of one node, got {text!r}{mesh.node_sets.like(text)}"
         )
     nodes = mesh.node_sets.sets[text.upper()]
     if len(nodes) != 1:
