@@ -134,7 +134,10 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
     ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
-    ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
+    (
+        "BOUNDARY",
+        "FIXED",
+    ): "supports frozen in the last state are not supported; give the displacement, or keep the force",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
     ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
     ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
