@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
+from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
@@ -202,7 +203,7 @@ class Current:
         return SlipPoints.of(*self.surfaces(displacement), self.pair.coupling.degree, options, self._across)
 
     def _apart(self, points: SlipPoints, displacement: Array) -> Array:
-        """Weighted slips (n_tangential,) at which what is apart at a displacement closes, theory (G19)."""
+        """Weighted slips (n_tangential,) at which what is apart at a displacement closes, theory (G20)."""
         contactor, target = self.surfaces(displacement)
         normals = self._normals.at(contactor)
         sides = Sides(contactor, target, normals.values, nodal_normals(target, self._target_across))
@@ -237,9 +238,11 @@ class Current:
     def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
         """Which functions follow others where the pair is now, with multipliers (n,) closed."""
         contactor, target = self.surfaces(displacement)
-        options = self._options()
+        sharp = bool(at_corners(self.pair.space).any())
+        options = replace(self._options(), keep_points=sharp)
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
-        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal])
+        beside = edge_on(self.pair.space, target, covered, self._facet)
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal], beside)
 
     def _mixture(self, contactor: Surface, target: Surface, inner: Array | None) -> Mixture | None:
         """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""
@@ -254,7 +257,7 @@ class Current:
         if moved is not None:
             nodes = moved.reshape(-1, self.pair.contactor.dim)[self._nodes]
             way = float(np.linalg.norm(nodes, axis=1).max(initial=0.0))
-        near = float(__import__('os').environ.get('R',NEAR)) if isinstance(self.pair.contact.law, str) else GIVING
+        near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
         reach = near * self._facet
         return CouplingOptions(rule.rule, rule.points, reach + 2.0 * way, largest_gap=reach)
 

@@ -1,4 +1,4 @@
-"""Where points touch that were apart in the last converged state: from there their slip counts, theory (G19)."""
+"""Where points touch that were apart in the last converged state: from there their slip counts, theory (G20)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Sides:
 
 def apart(points: SlipPoints, sides: Sides) -> Array:
     """Weighted slips at which points close that are apart, facet by facet as in ``slip_now``: (9 n_facets, c), c = 1 in 2D
-    and 3 in 3D. As in theory (G19)."""
+    and 3 in 3D. As in theory (G20)."""
     own, other = points.facet, points.target_facet
     across = -_unit(_interpolated(points.own, sides.normals[own]))
     facing = _unit(_interpolated(points.other, sides.target_normals[other]))

@@ -80,7 +80,7 @@ class SlipPoints:
 @dataclass(frozen=True)
 class Past:
     """From where slip counts in a step. points: of the last state; shift: (n_tangential,) weighted slips that do not count,
-    as points had not touched yet, theory (G19); late: points for functions that those of the last state do not cover."""
+    as points had not touched yet, theory (G20); late: points for functions that those of the last state do not cover."""
 
     points: SlipPoints
     shift: Array
