@@ -25,12 +25,13 @@ COARSE = {
         ("[1, 32, 10]", "[1, 32, 4]"), ("[2, 32, 6]", "[1, 32, 2]"),
         ("0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0", "0.5, 1.0"),
     ],
+    "two-rings/job": [],
     "pin-lug/job": [('"pin-lug.msh"', f'"{(EXAMPLES / "pin-lug" / "pin-lug.msh").as_posix()}"')],
 }  # fmt: skip
 TINY = 1e-6  # of the loads: what is of second order in the displacements is about as much of the pressures
 SAME = 1e-6
 # gaps are known to rounding of the coordinates: the loads under which that does not count
-ROUNDED = {"pin-lug/job": 1e-5, "twisted-hub/job": 1e-5}
+ROUNDED = {"pin-lug/job": 1e-5, "two-rings/job": 1e-3, "twisted-hub/job": 1e-5}
 
 
 def example(name: str, folder: Path) -> abut.Model:
@@ -62,7 +63,15 @@ def differences(small: abut.Model, large: abut.Model) -> float:
     """Of pressures and tractions over the largest pressure."""
     results = [abut.solve(model).contacts[0] for model in (small, large)]
     top = np.nanmax(np.abs(results[0].multiplier))
-    wrong = [np.nanmax(np.abs(getattr(results[0], n) - getattr(results[1], n))) for n in ("multiplier", "pressure")]
+    here, there = (8 * r.contactor.cells + r.contactor.local for r in results)  # small: facets that see the target
+    order = np.argsort(there)
+    rows = order[np.searchsorted(there, here, sorter=order)]
+    assert np.array_equal(there[rows], here)
+    assert not np.nan_to_num(np.delete(results[1].pressure, rows, axis=0)).any()
+    pressures = [(results[0].pressure, results[1].pressure[rows])]
+    if len(here) == len(there):  # else nodes that see no target have no multiplier, or follow one that does
+        pressures.append((results[0].multiplier, results[1].multiplier[rows]))
+    wrong = [np.nanmax(np.abs(one - other)) for one, other in pressures]
     if results[0].friction is not None and results[1].friction is not None:
         sizes = [np.linalg.norm(r.friction.traction, axis=-1) for r in results]
         wrong.append(np.nanmax(np.abs(sizes[0] - sizes[1])))
@@ -72,8 +81,8 @@ def differences(small: abut.Model, large: abut.Model) -> float:
 CASES = [
     ("two-blocks/job", "P1", {}), ("two-blocks/job", "dual", {"friction": 0.3}), ("pushed-block/job", "dual", {}),
     ("pushed-block/job", "P1", {"friction": 0.0}), ("hertz-line/quad4", "P1", {}), ("hertz-line/quad8", "P2", {}),
-    ("hertz-line/quad8", "dual", {}),
-    *((name, "auto", {}) for name in COARSE if name != "pin-lug/job"),
+    ("hertz-line/quad8", "dual", {}), ("two-rings/job", "P2", {}),
+    *((name, "auto", {}) for name in COARSE if name not in ("pin-lug/job", "two-rings/job")),
     pytest.param("pin-lug/job", "auto", {}, marks=pytest.mark.long),
 ]  # fmt: skip
 
