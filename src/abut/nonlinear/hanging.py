@@ -9,6 +9,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
+CORNER = ", a sharp corner or edge: round it off by a few facets"
 FEW = 3  # nodes that go on changing, up to which they are named
 
 
@@ -34,8 +35,16 @@ def _nodes(pair: Pair, functions: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _told(problem: ContactProblem, pair: Pair, nodes: NDArray[np.int64], what: str) -> str:
-    """A sharp corner has a function on each of its faces."""
-    sharp = any(int((pair.space.node == node).sum()) > 1 for node in nodes)
-    places = [f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})" for node in nodes]
-    cure = ", a sharp corner or edge: round it off by a few facets" if sharp else ": refine the contactor there"
-    return f"contact '{pair.contact.name}' {what}, at {' and '.join(places)} in the undeformed mesh{cure}"
+    places = " and ".join(place(problem, node) for node in nodes)
+    cure = CORNER if any(sharp(pair, node) for node in nodes) else ": refine the contactor there"
+    return f"contact '{pair.contact.name}' {what}, at {places} in the undeformed mesh{cure}"
+
+
+def place(problem: ContactProblem, node: int) -> str:
+    """Where a point of the mesh lies, in words."""
+    return f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})"
+
+
+def sharp(pair: Pair, node: int) -> bool:
+    """Whether a point lies on a sharp corner or edge, which has a function on each of its faces."""
+    return int((pair.space.node == node).sum()) > 1
