@@ -8,6 +8,7 @@ import numpy as np
 
 from abut.nonlinear.holding import lifted
 from abut.nonlinear.unsettled import circling, most_at
+from models.clamps import NAMED, WHOLE, clamp
 from models.corners import peg, pin_in_cradle
 from models.sliding import finite
 
@@ -41,6 +42,17 @@ def test_where_most_is_left() -> None:
             assert most_at(problem, forces, laws) == (
                 f"most in contact '{pair.contact.name}' at ({x:.6g}, {y:.6g}) in the undeformed mesh{cure}"
             )
+
+
+def test_a_body_in_contact_with_itself() -> None:
+    """Where the same facets are on both sides, naming two of them is said to help."""
+    advice = ": name the two sides that touch, one as contactor, the other as target"
+    for sides in (WHOLE, NAMED):
+        problem = finite(clamp("quad4", sides=sides))
+        pair = problem.pairs[0]
+        smooth = int(np.flatnonzero([int((pair.space.node == node).sum()) == 1 for node in pair.space.node])[0])
+        laws = np.where(np.arange(len(pair)) == smooth, 0.1, 0.0)
+        assert most_at(problem, np.zeros(problem.n_free), laws).endswith(advice) == (sides == WHOLE)
 
 
 def test_a_pin_that_is_lifted() -> None:

@@ -9,7 +9,6 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
-CORNER = ", a sharp corner or edge: round it off by a few facets"
 FEW = 3  # nodes that go on changing, up to which they are named
 
 
@@ -36,7 +35,7 @@ def _nodes(pair: Pair, functions: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 def _told(problem: ContactProblem, pair: Pair, nodes: NDArray[np.int64], what: str) -> str:
     places = " and ".join(place(problem, node) for node in nodes)
-    cure = CORNER if any(sharp(pair, node) for node in nodes) else ": refine the contactor there"
+    cure = cured(pair, nodes) or ": refine the contactor there"
     return f"contact '{pair.contact.name}' {what}, at {places} in the undeformed mesh{cure}"
 
 
@@ -45,6 +44,10 @@ def place(problem: ContactProblem, node: int) -> str:
     return f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})"
 
 
-def sharp(pair: Pair, node: int) -> bool:
-    """Whether a point lies on a sharp corner or edge, which has a function on each of its faces."""
-    return int((pair.space.node == node).sum()) > 1
+def cured(pair: Pair, nodes: NDArray[np.int64]) -> str:
+    """What helps where a contact hangs on nodes, as far as is known: a sharp corner or edge has a function on each of its
+    faces; facets that belong to both sides have roles by their rank, which changes from one to the next."""
+    if any(int((pair.space.node == node).sum()) > 1 for node in nodes):
+        return ", a sharp corner or edge: round it off by a few facets"
+    own, other = (8 * side.cells + side.local for side in (pair.contactor, pair.target))
+    return ": name the two sides that touch, one as contactor, the other as target" if np.isin(own, other).any() else ""

@@ -172,7 +172,11 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
 
 def _unsettled(step: Step, here: Balance) -> str:
     """Why iterations have ended without a solution."""
-    why = f"{step.limit} iterations were not enough" if len(step.done) >= step.limit else "iterations go round in a circle"
+    why = (
+        f"{step.limit} iterations were not enough"
+        if len(step.done) >= step.limit
+        else "iterations go round in a circle"
+    )
     most = most_at(step.problem, here.forces, here.broken)
     return (
         f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "

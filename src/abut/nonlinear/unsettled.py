@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.nonlinear.hanging import CORNER, place, sharp
+from abut.nonlinear.hanging import cured, place
 from abut.problem.finite import FiniteProblem
 
 PERIODS = (2, 3)  # iterations after which they may come back to where they were
@@ -36,4 +36,5 @@ def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
     node, name = int(pair.space.node[int(np.argmax(by_function))]), pair.contact.name
     if node < 0:
         return f"most in contact '{name}'"
-    return f"most in contact '{name}' at {place(problem, node)} in the undeformed mesh{CORNER if sharp(pair, node) else ''}"
+    cure = cured(pair, np.array([node]))
+    return f"most in contact '{name}' at {place(problem, node)} in the undeformed mesh{cure}"

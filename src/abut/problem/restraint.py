@@ -84,7 +84,7 @@ class Restraint:
         return "" if motion is None else self._in_words(motion, [force], driven=True)
 
     def lifted(self, force: NDArray[np.float64], active: NDArray[np.bool_]) -> str:
-        """The motion, in words, that forces (n_free,) cause though the multipliers ``active`` (n,) push; empty where none."""
+        """The motion, in words, that forces (n_free,) cause though the multipliers ``active`` (n,) push; else empty."""
         motion = None if self.by_supports else self._moved(force, active)
         return "" if motion is None else describe(self.rigid, motion[:, None], one_way=True)
 
