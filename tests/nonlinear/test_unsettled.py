@@ -27,7 +27,7 @@ def test_where_most_is_left() -> None:
     problem = finite(peg("quad4"))
     pair, points = problem.pairs[0], problem.model.mesh.points
     forces, laws = np.zeros(problem.n_free), np.zeros(len(pair))
-    column = int(np.argmax(np.asarray(problem.constraints.free[2 * 100 + 1].todense())))
+    column = int(np.argmax(problem.constraints.free[2 * 100 + 1].toarray()))
     forces[column], laws[0] = -0.5, 0.1
     x, y = points[100]
     assert most_at(problem, forces, laws) == f"most at ({x:.6g}, {y:.6g}) in the undeformed mesh"
