@@ -1,7 +1,7 @@
-"""What an iteration at large displacements costs: a block pressed into a slab and drawn along it, friction 0.3, hex8, by a
-direct solver on one thread; processor time of its stages, and memory beside a run at small displacements.
+"""What an iteration at large displacements costs: a block pressed into a slab and drawn along it, friction 0.3, hex8, on one
+thread; processor time of its stages, and memory beside a run at small displacements.
 
-    python bench/finite_iteration.py [--facets 50] [--layers 8] [--iterations 3]
+    python bench/finite_iteration.py [--facets 50] [--layers 8] [--iterations 3] [--linear direct]
 
 The block has facets^2 contact facets, and layers of cells; 50 and 8 make 146 000 degrees of freedom. Each run is a process
 of its own, and ends after some iterations: the first is without contact forces.
@@ -32,13 +32,15 @@ STAGES = {
     "bodies": ("finite_bodies.py", "evaluate"),
     "whole linearisation": ("finite.py", "_expanded"),
     "linear solve": ("saddle_point.py", "newton_step"),
+    "multigrid, set up": ("iterative.py", "_at_state"),
+    "linear solve by multigrid": ("iterative.py", "solve"),
     "  of it analysis": ("direct.py", "analyse"),
     "  of it factorisation": ("repeated.py", "_factorise"),
     "  of it iterations with old factors": ("repeated.py", "_iterate"),
 }
 
 
-def model(facets: int, layers: int, kinematics: str) -> abut.Model:
+def model(facets: int, layers: int, kinematics: str, linear: str) -> abut.Model:
     """One load step; meshes that do not match."""
     more = facets + 2
     slab = box((0.0, 1.04), (0.0, 1.04), (0.0, 0.2), (more, more, layers), "hex8")
@@ -48,7 +50,7 @@ def model(facets: int, layers: int, kinematics: str) -> abut.Model:
         join({"slab": slab, "block": block}), [abut.Solid("slab", material), abut.Solid("block", material)],
         [abut.Support("slab.bottom", x=0.0, y=0.0, z=0.0), abut.Support("block.top", x=0.002, y=0.0, z=-0.002)],
         contacts=[abut.Contact("block.bottom", "slab.top", friction=0.3)], kinematics=kinematics,
-        solve=abut.SolveOptions(linear="direct", times=(1.0,)),
+        solve=abut.SolveOptions(linear=linear, times=(1.0,)),
     )  # fmt: skip
 
 
@@ -56,9 +58,9 @@ class Enough(Exception):
     """As many iterations as were asked for."""
 
 
-def run(facets: int, layers: int, kinematics: str, most: int) -> dict[str, Any]:
+def run(facets: int, layers: int, kinematics: str, most: int, linear: str) -> dict[str, Any]:
     """Processor time of each stage, calls, iterations and peak memory in MB."""
-    case, rows = model(facets, layers, kinematics), []
+    case, rows = model(facets, layers, kinematics, linear), []
 
     def observe(event: object) -> None:
         if isinstance(event, Iteration):
@@ -87,22 +89,16 @@ def main() -> None:
     parser.add_argument("--facets", type=int, default=50)
     parser.add_argument("--layers", type=int, default=8)
     parser.add_argument("--iterations", type=int, default=3)
+    parser.add_argument("--linear", choices=["direct", "amg"], default="direct")
     parser.add_argument("--own", choices=["finite", "small"], help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.own:
-        print(json.dumps(run(arguments.facets, arguments.layers, arguments.own, arguments.iterations)))
+        most, linear = arguments.iterations, arguments.linear
+        print(json.dumps(run(arguments.facets, arguments.layers, arguments.own, most, linear)))
         return
     runs = {}
     for kinematics in ("small", "finite"):
-        size = [
-            "--facets",
-            str(arguments.facets),
-            "--layers",
-            str(arguments.layers),
-            "--iterations",
-            str(arguments.iterations),
-        ]
-        command = [sys.executable, __file__, "--own", kinematics, *size]
+        command = [sys.executable, __file__, "--own", kinematics, *sys.argv[1:]]
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
         done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
         runs[kinematics] = json.loads(done.stdout.splitlines()[-1])

@@ -1,14 +1,16 @@
-"""Do two versions of abut give the same numbers? Every example and benchmark is run with both, on one thread.
+"""Do two versions of abut give the same numbers? Every example, benchmark and some small models are run with both,
+on one thread.
 
 python bench/same_results.py BEFORE [AFTER] [--only PATTERN] [--tolerance 1e-12] [-j 2]
 
 BEFORE and AFTER are commits, which are checked out, compiled and installed aside; AFTER left out is the working tree,
 treated likewise. A folder with a working tree that `make build` has compiled is run as it is, by the Python that runs this.
 
-Compared are all numbers of summary.json and of CSV files, all arrays of VTU files, and the values of `abut verify`; not
-times and versions. A difference is relative to the largest of its array; of forces that balance, gaps that close and
-centres, to what they come from (SCALES in bench/same/differences.py). New files and quantities, and other words, are only
-reported.
+The examples are those of BEFORE; the small models are of every cell, with contact, friction, ties and every pressure space
+(same/models.py). Compared are all numbers of summary.json and of CSV files, all arrays of VTU files, and the values of
+`abut verify`; not times and versions. A difference is relative to the largest of its array; of forces that balance, gaps
+that close and centres, to what they come from (SCALES in bench/same/differences.py). New files and quantities, and other
+words, are only reported.
 
 Exit status: 0 the same; 1 a difference above the tolerance, a file or quantity that AFTER lacks, or a run that fails; 2 a
 version that cannot be built.
@@ -68,7 +70,10 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("before", metavar="BEFORE", help="commit or compiled folder")
     parser.add_argument("after", metavar="AFTER", nargs="?", help="the same; left out: the working tree")
     parser.add_argument(
-        "--only", metavar="PATTERN", action="append", help='runs by name, such as "example *" or "*hertz*" (repeatable)'
+        "--only",
+        metavar="PATTERN",
+        action="append",
+        help='runs by name, such as "example *" or "models *" (repeatable)',
     )
     parser.add_argument("--tolerance", type=float, default=1e-12, help="largest relative difference (default 1e-12)")
     parser.add_argument("-j", type=int, default=2, metavar="N", help="processes at a time (default 2)")
@@ -114,7 +119,7 @@ def both(run: Run, versions: tuple[Version, Version], folder: Path) -> Result:
     try:
         for version, name in zip(versions, ("BEFORE", "AFTER")):
             try:
-                execute(run, version, folder / name)
+                execute(run, version, folder / name, versions[0].tree)
                 found.append(read(folder / name))
             except (VersionError, ValueError, OSError) as error:
                 return f"{name} failed: {error}"

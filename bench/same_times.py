@@ -2,9 +2,9 @@
 
 python bench/same_times.py BEFORE [AFTER] [--cases flat-hex8,tilted-hex8,hertz-hex8] [--dofs 50000,150000] [--repeat 5]
 
-BEFORE and AFTER are as for bench/same_results.py. Printed are, for each case, the least seconds of each version over its
-repetitions, from a model in memory to results in memory, and their ratio. Other work on the machine spoils it: the ratios
-of a version with itself (BEFORE and AFTER the same) say by how much.
+BEFORE and AFTER are as for bench/same_results.py. Printed are, for each case, the least processor time of each version over
+its repetitions, in seconds, from a model in memory to results in memory, and their ratio. Other work on the machine spoils
+it: the ratios of a version with itself (BEFORE and AFTER the same) say by how much.
 
 Exit status: 0 no ratio above 1.05; 1 one above; 2 a version that cannot be built, or a run that fails.
 """
@@ -18,8 +18,9 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from same.versions import Version, VersionError, checked_out, install, ran
+from same.versions import ROOT, Version, VersionError, checked_out, install, ran
 
+CHILD = ROOT / "bench/contact/abut_child.py"  # serves both versions
 MARGIN = 1.05
 SLOWER, NOT_BUILT = 1, 2
 
@@ -40,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 for dofs in map(int, given.dofs.split(",")):
                     before, after = least(versions, case, dofs, given.repeat)
                     largest = max(largest, after / before)
-                    print(f"{case:14} {dofs:8}  {before:7.2f} s  {after:7.2f} s  {after / before:.2f}", flush=True)
+                    print(f"{case:14} {dofs:8}  {before:7.3f} s  {after:7.3f} s  {after / before:.2f}", flush=True)
     except VersionError as error:
         print(f"same_times: {error}")
         return NOT_BUILT
@@ -58,13 +59,13 @@ def parser() -> argparse.ArgumentParser:
 
 
 def least(versions: Sequence[Version], case: str, dofs: int, repeat: int) -> list[float]:
-    """Seconds of each version, the least of ``repeat`` runs; the versions take turns."""
+    """Processor time of each version, the least of ``repeat`` runs; the versions take turns."""
     found: list[list[float]] = [[] for _ in versions]
     for _ in range(repeat):
         for version, seconds in zip(versions, found):
-            command = [str(version.python), str(version.tree / "bench/contact/abut_child.py"), case, str(dofs)]
+            command = [str(version.python), str(CHILD), case, str(dofs)]
             text = ran(command, f"{version.tree}: {case} fails", version.environment)
-            seconds.append(json.loads(text.splitlines()[-1])["seconds"])
+            seconds.append(json.loads(text.splitlines()[-1])["processor"])
     return [min(seconds) for seconds in found]
 
 

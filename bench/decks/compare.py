@@ -1,7 +1,7 @@
 """abut and CalculiX on the same deck, node by node.
 
-python bench/decks/compare.py [NAME ...] [--folder FOLDER] prints a line for each contact deck of CalculiX's own tests
-(Debian: apt install calculix-ccx calculix-ccx-test).
+python bench/decks/compare.py [NAME ...] [--folder FOLDER] [--large] prints a line for each contact deck of CalculiX's own
+tests (Debian: apt install calculix-ccx calculix-ccx-test). Displacements are small in both, with --large as the deck says.
 """
 
 from __future__ import annotations
@@ -71,16 +71,16 @@ def _numbers(kind: str) -> int:
     return 1 + int(re.findall(r"\d+", kind)[-1])
 
 
-def compare(name: str, path: Path, limit: float = 600.0) -> Outcome:
-    """Solve a deck with both."""
+def compare(name: str, path: Path, limit: float = 600.0, large: bool = False) -> Outcome:
+    """Solve a deck with both; large: with NLGEOM, where it stands."""
     what = cells(read(path))
     with plain(path) as text:
-        return _compare(name, text, what, limit)
+        return _compare(name, text, what, limit, large)
 
 
-def _compare(name: str, path: Path, what: str, limit: float) -> Outcome:
+def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Outcome:
     try:
-        steps, ignored = _abut(path)
+        steps, ignored = _abut(path, large)
     except AbutError as error:
         refused = isinstance(error, InputError)
         return Outcome(name, what, "refused" if refused else "failed", detail=_reason(str(error), path))
@@ -114,11 +114,11 @@ def _reason(message: str, path: Path) -> str:
     return ", ".join(line.replace(f"{path}:", "line ").partition(";")[0] for line in kept)
 
 
-def _abut(path: Path) -> tuple[list[Displacements], tuple[str, ...]]:
-    """Displacements at the end of each step of the deck, and what abut was told to ignore: NLGEOM, where it stands, as in
-    the reference run."""
-    large = re.search(r"^\*STEP.*NLGEOM", path.read_text(encoding="latin-1"), re.IGNORECASE | re.MULTILINE)
-    ignored: list[str] = ["NLGEOM"] if large else []
+def _abut(path: Path, large: bool) -> tuple[list[Displacements], tuple[str, ...]]:
+    """Displacements at the end of each step of the deck, and what abut was told to ignore: NLGEOM, where it stands, unless
+    ``large``, as in the reference run."""
+    stands = re.search(r"^\*STEP.*NLGEOM", path.read_text(encoding="latin-1"), re.IGNORECASE | re.MULTILINE)
+    ignored: list[str] = ["NLGEOM"] if stands and not large else []
     first: InputError | None = None
     while True:
         try:
@@ -139,11 +139,11 @@ def _abut(path: Path) -> tuple[list[Displacements], tuple[str, ...]]:
     at = ends(deck)
     numbers = np.intersect1d(deck.nodes, np.concatenate([block.nodes.ravel() for block in deck.blocks]))
     result = []
-    for step in solution.steps:
-        if min(abs(step.factor - time) for time in at) < 1e-9:
-            u = np.zeros((len(step.displacement), 3))
-            u[:, : model.dim] = step.displacement
-            result.append(dict(zip(numbers.tolist(), u)))  # a cut bolt has more points, at the end
+    for time in at:
+        step = min(solution.steps, key=lambda step: abs(step.factor - time))
+        u = np.zeros((len(step.displacement), 3))
+        u[:, : model.dim] = step.displacement
+        result.append(dict(zip(numbers.tolist(), u)))  # a cut bolt has more points, at the end
     return result, tuple(ignored)
 
 
@@ -156,10 +156,11 @@ def main() -> None:
     parser.add_argument("names", nargs="*")
     parser.add_argument("--folder", type=Path, default=EXAMPLES)
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run of CalculiX")
+    parser.add_argument("--large", action="store_true", help="large displacements, where the deck has NLGEOM")
     arguments = parser.parse_args()
     found = decks(arguments.folder)
     for name in arguments.names or found:
-        print(line(compare(name, found[name], arguments.limit)), flush=True)
+        print(line(compare(name, found[name], arguments.limit, arguments.large)), flush=True)
 
 
 def line(outcome: Outcome) -> str:

@@ -24,7 +24,7 @@ class Scale:
 FORCES = frozenset({"force", "force_*", "reaction", "reactions", "load", "target_forces"})
 SCALES = (
     Scale(FORCES | {"moment", "moment_*", "contact_moment_*"}, FORCES),
-    Scale(frozenset({"gap", "max_penetration"}), frozenset({"displacement", "max_displacement"})),
+    Scale(frozenset({"gap", "max_penetration", "slip"}), frozenset({"displacement", "max_displacement"})),
     Scale(frozenset({"centre_*", "centre_of_pressure", "max_pressure_at"}), frozenset({"coordinates"})),
 )
 BY_BODY = {"reactions", "target_forces"}  # a part of the path that names a body or surface follows

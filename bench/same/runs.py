@@ -1,4 +1,5 @@
-"""What is run for each version: jobs of the examples, some in several load steps, the scikit-fem example, the benchmarks."""
+"""What is run for each version: jobs of the examples, some in several load steps, the scikit-fem example, small models, the
+benchmarks."""
 
 from __future__ import annotations
 
@@ -13,6 +14,8 @@ from same.versions import Version, VersionError, ran
 CLI = "import sys; from abut.cli import main; sys.exit(main())"
 STEPS = 3
 IN_STEPS = ("two-blocks/job", "two-rings/job", "hertz-line/quad4")  # examples that are run in several load steps too
+MODELS = Path(__file__).with_name("models.py")
+GROUPS = ("contact", "friction", "rough", "ties", "round", "pressure-spaces", "laws", "multigrid")  # of MODELS
 FAULTY = "faulty"  # jobs that are there to be refused
 SCIKIT_FEM = "scikit-fem/contact"
 # The example by itself, its numbers as JSON.
@@ -28,7 +31,7 @@ print(json.dumps(dict(zip(names, [a.tolist() for a in (*own, *alone)]))))
 
 @dataclass(frozen=True)
 class Run:
-    """An example (``what``: folder/file without suffix) or a benchmark (its name)."""
+    """An example (``what``: folder/file without suffix), a group of small models or a benchmark (its name)."""
 
     kind: str
     what: str
@@ -50,21 +53,25 @@ def runs_of(version: Version) -> list[Run]:
     examples += [Run("example", name, STEPS) for name in names if name in IN_STEPS]
     if (folder / f"{SCIKIT_FEM}.py").is_file():
         examples.append(Run("example", SCIKIT_FEM))
+    examples += [Run("models", group) for group in GROUPS]
     listed = ran([str(version.python), "-c", CLI, "verify", "--list"], "abut verify --list", version.environment)
     return examples + [Run("benchmark", line.split()[0]) for line in listed.splitlines()]
 
 
-def execute(run: Run, version: Version, folder: Path) -> None:
-    """Run, and leave the numbers as files in ``folder`` (made). Raises VersionError where it fails."""
+def execute(run: Run, version: Version, folder: Path, tree: Path) -> None:
+    """Run, and leave the numbers as files in ``folder`` (made); examples are those of ``tree``, so that two versions may run
+    the same. Raises VersionError where it fails."""
     folder.mkdir(parents=True)
     if run.kind == "benchmark":
         text = _child(version, folder, CLI, "verify", run.what, "--json", statuses=(0, 1))  # 1: outside its tolerance
         (folder / "verify.json").write_text(json.dumps(benchmark_numbers(json.loads(text))))
+    elif run.kind == "models":
+        ran([str(version.python), str(MODELS), run.what, str(folder / "numbers.json")], run.name, version.environment)
     elif run.what == SCIKIT_FEM:
-        text = _child(version, folder, BY_SCIKIT_FEM, str((version.tree / "examples" / SCIKIT_FEM).parent))
+        text = _child(version, folder, BY_SCIKIT_FEM, str((tree / "examples" / SCIKIT_FEM).parent))
         (folder / "numbers.json").write_text(text)
     else:
-        job = version.tree / "examples" / f"{run.what}.toml"
+        job = tree / "examples" / f"{run.what}.toml"
         if run.steps > 1:
             job = Path(shutil.copytree(job.parent, folder / "job")) / job.name
             with job.open("a", encoding="utf-8") as file:

@@ -17,7 +17,7 @@ BENCH = Path(__file__).parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
 
 import same_results  # noqa: E402
-from same import runs, versions  # noqa: E402
+from same import models, runs, versions  # noqa: E402
 from same.differences import Comparison, compare, difference  # noqa: E402
 from same.quantities import Quantities, read  # noqa: E402
 
@@ -199,6 +199,27 @@ def test_benchmark_numbers() -> None:
         *(("energy", key) for key in ("error", "reference", "tolerance")),
         *(("pressure", key) for key in ("value", "reference", "tolerance")),
     }
+
+
+def test_small_models() -> None:
+    """Every group is run; friction has its own numbers, and both versions get numbers, not Python's records."""
+    assert tuple(models.GROUPS) == runs.GROUPS
+    assert {cell.partition(" ")[0] for cell in models.GROUPS["contact"]()} == {*models.PLANE, *models.SOLID}
+    found = models.numbers(models.blocks("quad4", 2, friction=0.3))
+    assert len(found["steps"]) == 2
+    last = found["steps"][-1]
+    assert last["iterations"] > 0
+    assert np.nanmax(np.abs(last["traction"])) > 0.0
+    assert json.loads(json.dumps(last)).keys() >= {"displacement", "pressure", "gap", "slip", "status"}
+
+
+def test_examples_are_those_of_one_tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both versions run the same files: an example that was changed is no change of the code."""
+    given: list[tuple[str, ...]] = []
+    monkeypatch.setattr(runs, "_child", lambda version, folder, code, *arguments, **_: given.append(arguments))
+    version = versions.Version(tmp_path / "after", Path(sys.executable))
+    runs.execute(runs.Run("example", "two-blocks/job"), version, tmp_path / "results", tmp_path / "before")
+    assert given[0][1] == str(tmp_path / "before/examples/two-blocks/job.toml")
 
 
 def test_working_tree_is_copied(tmp_path: Path) -> None:

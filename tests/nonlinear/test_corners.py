@@ -57,11 +57,10 @@ def test_pin_that_falls() -> None:
     assert iterations < 50
 
 
-@pytest.mark.parametrize(("aside", "most"), [(0.0, 261), (0.4, 45)])
+@pytest.mark.parametrize(("aside", "most"), [(0.0, 45), (0.4, 45)])
 def test_wedge_into_round_block(aside: float, most: int) -> None:
-    """Points on both faces at the wedge's corner take turns as the rubber comes round it. On the crown some of the last
-    steps hang on whether two of them stick: 34 iterations where slips count from the ray of the step's beginning;
-    no more than the 261 of before points took turns."""
+    """Points on both faces at the wedge's corner take turns as the rubber comes round it. On the crown its edge spans two
+    facets of the block: the point in its middle presses only if both beside it open (261 iterations if one does)."""
     _, iterations = solved(wedge("quad4", aside))
     assert iterations <= most
 

@@ -43,7 +43,7 @@ from abut.solution.state import OPEN
 class PairState:
     """A pair with its multipliers, their status, and the slips (n, 4) of those of friction, as in its history; limit:
     of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
-    that are pressures (of a tie: all)."""
+    that are pressures (of a tie: all); contactor: where it is now, which that of a tie's pair is not."""
 
     pair: Pair
     multipliers: NDArray[np.float64]
@@ -54,6 +54,7 @@ class PairState:
     weight: NDArray[np.float64]
     gap: NDArray[np.float64]
     closed: NDArray[np.bool_]
+    contactor: Surface
 
     @classmethod
     def of(
@@ -64,14 +65,15 @@ class PairState:
         status: NDArray[np.int8],
         slips: NDArray[np.float64] | None,
         factors: NDArray[np.float64],
+        contactor: Surface,
     ) -> PairState:
         """Of all its multipliers, each (n,); slips: None where nothing has slipped yet; factors: of the model's
-        histories."""
+        histories; contactor: where it is now."""
         every = slice(None) if pair.tied else pair.normal
         slips = np.zeros((len(pair), 4)) if slips is None else slips
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
         limit = pair.friction(factors) if pair.frictional else None
-        return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN)
+        return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN, contactor)
 
     @cached_property
     def values(self) -> NDArray[np.float64]:
@@ -82,7 +84,7 @@ class PairState:
     @cached_property
     def normal(self) -> NDArray[np.float64]:
         """The same of the pressure, compression positive, (9 n_facets,)."""
-        return _compression(self.pair, self.values) if self.pair.tied else self.values
+        return _compression(self.contactor, self.values) if self.pair.tied else self.values
 
     @property
     def gaps(self) -> NDArray[np.float64]:
@@ -207,8 +209,8 @@ def _statistics(
     forces, _ = state.forces
     ids, none = pair.contactor.node_ids, bool(np.abs(state.values).max(initial=0.0) <= nothing)
     return (
-        pressure_statistics(pair.contactor, nodal, load, loaded, share, nothing),
-        resultant(pair.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
+        pressure_statistics(state.contactor, nodal, load, loaded, share, nothing),
+        resultant(state.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 
 
@@ -224,7 +226,7 @@ def _reported(state: PairState, at: Averages) -> NDArray[np.float64]:
     return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
 
 
-def _compression(pair: Pair, traction: NDArray[np.float64]) -> NDArray[np.float64]:
+def _compression(contactor: Surface, traction: NDArray[np.float64]) -> NDArray[np.float64]:
     """Normal part of the tie traction, facet-wise coefficients, compression positive."""
-    normals = nodal_normals(pair.contactor).reshape(traction.shape)
+    normals = nodal_normals(contactor).reshape(traction.shape)
     return np.asarray(-np.einsum("ka,ka->k", normals, traction))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,14 @@ from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.cells import MAX_FACET_NODES
+from abut.mesh.surface import Surface
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
+from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
@@ -215,9 +217,17 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
     )  # fmt: skip
     earlier = before[-1].contacts if before else [None] * len(system.pairs)
     return tuple(
-        contact_result(model.mesh, PairState.of(*state, system.factors), residual, beside_it, one_before)
+        contact_result(
+            model.mesh, PairState.of(*state, system.factors, _now(end, state[0])), residual, beside_it, one_before
+        )
         for state, beside_it, one_before in zip(found, around, earlier)
     )
+
+
+def _now(end: _End, pair: Pair) -> Surface:
+    """The contactor where it is: what turns takes the tractions of a tie with it."""
+    model = end.problem.model
+    return replace(pair.contactor, points=model.mesh.points + end.nodal) if model.finite else pair.contactor
 
 
 def _cycling(system: Linearised, changing: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:

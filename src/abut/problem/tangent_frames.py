@@ -23,10 +23,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Frames:
-    """Where the n functions of a space sit on a contactor in 3D, and what their first tangent follows.
+    """Where the n functions of a space sit on a contactor in 3D, and what their tangents follow.
 
-    facet, local: (n,) a facet and the number of its node; slopes: (n, 9) what makes of the positions of that facet's nodes a
-    direction that goes with the surface, along the first tangent at the outset; handed: (n,) sign of the second."""
+    facet, local: (n,) a facet and the number of its node; slopes: (n, 9, 2) what makes of the positions of that facet's
+    nodes two directions that go with the surface, the tangents at the outset; handed: (n,) sign of the second."""
 
     facet: NDArray[np.int64]
     local: NDArray[np.int64]
@@ -45,26 +45,26 @@ class Frames:
         x = contactor.points[np.maximum(contactor.nodes[facet], 0)]
         along = np.einsum("nja,njd->nad", both, x)
         gram = np.einsum("nad,nbd->nab", along, along)
-        share = np.linalg.solve(gram, np.einsum("nad,nd->na", along, tangents[:, 0])[..., None])[..., 0]
+        share = np.linalg.solve(gram, np.einsum("nad,nbd->nab", along, tangents))
         normal = np.cross(along[:, 0], along[:, 1])
         handed = -np.sign(np.einsum("nd,nd->n", np.cross(normal, tangents[:, 0]), tangents[:, 1]))
-        return cls(facet, local, np.einsum("nja,na->nj", both, share), handed)
+        return cls(facet, local, both @ share, handed)
 
     def at(self, contactor: Surface, normals: MovingNormals) -> FramesNow:
         """Tangents square to each other and to the normal now, theory (G5)."""
         x, nodes = contactor.points, np.maximum(contactor.nodes[self.facet], 0)
-        normal = -normals.values[self.facet, self.local]
-        along = np.einsum("nj,njd->nd", self.slopes, x[nodes])
+        normal, sign = -normals.values[self.facet, self.local], self.handed[:, None, None]
+        along, aside = np.einsum("nja,njd->and", self.slopes, x[nodes])
         up = np.einsum("nd,nd->n", normal, along)
-        flat = along - up[:, None] * normal
+        flat = along - up[:, None] * normal + self.handed[:, None] * np.cross(aside, normal)
         length = np.linalg.norm(flat, axis=1)[:, None, None]
         first = flat / length[:, 0]
         square = (np.eye(3) - first[:, :, None] * first[:, None]) / length
         level = np.eye(3) - normal[:, :, None] * normal[:, None]
         turn = up[:, None, None] * np.eye(3) + normal[:, :, None] * along[:, None]
-        by_along, by_outward = square @ level, square @ turn
+        by_along = square @ np.concatenate([level, -sign * crossing(normal)], axis=2)
+        by_outward = square @ (turn - sign * crossing(aside))
         second = self.handed[:, None] * np.cross(normal, first)
-        sign = self.handed[:, None, None]
         by_first, by_normal = sign * crossing(normal), sign * crossing(first)
         return FramesNow(
             np.stack([first, second], axis=1),
@@ -74,20 +74,21 @@ class Frames:
         )
 
     def spread(self, contactor: Surface, values: Array) -> Sparse:
-        """What blocks (n, r, 3) of derivatives by the first tangent's direction are by the points, (r n, 3 n_points)."""
-        used = (contactor.nodes[self.facet] >= 0) & (self.slopes != 0.0)
+        """What blocks (n, r, 6) of derivatives by the two directions are by the points, (r n, 3 n_points)."""
+        used = (contactor.nodes[self.facet] >= 0) & (self.slopes != 0.0).any(axis=2)
         row, local = np.nonzero(used)
         node = contactor.nodes[self.facet][row, local]
         order = np.lexsort((node, row))
         row, local, node = row[order], local[order], node[order]
         start = np.searchsorted(row, np.arange(len(values) + 1))
-        return block_rows((self.slopes[row, local][:, None, None] * values[row], node, start), len(contactor.points))
+        by_node = np.einsum("ma,mrad->mrd", self.slopes[row, local], values.reshape(len(values), -1, 2, 3)[row])
+        return block_rows((by_node, node, start), len(contactor.points))
 
 
 @dataclass(frozen=True)
 class FramesNow:
-    """Tangents (n, 2, 3), and their derivatives (n, 2, 3, 3) by the direction that the first one follows, ``Frames.spread``,
-    and by the nodal normal, out of the contactor, of number ``number`` (n,)."""
+    """Tangents (n, 2, 3), and their derivatives by the two directions that they follow, (n, 2, 3, 6), ``Frames.spread``, and
+    by the nodal normal, out of the contactor, of number ``number`` (n,), (n, 2, 3, 3)."""
 
     tangents: Array
     by_along: Array

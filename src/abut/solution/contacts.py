@@ -46,11 +46,11 @@ def worst(checks: Sequence[Check]) -> Check:
 class PressureStatistics:
     """The pressure of a contact over its loaded area, at points at least half of whose support is covered.
 
-    largest: of the reported pressure, force per area; place: (dim,) where, undeformed coordinates; partly_covered: the
-    largest at points with less of their support covered, which count nowhere else, NaN where none of these is loaded;
-    area: the loaded one, of multipliers in contact above a thousandth of the largest (2D: a length; axisymmetric: of the
-    whole turn); mean: normal force over it; percentile_95: the pressure that 95 % of it stays below. Where nothing is in
-    contact place, mean and percentile are NaN.
+    largest: of the reported pressure, force per area; place: (dim,) where, coordinates as those of Resultant;
+    partly_covered: the largest at points with less of their support covered, which count nowhere else, NaN where none of
+    these is loaded; area: the loaded one, of multipliers in contact above a thousandth of the largest (2D: a length;
+    axisymmetric: of the whole turn); mean: normal force over it; percentile_95: the pressure that 95 % of it stays below.
+    Where nothing is in contact place, mean and percentile are NaN.
     """
 
     largest: float
@@ -63,7 +63,8 @@ class PressureStatistics:
 
 @dataclass(frozen=True)
 class Resultant:
-    """Resultant of the nodal forces of a contact on its contactor, in undeformed coordinates.
+    """Resultant of the nodal forces of a contact on its contactor, in undeformed coordinates; with finite kinematics in
+    deformed ones.
 
     force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the full circumference; moment: (1,)
     or (3,) about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the
