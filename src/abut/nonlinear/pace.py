@@ -66,7 +66,7 @@ class Pace:
         self._length = 0.5 * (end - self.time)
 
     def take(self, iterations: int, landed: float = 0.0) -> None:
-        """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck in it."""
+        """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck."""
         end = self.end
         assert end is not None
         self.time = end

@@ -175,13 +175,13 @@ class FiniteProblem(ContactProblem):
         return replace(state, history=history)
 
     def _landed(self, before: State, now: State) -> dict[str, Array]:
-        """By contact with friction, what of it points have that touched and stuck in a step, and all that it carries at most:
-        (1, 2) forces."""
+        """By contact with friction the forces of ``Landed`` in a step, (1, 2)."""
         found, factors = {}, weights(self.model.histories, now.time)
-        parts = (self.split(values) for values in (now.multipliers, now.closed, now.slipping, ~before.closed))
-        for kind, *part in zip(self.moving, *parts):
+        parts = [self.split(values) for values in (now.multipliers, now.closed, now.slipping, ~before.closed)]
+        for kind, values, closed, slipping, opened in zip(self.moving, *parts):
             if kind is not None and kind.pair.frictional:
-                share = landed(kind.pair, PairEnd(*part, self._past(kind, before).shift), factors)
+                end = PairEnd(values, closed, slipping, opened, self._past(kind, before).shift)
+                share = landed(kind.pair, end, factors)
                 found[kind.pair.contact.name] = np.array([[share.unsure, share.limit]])
         return found
 

@@ -30,8 +30,8 @@ class Landed:
 
 @dataclass(frozen=True)
 class PairEnd:
-    """Multipliers (n,) of a pair at the end of a step, with ``closed`` and ``slipping``; open: (n,) those that were not closed
-    at its beginning; shift: (n_tangential,) weighted slips that do not count in it, as in ``Past``."""
+    """Multipliers (n,) of a pair at the end of a step, with ``closed`` and ``slipping``; open: (n,) those not closed at its
+    beginning; shift: (n_tangential,) weighted slips that do not count in it, as in ``Past``."""
 
     multipliers: Array
     closed: NDArray[np.bool_]
