@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.models.sliding import arched, finite
 
 import abut
 from abut.diagnosis.cures import cures
 from abut.problem.landed import PairEnd, landed
+from models.sliding import arched, finite
 
 FRICTION = 0.3
 
