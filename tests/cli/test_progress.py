@@ -95,6 +95,21 @@ def test_time_left_goes_by_the_steps_of_this_run() -> None:
         assert "about 17 s left" in show.status(began + 23.0)
 
 
+def test_steps_that_are_chosen_on_the_way(capsys: pytest.CaptureFixture[str]) -> None:
+    """Nobody knows how many there will be: the time that lies behind counts. A tenth took 10 s, so that
+    the rest will take 90 s; the table says where each step leads."""
+    show = Progress()
+    for number, (behind, ahead) in enumerate([(0.0, 0.1), (0.1, 0.25)], start=1):
+        show(Phase(f"step {number}, to time {ahead}", share=behind))
+        show(Phase("setting up multigrid"))
+        show(Iteration(number, 1, 1, 0, 0.0, 0.0, 0.0, 0.0))
+    show._since = show._first + 10.0
+    assert "10% of the way done, about 1 min 30 s left" in show.status(show._since)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "step 1, to time 0.1"
+    assert lines[3] == "step 2, to time 0.25"
+
+
 def test_stages_come_in_order(tmp_path: Path) -> None:
     seen: list[str] = []
 

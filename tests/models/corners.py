@@ -80,9 +80,10 @@ def wedge(cell: str, aside: float = 0.0) -> abut.Model:
     )  # fmt: skip
 
 
-def landing(cell: str, cells: int, on_corner: bool) -> abut.Model:
-    """A cube that lands on a plate with an edge or a corner, deep enough for whole facets to touch, and is drawn along."""
-    a, b = np.deg2rad(25.0), np.deg2rad(20.0)
+def landing(cell: str, cells: int, on_corner: bool, tilt: float = 25.0) -> abut.Model:
+    """A cube that lands on a plate with an edge or a corner, deep enough for whole facets to touch, and is drawn along.
+    tilt: of its bottom, in degrees."""
+    a, b = np.deg2rad(tilt), np.deg2rad(20.0)
     turn = np.array([[np.cos(a), 0.0, np.sin(a)], [0.0, 1.0, 0.0], [-np.sin(a), 0.0, np.cos(a)]])
     if on_corner:
         turn = turn @ np.array([[1.0, 0.0, 0.0], [0.0, np.cos(b), -np.sin(b)], [0.0, np.sin(b), np.cos(b)]])

@@ -100,3 +100,13 @@ def test_several_give_way() -> None:
     assert result.multipliers[2] > 0.0
     assert linear.gap(result).min() > -1e-12
     assert result.multipliers.min() >= 0.0
+
+
+def test_another_one_that_pulls_then() -> None:
+    """The third presses where the second opens, and what it presses apart pulls at the first: that opens too."""
+    linear = Linear(np.array([[1.0, 0.0, 1.0], [0.0, 2.0, 3.0], [0.0, 3.0, 2.0]]), np.array([-1.0, -1.0, -3.0]))
+    assert linear.solved(at_rest(0, 3).with_closed(np.array([True, False, True]))).multipliers[0] < 0.0
+    result = after(linear, [True, True, True], np.array([0, 0, AGAIN]))
+    assert result.closed.tolist() == [False, False, True]
+    assert result.multipliers == pytest.approx([0.0, 0.0, 1.5])
+    assert linear.gap(result).min() > -1e-12

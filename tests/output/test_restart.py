@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -227,10 +228,15 @@ def test_ctrl_c_keeps_the_steps_done(sent: str, status: int, tmp_path: Path) -> 
     assert "stopping after the current iteration" in error
     assert "abut run --restart" in error
     assert "Traceback" not in error
+    done = int(re.search(r"steps 1 to (\d+) are in", error)[1])  # type: ignore[index]
+    assert f"up to time {done / 400:.4g} of 1; go on" in error
     left = json.loads((tmp_path / "results" / "summary.json").read_text())
     assert left["status"] == "incomplete"
     assert len(left["steps"]) >= 2
-    assert {p.suffix for p in (tmp_path / "results").iterdir()} == {".json", ".csv", ".jsonl", ".pvd", ".vtu", ""}
+    files = {".html", ".json", ".csv", ".jsonl", ".pvd", ".vtu", ""}
+    assert {p.suffix for p in (tmp_path / "results").iterdir()} == files
+    report = (tmp_path / "results" / "report.html").read_text(encoding="utf-8")
+    assert f"Stopped after step {done}, time {done / 400:.4g} of 1 reached: there are steps left." in report
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")

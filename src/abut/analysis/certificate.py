@@ -172,11 +172,8 @@ def _cover(case: _Case) -> Iterator[Check]:
     """How much of the contactor has a target opposite, and how often."""
     areas, cover, loaded, pair = case.areas, case.cover, case.loaded, case.pair
     others = np.zeros((len(areas), 2)) if case.around.elsewhere is None else case.around.elsewhere
-    covered = (np.minimum(cover + others[:, 0], np.maximum(cover, 1.0)) * areas)[loaded].sum()
-    bare = 1.0 - float(covered / areas[loaded].sum()) if loaded.any() else 0.0
-    yield case.check(
-        "loaded area without target", max(bare, 0.0), BARE, "share of the loaded facets' area with no target opposite"
-    )
+    yield case.check("loaded area without target", _bare(case, others[:, 0]), BARE,
+        "share of its facet that has no target opposite, on average over the contact force")  # fmt: skip
     if case.around.support is None:
         total = pair.space.removed + (len(pair) if pair.tied else len(pair.space))
         yield case.check("removed multipliers", pair.space.removed / max(total, 1), REMOVED,
@@ -186,6 +183,17 @@ def _cover(case: _Case) -> Iterator[Check]:
     every = (cover + others[:, 1])[counts]
     yield case.check("covered twice", max(float(every.max(initial=0.0)) - 1.0, 0.0), COVERED_TWICE,
         "share of a loaded facet with two layers of target opposite, both counted, here or by another contact")  # fmt: skip
+
+
+def _bare(case: _Case, elsewhere: NDArray[np.float64]) -> float:
+    """Share of a facet that has no target opposite, here or of another contact (elsewhere: (n_facets,) what those cover), on
+    average over the force by size: facets at the target's edge count by what they carry."""
+    coupling, cover = case.pair.coupling, case.cover
+    values = case.values.reshape(len(coupling.weight), -1)
+    force = np.abs(coupling.weight[:, None] * values).reshape(len(cover), -1).sum(axis=1)
+    missing = 1.0 - np.minimum(cover + elsewhere, np.maximum(cover, 1.0))
+    total = float(force.sum())
+    return max(float(force @ missing) / total, 0.0) if total > 0.0 else 0.0
 
 
 def balance(pair: Pair, values: NDArray[np.float64]) -> tuple[float, float]:

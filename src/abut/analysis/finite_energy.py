@@ -65,5 +65,6 @@ def finite_energy(
         stepping=(internal - stored) - (work("rubbing") + friction),
         size=max(size, NOTHING * earlier, 1e-300),
         left=float(rounding + max(before.residual, now.residual) * way.sum()),
+        earlier=earlier,
         elastic=now.stored,
     )

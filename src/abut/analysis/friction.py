@@ -225,7 +225,8 @@ def friction_checks(
     against = (size * way + power)[slips_now]
     faint = FAINT * largest * float(way[states != OPEN].max(initial=0.0))  # of what is pressed by rounding alone
     most = max(float((size * way).max(initial=0.0)), largest**2 / pair.stiffness * WORK, faint, 1e-300)
-    work = -(power * pair.space.weight)[states != OPEN]
+    held = sticks & (way * pair.stiffness <= STUCK * largest)  # "sticking" allows for that slip, whichever way it goes
+    work = -(power * pair.space.weight)[(states != OPEN) & ~held]
     unit = max(1e-300, float(np.abs(work).max(initial=0.0)), most * float(pair.space.weight.max(initial=1e-300)))
     left_out = _left_out(pair, slips[:, 3], np.where(np.isfinite(bound), bound, pressure))
     values = (

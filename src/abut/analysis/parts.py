@@ -41,4 +41,5 @@ def _energy(parts: Sequence[Energy | None]) -> Energy | None:
     if not known:
         return None
     total = {f.name: sum(getattr(part, f.name) for part in known) for f in fields(Energy) if f.name != "elastic"}
-    return Energy(**{**total, "size": max(part.size for part in known), "elastic": known[-1].elastic})
+    most = {name: max(getattr(part, name) for part in known) for name in ("size", "earlier")}
+    return Energy(**{**total, **most, "elastic": known[-1].elastic})

@@ -14,7 +14,7 @@ from abut.analysis.linear_solvers import assembled_bodies, linear_solver, settin
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
-from abut.errors import ConvergenceError, SingularModelError
+from abut.errors import ConvergenceError, SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
@@ -111,10 +111,12 @@ class Run:
 
         def begins(number: int, time: float) -> None:
             self.deadline.begins()
+            if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
+                behind = self.steps[-1].factor if self.steps else 0.0
+                observe(Phase(f"step {number}, to time {time:.4g}", share=behind))
+                return
             of_all = max(count, number)
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
-            if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
-                return
             factors = weights(self.model.histories, time)
             loads = problem.constraints.free.T @ (self.assembled.loaded.forces @ factors)
             require_balance(problem.restraint.at(factors), loads, f" in step {number}" if count > 1 else "")
@@ -146,7 +148,8 @@ class Run:
             attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)
         for attempt in attempts:
             self.clock.mark("solve")
-            observe(Phase(f"stresses and checks of step {attempt.number}", None, attempt.number - 1, count))
+            ends = (0, 0) if self.model.finite else (attempt.number - 1, count)
+            observe(Phase(f"stresses and checks of step {attempt.number}", None, *ends))
             self._end(attempt)
         if self.solver.effort:
             self.told.note(self.solver.effort)
@@ -177,7 +180,10 @@ class Run:
             self._keep()
         if not attempt.iterations:  # there is no state to show
             raise ConvergenceError(f"step {attempt.number} cannot be begun, however short: {attempt.reason}")
-        self.steps.append(self._result(attempt))
+        try:
+            self.steps.append(self._result(attempt))
+        except Unsound as reason:
+            raise ConvergenceError(f"step {attempt.number} did not converge; in its last state {reason}") from None
         self.clock.mark("results")
         count = len(attempt.iterations)
         self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")

@@ -7,6 +7,7 @@ from abut.benchmarks import (
     contrast,
     convergence,
     finite_beams,
+    finite_capstan,
     finite_contact,
     finite_contact_3d,
     finite_gears,
@@ -47,5 +48,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_contact_3d.BENCHMARKS,
         *finite_gears.BENCHMARKS,
         *finite_wires.BENCHMARKS,
+        *finite_capstan.BENCHMARKS,
     )
 }

@@ -39,7 +39,10 @@ class Progress:
         self._began = self._spoke = self._first = self._since = time.monotonic()
         self._patience = PATIENCE
         self._step = self._iteration = 0
-        self._before = self._done = self._total = 0  # load steps: done before this run, by now, to be done
+        self._before = self._done = self._total = (
+            0.0  # load steps, or the way: done before this run, by now, to be done
+        )
+        self._aim = ""  # of a step whose number among all nobody knows
 
     def __call__(self, item: Iteration | Phase | str) -> None:
         if isinstance(item, Phase):
@@ -49,6 +52,8 @@ class Progress:
         else:
             if item.step != self._step:
                 self._step = item.step
+                if self._aim:
+                    self.line(self._aim)
                 self.line(HEAD if item.slipping is None else HEAD_FRICTION)
             self._iteration = item.iteration
             self.line(_table_row(item))
@@ -72,11 +77,13 @@ class Progress:
     def _enter_stage(self, stage: Phase) -> None:
         now = time.monotonic()
         with self._lock:
-            if stage.total and not self._total:
-                self._first, self._before = now, stage.done
-            if stage.total and (not self._total or stage.done > self._done):
-                self._done, self._since = stage.done, now
-            self._total = stage.total or self._total
+            done, total = (stage.done, stage.total) if stage.share is None else (stage.share, 1.0)
+            self._aim = self._aim if stage.share is None else stage.name
+            if total and not self._total:
+                self._first, self._before = now, done
+            if total and (not self._total or done > self._done):
+                self._done, self._since = done, now
+            self._total = total or self._total
             self._stage, self._began, self._iteration = stage, now, 0
             self._patience = PATIENCE
             if self._live is not None:
@@ -96,7 +103,8 @@ class Progress:
         if self._total > self._done > self._before:
             each = (self._since - self._first) / (self._done - self._before)
             left = max(each * (self._total - self._done) - (now - self._since), 0.0)
-            text += f"; {self._done} of {self._total} steps done, about {_duration(left)} left"
+            done = f"{self._done:.0%} of the way" if self._aim else f"{self._done} of {self._total} steps"
+            text += f"; {done} done, about {_duration(left)} left"
         return text
 
     def _watch(self) -> None:

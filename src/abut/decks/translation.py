@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from abut.bodies.loads import stress_load
+from abut.bodies.loads import stress_load, surface_area
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
@@ -48,7 +48,9 @@ from abut.model import (
 )
 
 AXES = "xyz"
-SAME_WAY = 0.9  # cosine between mean normals of two surfaces that cannot touch
+SAME_WAY = (
+    0.9  # of two surfaces that cannot touch: product of their mean normals (short ones where a surface bends round)
+)
 
 
 @dataclass(frozen=True)
@@ -264,10 +266,13 @@ def _general(
 
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
-    """Raise InputError for surfaces that look the same way, which happens where meshes overlap."""
-    push = [stress_load(surface, np.eye(mesh.dim)) for surface in find_sides(mesh, contact.contactor, contact.target)]
-    a, b = (surface.reshape(-1, mesh.dim).sum(axis=0) for surface in push)  # area times outward normal
-    if a @ b > SAME_WAY * np.linalg.norm(a) * np.linalg.norm(b) > 0.0:
+    """Raise InputError for flat surfaces that look the same way, which happens where meshes overlap."""
+    if contact.contactor == contact.target:
+        return
+    sides = find_sides(mesh, contact.contactor, contact.target)
+    push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
+    a, b = (normal / surface_area(side) for normal, side in zip(push, sides))
+    if a @ b > SAME_WAY:
         card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(
             pair.place,

@@ -95,7 +95,13 @@ def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
     if fine * FINER < 1.0:
         way = f"{sides}, or refine the target" if sides else "refine the target"
         return f"{way}: the contactor's facets are {fine:.2g} of the target's in size"
-    return "refine both surfaces where they touch" + (f", or {sides}" if sides else "")
+    refine = "refine both surfaces where they touch" + (f", or {sides}" if sides else "")
+    if not contact.adjust:
+        return refine
+    return (
+        f"where adjust = {contact.adjust:g} ends within the contact it leaves a step that carries a peak: choose it larger "
+        f"than all gaps that close, or leave it out; else {refine}"
+    )
 
 
 def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:

@@ -21,6 +21,7 @@ def exchanged(system: Linearised, here: State, there: State, closings: NDArray[n
     A point that has closed again and again penetrates where it is open, and pulls where it is closed with the others. In
     the linear problem a pressure on it changes theirs in proportion, which the two solutions tell; the first of them
     that it brings to nothing opens, and so on until the point presses (principal pivoting, Cottle and Dantzig 1968).
+    What pulls when it does opens too, one after the other.
     closings: (n,) how often each multiplier has closed in the step; advance: the linear solution with a state's status."""
     pressures = _pressures(system)
     pulls = pressures & here.closed & (closings >= AGAIN) & (there.multipliers < 0.0)
@@ -35,9 +36,22 @@ def exchanged(system: Linearised, here: State, there: State, closings: NDArray[n
         state = _opened(system, state, other)
         result = advance(state)
         if result.multipliers[point] > 0.0:
-            return result
+            return _relieved(system, state, result, point, pressures, advance)
         without = advance(_opened(system, state, point))
     return there
+
+
+def _relieved(
+    system: Linearised, state: State, result: State, point: int, pressures: NDArray[np.bool_], advance: Advance
+) -> State:
+    """Without the points that pull where ``point`` presses, one after the other, as long as it does."""
+    while (pulls := pressures & state.closed & (result.multipliers < 0.0)).any():
+        state = _opened(system, state, int(np.argmin(np.where(pulls, result.multipliers, 0.0))))
+        other = advance(state)
+        if other.multipliers[point] <= 0.0:
+            break
+        result = other
+    return result
 
 
 def _pressures(system: Linearised) -> NDArray[np.bool_]:

@@ -34,8 +34,20 @@ def _nodes(pair: Pair, functions: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _told(problem: ContactProblem, pair: Pair, nodes: NDArray[np.int64], what: str) -> str:
-    """A sharp corner has a function on each of its faces."""
-    sharp = any(int((pair.space.node == node).sum()) > 1 for node in nodes)
-    places = [f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})" for node in nodes]
-    cure = ", a sharp corner or edge: round it off by a few facets" if sharp else ": refine the contactor there"
-    return f"contact '{pair.contact.name}' {what}, at {' and '.join(places)} in the undeformed mesh{cure}"
+    places = " and ".join(place(problem, node) for node in nodes)
+    cure = cured(pair, nodes) or ": refine the contactor there"
+    return f"contact '{pair.contact.name}' {what}, at {places} in the undeformed mesh{cure}"
+
+
+def place(problem: ContactProblem, node: int) -> str:
+    """Where a point of the mesh lies, in words."""
+    return f"({', '.join(f'{x:.6g}' for x in problem.model.mesh.points[node])})"
+
+
+def cured(pair: Pair, nodes: NDArray[np.int64]) -> str:
+    """What helps where a contact hangs on nodes, as far as is known: a sharp corner or edge has a function on each of its
+    faces; facets that belong to both sides have roles by their rank, which changes from one to the next."""
+    if any(int((pair.space.node == node).sum()) > 1 for node in nodes):
+        return ", a sharp corner or edge: round it off by a few facets"
+    own, other = (8 * side.cells + side.local for side in (pair.contactor, pair.target))
+    return ": name the two sides that touch, one as contactor, the other as target" if np.isin(own, other).any() else ""

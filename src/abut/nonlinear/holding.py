@@ -141,6 +141,15 @@ def flies_off(problem: ContactProblem, before: State, now: State) -> str:
     return f"body '{body}' flies off: hold it by a support, by friction, or in steps that its contact follows"
 
 
+def lifted(system: Linearised, before: State) -> str:
+    """Which body the loads of a step carry off all that it touches at the converged state ``before``, and what to do; empty
+    where none. It is at rest next only where it meets something again, which may be far."""
+    motion = system.restraint.lifted(system.forces, before.closed)
+    if not motion:
+        return ""
+    return f"the loads carry it off what it touches: {motion}; hold it by a support, or move it to where it rests"
+
+
 def thrown_apart(system: Linearised, before: State, now: State) -> str:
     """Why the state ``now`` does not follow from the converged state ``before``; empty where it may.
 

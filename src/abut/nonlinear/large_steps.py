@@ -9,6 +9,7 @@ import numpy as np
 
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.hanging import hanging
+from abut.nonlinear.holding import lifted
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
@@ -60,7 +61,8 @@ def march_finite(
         pace.halve()
         if pace.stuck:
             where = hanging(problem, before, attempt.cycling)
-            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where))))
+            away = lifted(problem.ahead(before, time), before)
+            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where, away))))
             return
         control.halves(attempt, pace.end or time)
 

@@ -21,6 +21,7 @@ from abut.nonlinear.iteration import Found, Increment, advance, largest_force, l
 from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
 from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.smooth_laws import NO_PRESSURE
+from abut.nonlinear.unsettled import circling, most_at
 from abut.problem.finite import FiniteProblem
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
@@ -37,17 +38,25 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Balance:
-    """What a state leaves open. force, law: the largest over the largest force and pressure; size: all of it together;
-    rounding: of forces over the largest."""
+    """What a state leaves open. forces: (n_unknowns,) over the largest; broken: (n,) laws over the largest pressure; size:
+    all of it together; rounding: of forces over the largest."""
 
     system: Linearised
     state: State
     laws: Sequence[LawRows]
-    force: float
-    law: float
+    forces: Vector
+    broken: Vector
     size: float
     changed: NDArray[np.bool_]
     rounding: float
+
+    @property
+    def force(self) -> float:
+        return float(np.abs(self.forces).max(initial=0.0))
+
+    @property
+    def law(self) -> float:
+        return float(np.abs(self.broken).max(initial=0.0))
 
     @property
     def error(self) -> float:
@@ -129,7 +138,7 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 
 def _newton(step: Step, guess: State | None, time: float) -> Balance:
-    begun, before = clocks.perf_counter(), np.inf
+    begun, before, errors = clocks.perf_counter(), np.inf, list[float]()
     closings = np.zeros(len(step.before.status), dtype=np.int64)
     here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
     if guess is None:
@@ -138,11 +147,10 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
         state = nearest_kept(here.system, step.before, here.state)
         here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
     while guess is not None or not _balanced(here, before):
-        if len(step.done) >= step.limit:
-            step.failed = (
-                f"{step.limit} iterations were not enough: {here.force:.1e} of the forces, {here.law:.1e} of the laws, and "
-                f"{int(here.changed.sum())} multipliers that change"
-            )
+        if circling(errors) and not step.careful:
+            step.careful, errors = True, []
+        if len(step.done) >= step.limit or circling(errors):
+            step.failed = _unsettled(step, here)
             break
         following, swapped = _following(step, here, closings, forcing(here.error, before, BALANCED))
         step.failed = flies_off(step.problem, step.before, following)
@@ -157,8 +165,23 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
             step.failed = "forces are not finite"
             break
         before, here, guess = here.error, there, None
+        errors.append(here.error)
         begun = _report(step, here, begun)
     return here
+
+
+def _unsettled(step: Step, here: Balance) -> str:
+    """Why iterations have ended without a solution."""
+    why = (
+        f"{step.limit} iterations were not enough"
+        if len(step.done) >= step.limit
+        else "iterations go round in a circle"
+    )
+    most = most_at(step.problem, here.forces, here.broken)
+    return (
+        f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
+        f"{int(here.changed.sum())} multipliers that change"
+    )
 
 
 def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
@@ -227,8 +250,7 @@ def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     left = system.unbalanced(state) / forces
     law = left_open(system, laws, step.asked) / pressures
     return Balance(
-        system, state, laws, float(np.abs(left).max(initial=0.0)), float(np.abs(law).max(initial=0.0)),
-        float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+        system, state, laws, left, law, float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
         0.0 if system.about is None else system.about.rounding / forces,
     )  # fmt: skip
 

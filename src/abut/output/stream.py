@@ -44,6 +44,7 @@ class Stream:
         self._model = model
         self._resumed = len(resumed)
         self._written: set[int] = set()
+        self.time = resumed[-1].state.time if resumed else 0.0  # that the steps in the directory reach
         self._made = [p for p in (directory, *directory.parents) if not p.exists()]
         make_directory(directory)
         remove_leftovers(directory)
@@ -75,6 +76,7 @@ class Stream:
             clear(self.directory)  # of an earlier run: it would no longer fit
         write_steps(self.directory, solution, self._missing(solution), self._fields)
         self._written.add(saved.number)
+        self.time = saved.state.time
         write_index(self.directory, solution)
         save_step(self.directory, self._model, saved)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
 from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
+from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
@@ -214,9 +215,11 @@ class Current:
     def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
         """Which functions follow others where the pair is now, with multipliers (n,) closed."""
         contactor, target = self.surfaces(displacement)
-        options = self._options(np.zeros_like(displacement))
+        sharp = bool(at_corners(self.pair.space).any())
+        options = replace(self._options(np.zeros_like(displacement)), keep_points=sharp)
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
-        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal])
+        beside = edge_on(self.pair.space, target, covered, self._facet)
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal], beside)
 
     def _mixture(
         self, contactor: Surface, target: Surface, options: CouplingOptions, inner: Array | None

@@ -26,18 +26,25 @@ class Following:
     share: NDArray[np.float64]
 
     @classmethod
-    def of(cls, space: PressureSpace, contactor: Surface, coupling: Coupling, closed: NDArray[np.bool_]) -> Following:
+    def of(
+        cls,
+        space: PressureSpace,
+        contactor: Surface,
+        coupling: Coupling,
+        closed: NDArray[np.bool_],
+        edge_on: NDArray[np.bool_],
+    ) -> Following:
         """On a contactor that is where it is now: with less than ``WEAK_SUPPORT`` of its support covered, be it none, a
         function in or beside closed contact follows the neighbour that has most. Without a neighbour that has more, those of
-        a facet alone have no pressure; others keep their own.
+        a facet alone have no pressure; others keep their own. Those ``edge_on`` (n_functions,) have none.
 
         space: with a multiplier for every function; coupling: of that contactor; closed: (n_functions,)."""
         share, own = covered_share(space, contactor, coupling), np.arange(len(space))
         now, weak = replace(space, weight=space.plain.T @ coupling.weight), share < WEAK_SUPPORT
-        to = leaders(now, keep=~weak, goes=weak)
+        to = leaders(now, keep=~weak & ~edge_on, goes=weak)
         gone = (to < 0) & weak & (share > NO_SUPPORT) & (space.node < 0) & (not weak.all())
         stays = ~gone & ((to < 0) | ~(closed | beside(space, closed)[to]))
-        return cls(np.where(stays, own, to), share)
+        return cls(np.where(edge_on, -1, np.where(stays, own, to)), share)
 
     def matters(self, before: NDArray[np.int64], closed: NDArray[np.bool_]) -> bool:
         """Whether functions with a target follow that did not, or the other way round, where something is closed, and not

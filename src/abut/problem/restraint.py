@@ -83,6 +83,11 @@ class Restraint:
         motion = self._moved(force)
         return "" if motion is None else self._in_words(motion, [force], driven=True)
 
+    def lifted(self, force: NDArray[np.float64], active: NDArray[np.bool_]) -> str:
+        """The motion, in words, that forces (n_free,) cause though the multipliers ``active`` (n,) push; else empty."""
+        motion = None if self.by_supports else self._moved(force, active)
+        return "" if motion is None else describe(self.rigid, motion[:, None], one_way=True)
+
     def unheld(self, forces: Sequence[NDArray[np.float64]]) -> str:
         """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
         is none. forces: (n_free,) of each load step, none of which is out of balance."""

@@ -83,9 +83,12 @@ def _head(solution: Solution, origin: Origin) -> str:
     failed = [check for check in solution.certificate if not check.passed]
     theory = [row for row in comparison(solution, origin.expected) if not row["passed"]]
     if not solution.converged:
-        good, verdict = False, f"Not converged at step {solution.steps[-1].number}: what follows is the last state."
+        good, verdict = (
+            False,
+            f"Not converged at step {solution.steps[-1].number}{_reached(solution)}: what follows is the last state.",
+        )
     elif not solution.complete:
-        good, verdict = False, f"Stopped after step {len(solution.steps)}: there are steps left."
+        good, verdict = False, f"Stopped after step {len(solution.steps)}{_reached(solution)}: there are steps left."
     elif failed:
         names = ", ".join(f"{c.contact}: {c.name}" if c.contact else c.name for c in failed)
         good, verdict = False, f"Converged, but {len(failed)} of {len(solution.certificate)} checks fail: {names}."
@@ -110,6 +113,12 @@ def _head(solution: Solution, origin: Origin) -> str:
         f"<h1>{escape(origin.title)}</h1>"
         f'<p class="verdict {"good" if good else "bad"}"><i>{mark}</i>{escape(verdict)}</p><div class=facts>{chips}</div>'
     )
+
+
+def _reached(solution: Solution) -> str:
+    """Up to which time steps have converged, in words."""
+    times = [step.factor for step in solution.steps if step.converged]
+    return f", time {times[-1]:.4g} of 1 reached" if times else ""
 
 
 def _certificate(solution: Solution) -> str:

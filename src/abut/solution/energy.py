@@ -21,7 +21,7 @@ class Energy:
     kinematics also what the mean stresses of the step do beyond what is stored.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
     displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
-    with finite kinematics only.
+    with finite kinematics only; earlier: with them, the largest size of the steps before.
     """
 
     loads: float
@@ -33,6 +33,7 @@ class Energy:
     size: float
     left: float
     elastic: float | None = None
+    earlier: float = 0.0
 
     @property
     def error(self) -> float:
@@ -42,5 +43,7 @@ class Energy:
 
     @property
     def limit(self) -> float:
-        """Of the error: at least and at most fixed shares of the size."""
-        return min(max(ENERGY, self.left / self.size), ROUNDED)
+        """Of the error: what is left, but for fixed shares of the size at least and at most; where the steps before did far
+        more, at most a share of that. A body that contact alone holds rocks within the tolerance of forces, which is much
+        beside a step in which hardly anything else moves."""
+        return max(ENERGY, min(self.left / self.size, max(ROUNDED, ENERGY * self.earlier / self.size)))

@@ -36,12 +36,14 @@ class Iteration:
 @dataclass(frozen=True)
 class Phase:
     """A stage of the run begins. ``seconds``: how long it will take, from its size (None: not known); ``done`` of
-    ``total`` load steps lie behind."""
+    ``total`` load steps lie behind; share: of the time from 0 to 1 that lies behind, where nobody knows how many steps there
+    will be."""
 
     name: str
     seconds: float | None = None
     done: int = 0
     total: int = 0
+    share: float | None = None
 
     def __str__(self) -> str:
         return self.name if self.seconds is None else f"{self.name}: about {max(self.seconds, 1.0):.2g} s"

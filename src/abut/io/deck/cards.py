@@ -159,7 +159,7 @@ def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
             continue
         if head is None:
             raise DeckError(place, "a data line before the first card; decks begin with a card such as *NODE")
-        data.append(Line(tuple(part.strip() for part in text.split(",")), place, head[1]))
+        data.append(Line(_fields(text), place, head[1]))
     if pending:
         close()
         head = (*_parse(pending.rstrip(","), begun), begun)
@@ -180,11 +180,16 @@ def _parse(text: str, place: Place) -> tuple[str, str, dict[str, str | None]]:
         keyword, equals, value = part.partition("=")
         if not keyword.strip():
             continue
-        value = value.strip()
-        if len(value) > 1 and value[0] == value[-1] == '"':
-            value = value[1:-1]
+        value = value.replace('"', "").strip()
         parameters[key(keyword)] = value if equals else None
     return key(name), "*" + " ".join(name.upper().split()), parameters
+
+
+def _fields(text: str) -> tuple[str, ...]:
+    """Of a data line; names may stand in quotes, also those of instances: "a b".SET."""
+    if '"' not in text:
+        return tuple(part.strip() for part in text.split(","))
+    return tuple(part.replace('"', "").strip() for part in _split(text))
 
 
 def _split(text: str) -> list[str]:

@@ -99,12 +99,12 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
-    """Names of slave and master surface, line by line."""
+    """Names of slave and master surface, line by line; of a contact pair with one, which touches itself, twice that."""
     card.first("slave and master surface")
     for line in card.lines:
         names = []
         for i, what in enumerate(("slave", "master")):
-            text = line.text(i)
+            text = line.text(i) or (line.text(0) if card.key == "CONTACTPAIR" else "")
             if text.upper() not in mesh.surfaces:
                 spelled = [surface.name for surface in mesh.surfaces.values()]
                 raise line.unknown(f"no {what} surface named {text!r}{nearest(text, spelled)}")
@@ -122,7 +122,7 @@ def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
             raise card.error(f"ADJUST: expected a distance >= 0 or a node set, got {text}")
         return value
     if text.upper() not in mesh.node_sets.sets:
-        raise card.unknown(f"ADJUST: no node set named {text!r}{nearest(text, mesh.node_sets.spelled.values())}")
+        raise card.unknown(f"ADJUST: no node set named {text!r}{mesh.node_sets.like(text)}")
     return mesh.node_sets.sets[text.upper()]
 
 

@@ -22,6 +22,12 @@ class ElementType:
 
 
 _HOURGLASS = "instead of one point with hourglass control; stiffer in bending"
+_MODES = "mean dilatation (b-bar) instead of incompatible modes; stiffer in bending"
+_MEAN = ("b-bar", "mean dilatation (b-bar) instead of a pressure unknown; for Poisson's ratios up to about 0.49")
+_POINTS = (
+    "reduced",
+    "reduced integration instead of a pressure unknown or of the modified element; for Poisson's ratios up to about 0.49",
+)
 
 
 def _types() -> dict[str, ElementType]:
@@ -31,13 +37,14 @@ def _types() -> dict[str, ElementType]:
         "C3D6": ElementType("wedge6", None, "full", "full integration (6 points) instead of 2 points"),
         "C3D15": ElementType("wedge15", None, "reduced"),
         "C3D8": ElementType("hex8", None, "full"),
-        "C3D8I": ElementType(
-            "hex8", None, "b-bar", "mean dilatation (b-bar) instead of incompatible modes; stiffer in bending"
-        ),
+        "C3D8I": ElementType("hex8", None, "b-bar", _MODES),
         "C3D8R": ElementType("hex8", None, "b-bar", f"mean dilatation (b-bar) {_HOURGLASS}"),
         "C3D20": ElementType("hex20", None, "full"),
         "C3D20R": ElementType("hex20", None, "reduced"),
     }
+    result |= {code: ElementType("hex8", None, *_MEAN) for code in ("C3D8H", "C3D8RH", "C3D8IH")}
+    result |= {code: ElementType("hex20", None, *_POINTS) for code in ("C3D20H", "C3D20RH")}
+    result |= {code: ElementType("tet10", None, *_POINTS) for code in ("C3D10H", "C3D10M", "C3D10MH")}
     for prefix, plane in (("CPE", "strain"), ("CPS", "stress"), ("CAX", "axisymmetric")):
         stress = plane == "stress"
         replaced = (
@@ -50,7 +57,15 @@ def _types() -> dict[str, ElementType]:
             f"{prefix}4R": ElementType("quad4", plane, *replaced),
             f"{prefix}8": ElementType("quad8", plane, "full"),
             f"{prefix}8R": ElementType("quad8", plane, "reduced"),
+            f"{prefix}6M": ElementType("tri6", plane, *_POINTS),
         }
+        if stress:
+            result["CPS4I"] = ElementType("quad4", plane, "full", "full integration" + _MODES.partition(")")[2])
+            continue
+        result[f"{prefix}4I"] = ElementType("quad4", plane, "b-bar", _MODES)
+        result |= {f"{prefix}{code}": ElementType("quad4", plane, *_MEAN) for code in ("4H", "4RH", "4IH")}
+        result |= {f"{prefix}{code}": ElementType("quad8", plane, *_POINTS) for code in ("8H", "8RH")}
+        result |= {f"{prefix}{code}": ElementType("tri6", plane, *_POINTS) for code in ("6H", "6MH")}
     return result
 
 

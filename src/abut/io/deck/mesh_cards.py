@@ -33,6 +33,10 @@ class Names:
     def by_name(self) -> dict[str, Numbers]:
         return {self.spelled[name]: numbers for name, numbers in self.sets.items()}
 
+    def like(self, name: str) -> str:
+        """What may have been meant, to end a message; not the sets that Abaqus/CAE makes for itself, _NAME."""
+        return nearest(name, [each for each in self.spelled.values() if not each.rpartition(".")[2].startswith("_")])
+
     def resolve(self, line: Line, i: int, what: str) -> Numbers:
         """Field i of a line: a number, or the name of a set."""
         text = line.text(i)
@@ -40,7 +44,7 @@ class Names:
         if number is not None:
             return np.array([number], dtype=np.int64)
         if text.upper() not in self.sets:
-            raise line.unknown(f"no {what} set named {text!r}{nearest(text, self.spelled.values())}")
+            raise line.unknown(f"no {what} set named {text!r}{self.like(text)}")
         return self.sets[text.upper()]
 
 
@@ -69,7 +73,7 @@ class MeshCards:
 
 
 def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> MeshCards:
-    """Read the mesh cards: nodes, elements, then sets and surfaces in their order; ``notes`` gets what was left out,
+    """Read the mesh cards: nodes, elements, then sets in their order, then surfaces; ``notes`` gets what was left out,
     ``reasons`` what is wrong."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
@@ -98,7 +102,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
 
     there: Collection[int] = ()
-    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET", "SURFACE")):
+    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET"), ("SURFACE",)):
         there = {*nodes, *virtual}
         for card in cards:
             if card.key in keys:
@@ -190,7 +194,7 @@ def _set(
     if what == "node" and card.get("ELSET"):
         name = card.need("ELSET")
         if name.upper() not in element_sets.sets:
-            raise card.unknown(f"no element set named {name!r}{nearest(name, element_sets.spelled.values())}")
+            raise card.unknown(f"no element set named {name!r}{element_sets.like(name)}")
         members = element_sets.sets[name.upper()].tolist()
         return np.unique(np.array([n for e in members for n in elements[e][1]], dtype=np.int64))
     parts: list[Numbers] = [np.empty(0, np.int64)]

@@ -109,7 +109,7 @@ def sections(
 def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) -> Section:
     name, material = card.need("ELSET"), card.need("MATERIAL")
     if name.upper() not in mesh.element_sets.sets:
-        raise card.unknown(f"no element set named {name!r}{nearest(name, mesh.element_sets.spelled.values())}")
+        raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
     if known is not None and material.upper() not in known:
         raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
     if card.has("NODAL THICKNESS"):
@@ -204,8 +204,8 @@ def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tu
                 elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
             else:
                 raise card.error("give the body's nodes (NSET) or elements (ELSET)")
-            reference = _node(card, "REF NODE", card.need("REF NODE"))
-            turning = _node(card, "ROT NODE", card.need("ROT NODE")) if card.has("ROT NODE") else 0
+            reference = _node(card, "REF NODE", mesh)
+            turning = _node(card, "ROT NODE", mesh) if card.has("ROT NODE") else 0
             result.append(RigidBody(nodes, elements, reference, turning, card.place))
     return tuple(result)
 
@@ -217,11 +217,20 @@ def _named(card: Card, parameter: str, sets: Mapping[str, Numbers], what: str) -
     return sets[name.upper()]
 
 
-def _node(card: Card, parameter: str, text: str) -> int:
+def _node(card: Card, parameter: str, mesh: MeshCards) -> int:
+    """The node that a parameter names, by its number or a set of it alone."""
+    text = card.need(parameter)
     number = as_integer(text)
-    if number is None:
-        raise card.error(f"{parameter}: expected a node number, got {text!r}")
-    return number
+    if number is not None:
+        return number
+    if text.upper() not in mesh.node_sets.sets:
+        raise card.unknown(
+            f"{parameter}: expected a node number or a set of one node, got {text!r}{mesh.node_sets.like(text)}"
+        )
+    nodes = mesh.node_sets.sets[text.upper()]
+    if len(nodes) != 1:
+        raise card.error(f"{parameter}: expected one node, but the set '{text}' has {len(nodes)}")
+    return int(nodes[0])
 
 
 def transforms(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Transform, ...]:
@@ -287,5 +296,5 @@ def _pretension(card: Card, mesh: MeshCards) -> PreTension:
         normal = (line.number(0, "normal", 0.0), line.number(1, "normal", 0.0), line.number(2, "normal", 0.0))
         if normal == (0.0, 0.0, 0.0):
             raise line.error("the normal is zero; leave the line out for the surface's own")
-    node = _node(card, "NODE", card.need("NODE"))
+    node = _node(card, "NODE", mesh)
     return PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from abut.io.deck.assembly import without_parts
 from abut.io.deck.cards import Card, read_cards
 from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
@@ -32,7 +33,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
     reasons = Reasons()
-    sifted = sift(without_tied_friction(read_cards(path, opens, reasons), notes), reasons, ignore)
+    sifted = sift(without_tied_friction(_cards(path, notes, reasons), notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
     cards = sifted.cards
@@ -80,9 +81,9 @@ def read_mesh_only(path: Path) -> Deck:
 
     Raises InputError as ``read_deck`` does, for these cards only."""
     reasons = Reasons()
-    every = read_cards(path, opens, reasons)
-    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
     notes: list[str] = []
+    every = _cards(path, notes, reasons)
+    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
     mesh = mesh_cards(cards, notes, reasons)
     found = sections(cards, mesh, None, reasons)
     reasons.tell()
@@ -93,6 +94,11 @@ def read_mesh_only(path: Path) -> Deck:
         found,
         (), None, (), (), (), (), (), (), {}, {}, (), tuple(notes), (), (),
     )  # fmt: skip
+
+
+def _cards(path: Path, notes: list[str], reasons: Reasons) -> tuple[Card, ...]:
+    """All cards, those of parts written out."""
+    return without_parts(read_cards(path, opens, reasons), notes, reasons)
 
 
 def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: Reasons) -> tuple[Prescribed, ...]:

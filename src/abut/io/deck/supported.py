@@ -82,10 +82,8 @@ PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
 
 _MATERIAL = "; abut's solids are linear elastic or, with NLGEOM, neo-Hookean"
 _RUBBER = "of rubber elasticity only *HYPERELASTIC, NEO HOOKE is supported; fit its two constants"
-_FLAT = "; abut reads flat decks: have the preprocessor write one without parts and assemblies"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
-    "ASSEMBLY": f"assemblies are not read{_FLAT}",
     "BEAM SECTION": "beams are not supported; model the part with solid elements",
     "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
@@ -109,7 +107,6 @@ REFUSED: dict[str, str] = {
     "FILM": "heat films belong to heat transfer, which abut does not solve",
     "GAP": "gap elements are not supported; use *CONTACT PAIR",
     "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
-    "INSTANCE": f"assemblies are not read{_FLAT}",
     "KINEMATIC": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
     "MASS": "point masses belong to dynamics",
     "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
@@ -121,7 +118,6 @@ REFUSED: dict[str, str] = {
     "NGEN": f"generated nodes are not read{_WRITE}",
     "NODAL THICKNESS": "a thickness for each node is not supported; give the section one thickness",
     "NORMAL": "normals given by hand are not read; abut takes them from the mesh",
-    "PART": f"parts are not read{_FLAT}",
     "PLASTIC": f"plasticity is not supported{_MATERIAL}",
     "RADIATE": "radiation belongs to heat transfer, which abut does not solve",
     "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
@@ -138,7 +134,10 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
     ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
-    ("BOUNDARY", "FIXED"): "supports frozen in the last state are not supported; give the displacement",
+    (
+        "BOUNDARY",
+        "FIXED",
+    ): "supports frozen in the last state are not supported; give the displacement, or keep the force",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
     ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
     ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
@@ -149,7 +148,7 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
 }
 GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
-    key(name) for name in ("ASSEMBLY", "ELCOPY", "ELGEN", "INSTANCE", "NCOPY", "NFILL", "NGEN", "PART", "SYSTEM")
+    key(name) for name in ("ELCOPY", "ELGEN", "NCOPY", "NFILL", "NGEN", "SYSTEM")
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,

@@ -1,0 +1,40 @@
+"""Where an iteration leaves most open, at large displacements, and whether iterations go round in a circle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.nonlinear.hanging import cured, place
+from abut.problem.finite import FiniteProblem
+
+PERIODS = (2, 3)  # iterations after which they may come back to where they were
+SAME = 0.01  # by which what they leave open differs, over itself
+Vector = NDArray[np.float64]
+
+
+def circling(errors: Sequence[float]) -> bool:
+    """Whether iterations come back to where they were two or three before, which has shown once all around."""
+    for period in PERIODS:
+        before, last = np.array(errors[-2 * period : -period]), np.array(errors[-period:])
+        if len(before) == period and (np.abs(last - before) <= SAME * before).all():
+            return True
+    return False
+
+
+def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
+    """Where most is left open: forces (n_unknowns,) and laws (n,), both relative."""
+    force, law = (np.abs(part) for part in (forces, laws))
+    if law.max(initial=0.0) < force.max(initial=0.0):
+        free = problem.constraints.free
+        point = int(np.argmax(abs(free) @ force)) // problem.model.mesh.dim
+        return f"most at {place(problem, point)} in the undeformed mesh"
+    pair, part = max(zip(problem.pairs, problem.split(law)), key=lambda each: float(each[1].max(initial=0.0)))
+    by_function = np.where(pair.index >= 0, part[np.maximum(pair.index, 0)], 0.0).max(axis=1)
+    node, name = int(pair.space.node[int(np.argmax(by_function))]), pair.contact.name
+    if node < 0:
+        return f"most in contact '{name}'"
+    cure = cured(pair, np.array([node]))
+    return f"most in contact '{name}' at {place(problem, node)} in the undeformed mesh{cure}"
