@@ -10,7 +10,7 @@ from abut.model.conditions import History
 FIRST = 0.1  # of the way to the next goal
 EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
-LANDED = 0.01  # share of friction on points that touch and stick in one step, theory (G20), above which the next is shorter
+LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G20), before it is shortened
 LEAST = 0.5  # by how much at most
 SMALLEST = 1.0 / 4096.0  # of the way to the next goal
 STRAIGHT = 1e-9  # change of slope over the slope that is none
