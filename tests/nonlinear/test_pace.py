@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from abut.model import Amplitude
 from abut.nonlinear.pace import Pace, pace_of
 
@@ -76,3 +78,12 @@ def test_an_earlier_run_is_followed() -> None:
     for time, iterations in done:
         followed.repeat(time, iterations)
     assert followed.end == pace.end
+
+
+def test_steps_in_which_friction_lands_are_followed_by_shorter_ones() -> None:
+    """Automatic ones only: as the share goes with more than the square of the step, by its root, and by half at most."""
+    easy, hard, much, given = Pace([1.0]), Pace([1.0]), Pace([1.0]), Pace([1.0], 0.1, first=1.0)
+    for pace, share in ((easy, 0.001), (hard, 0.02), (much, 1.0), (given, 1.0)):
+        pace.take(3, share)
+    lengths = [pace.end - pace.time for pace in (easy, hard, much, given)]
+    assert lengths == pytest.approx([0.15, 0.1 * 0.5**0.5, 0.05, 0.1])

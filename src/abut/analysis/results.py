@@ -27,6 +27,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
+from abut.problem.landed import LANDED, landed_in
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
@@ -109,6 +110,7 @@ def step_result(
         rounding=_rounding(system, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
         strained=strained,
+        landed=_landed(state),
         energy=balance if strained else None,
     )
     return step, acting
@@ -183,6 +185,14 @@ def _finite_energy(
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     return now, finite_energy(acted, now, system.stiffness.diagonal(), contacts, _largest_size(steps))
+
+
+def _landed(state: State) -> tuple[float, float] | None:
+    """As in ``Landed``; None without friction at large sliding."""
+    if not state.history.of(LANDED):
+        return None
+    found = landed_in(state)
+    return found.unsure, found.limit
 
 
 def _largest_size(steps: Sequence[Step]) -> float:

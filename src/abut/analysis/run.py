@@ -26,6 +26,7 @@ from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.finite import FiniteProblem
+from abut.problem.landed import landed_in
 from abut.problem.restraint import require_balance
 from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
@@ -139,7 +140,7 @@ class Run:
         if isinstance(problem, FiniteProblem):
             pace = pace_of(solve.steps, solve.times, self.model.histories)
             for saved in done:
-                pace.repeat(saved.state.time, len(saved.iterations))
+                pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share)
             states = [problem.start(), *(saved.state for saved in done)]
             attempts = march_finite(problem, states, pace, self.solver, control)
         else:

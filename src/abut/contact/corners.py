@@ -20,7 +20,7 @@ def at_corners(space: PressureSpace) -> NDArray[np.bool_]:
 
 
 def edge_on(space: PressureSpace, target: Surface, coupling: Coupling, near: float) -> NDArray[np.bool_]:
-    """(n_functions,) at corners whose face sees the target edge-on while another face there does not: theory (G21).
+    """(n_functions,) at corners whose face sees the target edge-on while another face there does not: theory (G22).
 
     coupling: of the contactor with that target, with its points; near: gap, a length, up to which the target counts."""
     seen, corner = coupling.points, np.flatnonzero(at_corners(space))

@@ -42,6 +42,8 @@ def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
 MODEL = {
     "model balance": f'solve again with solve.linear = "direct"; if it stays, {SINGULAR_HINT}',
     "energy balance": 'solve again with solve.linear = "direct"; if it stays, raise solve.max_iterations',
+    "load steps": "what friction does depends on the load steps by about this share: give more of them (solve.steps = 40), "
+    "until the result stays",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "

@@ -16,6 +16,7 @@ from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.stepping import Control
 from abut.problem.finite import FiniteProblem
+from abut.problem.landed import landed_in
 from abut.solution.state import State
 
 MOST = 25  # iterations in a step, above which it is halved
@@ -52,7 +53,7 @@ def march_finite(
             continue
         if attempt.converged:
             stands_in = None
-            pace.take(len(attempt.iterations))
+            pace.take(len(attempt.iterations), landed_in(attempt.state).share)
             yield attempt
             earlier, before, number, cuts = before, attempt.state, number + 1, 0
             continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from abut.model.conditions import History
@@ -9,6 +10,8 @@ from abut.model.conditions import History
 FIRST = 0.1  # of the way to the next goal
 EASY, GROWTH = 7, 1.5  # iterations up to which the next step is longer, and by how much
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
+LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
+LEAST = 0.5  # by how much at most
 SMALLEST = 1.0 / 4096.0  # of the way to the next goal
 STRAIGHT = 1e-9  # change of slope over the slope that is none
 SAME = 1e-12  # times that differ by less are the same
@@ -60,8 +63,8 @@ class Pace:
         assert end is not None
         self._length = 0.5 * (end - self.time)
 
-    def take(self, iterations: int) -> None:
-        """The step to ``end`` has converged in so many iterations."""
+    def take(self, iterations: int, landed: float = 0.0) -> None:
+        """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck."""
         end = self.end
         assert end is not None
         self.time = end
@@ -69,13 +72,15 @@ class Pace:
             self._length = self._fresh()
             return
         factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+        if self._share < 1.0 and landed > 0.0:
+            factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
         self._length = min(factor * self._length, self._longest)
 
-    def repeat(self, time: float, iterations: int) -> None:
+    def repeat(self, time: float, iterations: int, landed: float = 0.0) -> None:
         """Take a step of an earlier run that ended at ``time``."""
         while self.end is not None and self.end > time + SAME and not self.stuck:
             self.halve()
-        self.take(iterations)
+        self.take(iterations, landed)
         self.time = time
 
     @property

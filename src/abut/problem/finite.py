@@ -18,6 +18,7 @@ from abut.problem.adjusted import BARELY, taken_off
 from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
+from abut.problem.landed import LANDED, PairEnd, landed
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import Past, SlipPoints
@@ -105,6 +106,7 @@ class FiniteProblem(ContactProblem):
         slips = self._slips(before, now)
         if slips:
             history = history.with_term(CONTACTS, slips)
+        history = history.with_term(LANDED, self._landed(before, now))
         self.linearise(before, now)
         for term, share in zip(self.terms, self.latest.shares):
             history = history.with_term(term.name, share.history)
@@ -197,6 +199,17 @@ class FiniteProblem(ContactProblem):
                 points[kind.pair.contact.name], shift[kind.pair.contact.name] = past.points.array, past.shift
         history = state.history.without(LATE).with_term(POINTS, points).with_term(SHIFT, shift)
         return replace(state, history=history)
+
+    def _landed(self, before: State, now: State) -> dict[str, Array]:
+        """By contact with friction the forces of ``Landed`` in a step, (1, 2)."""
+        found, factors = {}, weights(self.model.histories, now.time)
+        parts = [self.split(values) for values in (now.multipliers, now.closed, now.slipping, ~before.closed)]
+        for kind, values, closed, slipping, opened in zip(self.moving, *parts):
+            if kind is not None and kind.pair.frictional:
+                end = PairEnd(values, closed, slipping, opened, self._past(kind, before).shift)
+                share = landed(kind.pair, end, factors)
+                found[kind.pair.contact.name] = np.array([[share.unsure, share.limit]])
+        return found
 
     def _past(self, kind: Current, before: State) -> Past:
         """As ``_marked`` left it."""

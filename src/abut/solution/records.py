@@ -21,6 +21,7 @@ BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 RESPONSE = 0.5  # nothing between 0 and 1
+LANDED = 0.05  # what results depend on load steps by, about
 REGULARISATION = 1e-9  # limit of the force that constrains free rigid-body modes: zero but for rounding
 
 
@@ -98,6 +99,7 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
+    landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
 
     @property
@@ -216,7 +218,19 @@ class Solution:
                                    "work of all nodal forces by size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
-        return tuple(worst(checks) for checks in lines.values())
+        checks = [worst(checks) for checks in lines.values()]
+        return tuple(checks if (steps := self._load_steps) is None else [*checks, steps])
+
+    @property
+    def _load_steps(self) -> Check | None:
+        """How much friction depends on the load steps, over all of them; None without friction at large sliding."""
+        forces = [step.landed for step in self.steps if step.landed is not None]
+        if not forces:
+            return None
+        unsure, limit = (sum(part) for part in zip(*forces))
+        return Check("", "load steps", unsure / max(limit, 1e-300), LANDED,
+                     "friction of points that touched and stuck in one step, where they did is known roughly, over all that "
+                     "friction carries at most")  # fmt: skip
 
     @property
     def displacement(self) -> NDArray[np.float64]:

@@ -1,0 +1,61 @@
+"""What the load steps leave open of friction: points that touch and stick in the same step, theory (G21)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.problem.contact_pairs import Pair
+from abut.solution.state import State
+
+LANDED = "landed"  # whose history is the two forces of ``Landed`` of each contact, in the step that ended
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Landed:
+    """At the end of a step, forces by area: unsure: of friction that points have which touched in it and stick; limit: what
+    friction carries at most, of all points."""
+
+    unsure: float
+    limit: float
+
+    @property
+    def share(self) -> float:
+        """Of what friction carries at most; 0 where nothing presses."""
+        return self.unsure / self.limit if self.limit > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class PairEnd:
+    """Multipliers (n,) of a pair at the end of a step, with ``closed`` and ``slipping``; open: (n,) those not closed at its
+    beginning; shift: (n_tangential,) weighted slips that do not count in it, as in ``Past``."""
+
+    multipliers: Array
+    closed: NDArray[np.bool_]
+    slipping: NDArray[np.bool_]
+    open: NDArray[np.bool_]
+    shift: Array
+
+
+def landed(pair: Pair, end: PairEnd, factors: Array) -> Landed:
+    """Of one pair with friction; factors: of the model's histories. As in theory (G21)."""
+    normal, along = pair.normal, pair.index[:, 1:]
+    there = along >= 0
+    weight, pressure = pair.weight[normal], np.maximum(end.multipliers[normal], 0.0)
+    moved = np.where(there, end.shift[np.maximum(along - len(pair.space), 0)], 0.0)
+    slipping = (there & end.slipping[np.maximum(along, 0)]).any(axis=1)
+    bound = pair.friction(factors).at(pressure)[0]
+    limit = np.where(end.closed[normal], weight * np.where(np.isfinite(bound), bound, pressure), 0.0)
+    fresh = end.closed[normal] & end.open[normal] & ~slipping
+    unsure = np.minimum(limit, pair.stiffness * np.linalg.norm(moved, axis=1))[fresh]
+    return Landed(float(unsure.sum()), float(limit.sum()))
+
+
+def landed_in(state: State) -> Landed:
+    """Of all contacts, in the step that a state ended."""
+    forces = [array.ravel() for array in state.history.of(LANDED).values()]
+    unsure, limit = np.sum(forces, axis=0) if forces else (0.0, 0.0)
+    return Landed(float(unsure), float(limit))
