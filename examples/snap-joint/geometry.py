@@ -19,7 +19,7 @@ CATCH: list[Corner] = [
     (6.8, -2.4, 0.0), (11.8, -2.4, 0.0), (11.8, -1.5, 0.0), (10.7, -1.5, 0.4), (9.4, -0.3, 1.0), (8.6, -0.3, 1.0),
     (6.8, -1.4, 0.0),
 ]  # fmt: skip
-FINE, COARSE = 0.08, 0.6
+FINE, COARSE = 0.14, 0.6
 
 
 def rounded(corners: list[Corner], fine: range) -> list[int]:

@@ -82,8 +82,8 @@ CASES = [
     ("two-blocks/job", "P1", {}), ("two-blocks/job", "dual", {"friction": 0.3}), ("pushed-block/job", "dual", {}),
     ("pushed-block/job", "P1", {"friction": 0.0}), ("hertz-line/quad4", "P1", {}), ("hertz-line/quad8", "P2", {}),
     ("hertz-line/quad8", "dual", {}), ("two-rings/job", "P2", {}),
-    *((name, "auto", {}) for name in COARSE if name not in ("pin-lug/job", "two-rings/job")),
-    pytest.param("pin-lug/job", "auto", {}, marks=pytest.mark.long),
+    *((name, "dual-P1", {}) for name in COARSE if name not in ("pin-lug/job", "two-rings/job")),
+    pytest.param("pin-lug/job", "dual-P1", {}, marks=pytest.mark.long),
 ]  # fmt: skip
 
 

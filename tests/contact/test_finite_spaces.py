@@ -83,7 +83,8 @@ def test_change_of_areas(surface: Surface) -> None:
 
 def test_dual_functions_of_whole_facets() -> None:
     """Biorthogonal over the whole facets, which no target needs to be opposite to; and what of them is left where one ends:
-    functions of the facets at its edge are the ordinary ones, all others dual, and they always add up to one."""
+    functions of the facet at its edge are the ordinary ones, of that beside it by the square of what is covered, all others
+    dual, and they always add up to one."""
     contactor = turn(chain("line2", 8, lambda s: [8.0 * s, 0.0 * s]))
     target = chain("line2", 3, lambda s: [-1.0 + 5.3 * s, 0.0 * s])
     coupling = couple(contactor, target, 1, CouplingOptions())
@@ -94,11 +95,31 @@ def test_dual_functions_of_whole_facets() -> None:
     products = np.einsum("fij,fjk->fik", whole.mass[:, :2, :2], _blocks(space.transfer, contactor.nodes))
     assert np.allclose(products, 0.5 * np.eye(2))
     mixture = Mixture.of(contactor, coupling, None)
-    assert np.allclose(mixture.share, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert np.allclose(mixture.share, [1.0, 1.0, 1.0, (0.3 / 0.99) ** 2, 0.0, 0.0, 0.0, 0.0])
     mixed = mixture.space(space)
     assert np.allclose((mixed.transfer @ np.ones(9)).reshape(-1, 9)[:, :2], 1.0)
     assert np.allclose(mixed.transfer.T @ whole.weight, space.weight)
     assert Mixture.of(contactor, coupling, np.ones(8)).space(space).ordinary
+
+
+@pytest.mark.parametrize("cell", ["line2", "tri3", "quad4"])
+@pytest.mark.parametrize("covered", [0.05, 0.2, 0.4, 0.6, 0.9])
+@pytest.mark.parametrize("other_end", [False, True])
+def test_integrals_over_what_is_covered_are_positive(cell: str, covered: float, other_end: bool) -> None:
+    """Of every function of facets that the target covers from one side on: a dual one alone is negative at the far end."""
+    begin = 1.0 - covered if other_end else -1.0
+    length = covered + 1.0
+    if cell == "line2":
+        contactor = turn(chain("line2", 1, lambda s: [s, 0.0 * s]))
+        target = chain("line2", 1, lambda s: [begin + length * s, 0.0 * s])
+    else:
+        contactor = turn(sheet(cell, 1, lambda s, t: [s, t, 0.0 * s], 0.0, 1))
+        target = sheet("quad4", 1, lambda s, t: [begin + length * s, 4.0 * t - 2.0, 0.0 * s], 0.0, 1)
+    coupling = couple(contactor, target, 1, CouplingOptions())
+    assert covered == pytest.approx(coupling.covered.sum() / full_moments(contactor, 0)[:, 0].sum())
+    whole = replace(coupling, weight=full_moments(contactor, 1).ravel(), mass=facet_products(contactor, 1))
+    mixed = Mixture.of(contactor, coupling, None).space(pressure_space("dual", contactor, whole))
+    assert (mixed.transfer.T @ coupling.weight > 0.0).all()
 
 
 def _blocks(transfer: object, nodes: NDArray[np.int32]) -> NDArray[np.float64]:

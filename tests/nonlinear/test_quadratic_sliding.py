@@ -18,17 +18,11 @@ def _ironed() -> abut.Model:
     return replace(ironing(0), solve=abut.SolveOptions(steps=60))
 
 
-def _quadratic() -> abut.Model:
-    """With functions that a step has from its beginning: no step is solved once more."""
-    model = arched(0.0, "quad8")
-    return replace(model, contacts=[replace(model.contacts[0], pressure="P2")])
-
-
 @pytest.mark.parametrize(
     "model",
     [
         pytest.param(lambda: arched(0.3), id="friction"),
-        pytest.param(_quadratic, id="quadratic cells"),
+        pytest.param(lambda: arched(0.0, "quad8"), id="quadratic cells"),
         pytest.param(lambda: pressed_in_space(0.3), id="in space, with friction"),
         pytest.param(lambda: _crushed(0.5), id="half ring"),
         pytest.param(_ironed, id="ironing", marks=pytest.mark.long),

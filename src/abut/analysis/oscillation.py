@@ -64,11 +64,6 @@ class Graph:
     def any_of(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
         return np.asarray(self.matrix @ flags.astype(float) > 0.0)
 
-    def two_away(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether a neighbour's neighbour other than oneself has the flag: of one node alone nothing alternates."""
-        both = self.matrix @ (self.matrix @ flags.astype(float))
-        return np.asarray(both - self.degree * flags > 0.5)
-
     @staticmethod
     def of_nodes(surface: Surface) -> Graph:
         """Corner points along facet edges; the rim belongs to one facet only."""
@@ -135,7 +130,7 @@ def _alternating(
     closed = pressure > CLOSED * largest
     used = graph.degree > 0
     ripple = _edges(graph, pressure, inside & ~excluded, largest)
-    single = used & closed & ~graph.any_of(closed) & graph.two_away(closed) & ~excluded
+    single = used & closed & ~graph.any_of(closed) & ~excluded
     hole = used & ~closed & graph.all_of(closed) & ~excluded
     alone = float(pressure[single].max(initial=0.0)) / largest
     missing = float(graph.mean(pressure)[hole].max(initial=0.0)) / largest

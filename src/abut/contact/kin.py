@@ -32,13 +32,6 @@ BODY, RANK, MIDDLE, NORMAL, REACH, THICKNESS, WIDTH = (
 )  # columns of ``Surface.kin``
 
 
-def touches_itself(contactor: Surface, target: Surface) -> bool:
-    """Whether facets of both sides belong to the same body."""
-    if contactor.kin is None or target.kin is None:
-        return False
-    return bool(np.isin(contactor.kin[:, BODY], target.kin[:, BODY]).any())
-
-
 def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -> tuple[Surface, Surface]:
     """Both surfaces with what ``Surface.kin`` says, where they have a body in common or go ``all_round`` one; else as they
     are."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from abut.model.conditions import History
 
 FIRST = 0.1  # of the way to the next goal
-EASY, GROWTH = 7, 1.5  # iterations up to which the next step is longer, and by how much
+EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
 LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
 LEAST = 0.5  # by how much at most

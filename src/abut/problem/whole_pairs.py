@@ -10,7 +10,6 @@ import scipy.sparse as sp
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.function_places import places
 from abut.contact.geometry import facet_products, facet_sizes, full_moments
-from abut.contact.kin import touches_itself
 from abut.contact.pressure_space import DUAL, DUAL_P1, only, pressure_space, resolve
 from abut.contact.tangential import frames, slip_operators
 from abut.model import Contact, Model
@@ -38,8 +37,7 @@ def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)
-    alone = contact.pressure == "auto" and touches_itself(contactor, target)
-    name, degree = resolve(contact.pressure, contactor, free_edge=not alone)
+    name, degree = resolve(contact.pressure, contactor, free_edge=contact.pressure != "auto")
     if contact.frictional and name == DUAL_P1:
         name = DUAL  # the law of friction looks at pressure and traction node by node
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
