@@ -32,7 +32,7 @@ from abut.types import Sparse
 
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
-NEAR = 2.5  # facets between the surfaces up to which they are paired; overlaps beside what they have moved in the step
+NEAR = 4.0  # facets between the surfaces up to which they are paired; overlaps beside what they have moved in the step
 GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
