@@ -34,7 +34,8 @@ SAME = 1e-6
 ROUNDED = {"pin-lug/job": 1e-5, "two-rings/job": 1e-3, "twisted-hub/job": 1e-5}
 
 
-# multipliers that rounding shakes three times as much; multipliers of nodes without a target, which follow others or are none
+# without multipliers: those that rounding shakes three times as much, and those of nodes without a target, which follow others
+# or are none
 REPORTED = {"pin-lug/job", "two-rings/job"}
 
 
