@@ -34,8 +34,8 @@ SAME = 1e-6
 ROUNDED = {"pin-lug/job": 1e-5, "two-rings/job": 1e-3, "twisted-hub/job": 1e-5}
 
 
-# without multipliers: those that rounding shakes three times as much, and those of nodes without a target, which follow others
-# or are none
+# without multipliers: rounding shakes those of the pin three times as much; nodes without a target follow others or have
+# none
 REPORTED = {"pin-lug/job", "two-rings/job"}
 
 
