@@ -88,7 +88,7 @@ CASES = [
     ("pushed-block/job", "P1", {"friction": 0.0}), ("hertz-line/quad4", "P1", {}), ("hertz-line/quad8", "P2", {}),
     ("hertz-line/quad8", "dual", {}), ("two-rings/job", "P2", {}),
     *((name, "dual-P1", {}) for name in COARSE if name not in ("pin-lug/job", "two-rings/job")),
-    pytest.param("pin-lug/job", "dual-P1", {}, marks=pytest.mark.long),
+    pytest.param("pin-lug/job", "dual-P1", {}, marks=pytest.mark.exhaustive),
 ]  # fmt: skip
 
 
