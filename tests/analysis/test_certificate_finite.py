@@ -69,7 +69,7 @@ def test_a_tampered_state_fails() -> None:
 def test_a_pin_that_rocks_within_the_tolerance_passes() -> None:
     """It falls on its cradle in the first step. In the second it may turn by 1e-8 within the tolerance of forces, which
     leaves open 3e-5 of the little work that is done then, and 1e-12 of that of the fall; without the fall that fails. A pin
-    that moves a tenth too far in the last step is out of balance and fails, though that is nothing beside the fall, either."""
+    that moves a tenth too far in the last step is out of balance and fails, though that is nothing beside the fall."""
     model, states = light_pin(), list[State]()
     solution = abut.solve(model, on_step=lambda _, saved: states.append(saved.state))
     assert "energy balance" not in failed(solution)
