@@ -32,7 +32,7 @@ def edge_on(space: PressureSpace, target: Surface, coupling: Coupling, near: flo
     facing = np.einsum("nd,nd->n", seen.normal, normals[seen.target_facet])
     shares = (seen.pressure @ space.plain[:, corner]).T
     area = np.where(np.abs(seen.gap) <= near, seen.weight, 0.0)
-    weight, total = shares @ area, abs(shares) @ seen.weight
+    weight, total = shares @ area, abs(shares) @ np.abs(seen.weight)  # areas of a trial state may be negative
     known = weight > WEAK_SUPPORT * total
     cosine = np.where(known, (shares @ (area * facing)) / np.where(known, weight, 1.0), 0.0)
     node = np.unique(space.node[corner], return_inverse=True)[1]

@@ -271,7 +271,7 @@ def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
         return
     sides = find_sides(mesh, contact.contactor, contact.target)
     push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
-    a, b = (normal / surface_area(side) for normal, side in zip(push, sides))
+    a, b = (normal / max(surface_area(side), 1e-300) for normal, side in zip(push, sides))
     if a @ b > SAME_WAY:
         card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(

@@ -32,7 +32,7 @@ from abut.types import Sparse
 
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
-NEAR = 4.0  # facets between the surfaces up to which they are paired; overlaps beside what they have moved in the step
+NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
 GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
@@ -259,7 +259,8 @@ class Current:
             way = float(np.linalg.norm(nodes, axis=1).max(initial=0.0))
         near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
         reach = near * self._facet
-        return CouplingOptions(rule.rule, rule.points, reach + 2.0 * way, largest_gap=reach)
+        fixed = None if self.pair.space.ordinary else reach  # what is covered decides which functions these are
+        return CouplingOptions(rule.rule, rule.points, reach + 2.0 * way, largest_gap=fixed)
 
     @cached_property
     def _across(self) -> Smoothing:
