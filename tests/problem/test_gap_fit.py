@@ -13,7 +13,7 @@ from abut.contact.clearance import of_corners
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.geometry import smoothing
 from abut.mesh.surface import Surface
-from abut.problem.gap_fit import Sides, Sight, fit_change
+from abut.problem.gap_fit import MovedSides, Sight, fit_change
 
 OPTIONS = CouplingOptions(reach=1.0)
 CASES = {
@@ -57,4 +57,4 @@ def _plane(angle: float) -> np.ndarray:
 def _change(contactor: Surface, target: Surface, contactor_now: Surface, target_now: Surface) -> np.ndarray:
     across = smoothing(contactor)
     sight = Sight.of(contactor_now, target_now, OPTIONS, across)
-    return fit_change(Sides(contactor, target, contactor_now, target_now), sight, across, np.ones(len(contactor)))
+    return fit_change(MovedSides(contactor, target, contactor_now, target_now), sight, across, np.ones(len(contactor)))

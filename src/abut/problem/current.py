@@ -23,8 +23,7 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
 from abut.problem.first_touch import Sides, apart
-from abut.problem.gap_fit import Sides as FitSides
-from abut.problem.gap_fit import Sight, fit_change
+from abut.problem.gap_fit import MovedSides, Sight, fit_change
 from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import Past, SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
@@ -171,7 +170,7 @@ class Current:
     def fit(self, displacement: Array) -> Array:
         """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""
         contactor, target = self.surfaces(displacement)
-        sides = FitSides(self.pair.contactor, self.pair.target, contactor, target)
+        sides = MovedSides(self.pair.contactor, self.pair.target, contactor, target)
         sight = Sight.of(contactor, target, self._options(), self._across)
         share = dual_share(sight.covered(len(contactor)) / full_moments(contactor, 0)[:, 0])
         return fit_change(sides, sight, self._across, share)

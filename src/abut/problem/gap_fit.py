@@ -57,7 +57,7 @@ class Sight:
 
 
 @dataclass(frozen=True)
-class Sides:
+class MovedSides:
     """Contactor and target at the outset and where they are now."""
 
     contactor: Surface
@@ -66,7 +66,7 @@ class Sides:
     target_now: Surface
 
 
-def fit_change(sides: Sides, sight: Sight, across: Smoothing, share: Array) -> Array:
+def fit_change(sides: MovedSides, sight: Sight, across: Smoothing, share: Array) -> Array:
     """What int N_k g of the corners' functions N_k on quadratic facets becomes by the fit, less what it was, (9 n_facets,),
     g being the gap of the undeformed shapes as they lie now. Zero on linear facets.
 
@@ -101,7 +101,7 @@ def fit_change(sides: Sides, sight: Sight, across: Smoothing, share: Array) -> A
     return result.ravel()
 
 
-def _rigid_gaps(sides: Sides, sight: Sight, normals: Array) -> tuple[Array, Array]:
+def _rigid_gaps(sides: MovedSides, sight: Sight, normals: Array) -> tuple[Array, Array]:
     """The gaps at both kinds of places between undeformed shapes, each placed as the patches that face each other have
     moved: a contactor's facet, and the target's facets that it sees. normals: (n_facets, 9, dim) at the outset."""
     contactor, target, f, n = sides.contactor, sides.target, sight.points.facet, len(sides.contactor)
