@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_integer, key
@@ -125,10 +126,8 @@ def _position(card: Card) -> tuple[Matrix, Matrix]:
     length = float(np.linalg.norm(b - a))
     if length == 0.0:
         raise line.error("the two points of the axis are the same")
-    x, y, z = (b - a) / length
-    angle = np.radians(line.number(6, "angle in degrees"))
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+    angle = line.number(6, "angle in degrees")
+    turn = Rotation.from_rotvec(np.radians(angle) * (b - a) / length).as_matrix()
     return turn, turn @ (move - a) + a
 
 
@@ -150,8 +149,7 @@ def _written_out(instance: _Instance) -> Iterator[Card]:
 def _line(card: Card, line: Line, instance: _Instance) -> Line:
     if card.key == "NODE":
         x = np.array([line.number(i, "coordinate", 0.0) for i in (1, 2, 3)])
-        place = x if not instance.move.any() and np.array_equal(instance.turn, np.eye(3)) else None
-        x = instance.turn @ x + instance.move if place is None else place
+        x = instance.turn @ x + instance.move
         return replace(line, fields=(instance.number(line.text(0)), *(repr(float(c)) for c in x)))
     if card.key == "ELEMENT":
         return _changed(line, instance.number)
