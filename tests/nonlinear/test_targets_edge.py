@@ -73,7 +73,7 @@ def test_derivatives_of_functions_that_follow(cell: str, friction: float, space:
     model = crossed(cell, friction)
     problem = finite(replace(model, contacts=[replace(model.contacts[0], pressure=space)]))
     before = problem.start()
-    following = problem.following(before, problem.displacement(before), before.closed)
+    following = problem.following(before, before)
     assert following
     begin = problem.led(before, following)
     assert max(tangent_errors(problem, 2e-3, begin)) < (1e-8 if cell == "quad4" else 1e-7)
@@ -83,12 +83,25 @@ def test_derivatives_of_functions_that_follow(cell: str, friction: float, space:
     assert not np.abs(problem.linearise(begin, begin).pushing[mute]).sum()
 
 
+@pytest.mark.parametrize(("offset", "overlaps"), [(-1e-3, True), (1e-3, False)])
+def test_functions_follow_where_a_guess_overlaps(offset: float, overlaps: bool) -> None:
+    """Contact that is still open and will close, since surfaces overlap in the guess: the same functions follow as where it
+    is closed, and none where surfaces are apart."""
+    model = crossed("quad4", 0.0)
+    problem = finite(replace(model, contacts=[replace(model.contacts[0], offset=offset)]))
+    before = problem.start()
+    none, all_of_them = (before.with_closed(np.full(len(before.status), closed)) for closed in (False, True))
+    (closed,) = problem.following(none, all_of_them).values()
+    found = problem.following(none, none)
+    assert all(np.array_equal(to, closed) for to in found.values()) and bool(found) == overlaps
+
+
 def test_pressures_are_handed_over() -> None:
     """A function that begins to follow has no multiplier any more, one that ends to has those of the one that it followed:
     the forces do not change."""
     problem = finite(crossed("hex8", 0.3))
     before = problem.start()
-    there = problem.following(before, problem.displacement(before), before.closed)
+    there = problem.following(before, before)
     rng = np.random.default_rng(1)
     led = problem.led(replace(before, multipliers=rng.uniform(1.0, 2.0, len(before.multipliers))), there)
     back = problem.led(led, {name: np.arange(len(to)) for name, to in there.items()})

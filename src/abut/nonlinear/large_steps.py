@@ -20,6 +20,9 @@ from abut.problem.landed import landed_in
 from abut.solution.state import State
 
 MOST = 25  # iterations in a step, above which it is halved
+AGAIN = (
+    1  # cuts in a row up to which a step begins by extrapolation; none where contact alone holds a body: that throws it
+)
 CAREFUL = 2  # cuts in a row from which on a line search shortens iterations
 
 
@@ -37,11 +40,12 @@ def march_finite(
     while (time := pace.end) is not None:
         if cuts == 0 and stands_in is None:
             control.begins(number, time)
-        begins = cuts or pace.turned or earlier is None or let_go(problem, earlier, before)
+        tried = cuts > (AGAIN if problem.restraint.by_supports else 0)
+        begins = tried or pace.turned or earlier is None or let_go(problem, earlier, before)
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         increment = Increment(number, before.largest)
         begin = problem.with_functions(before, before)
-        following = problem.following(begin, problem.displacement(guess or before), before.closed)
+        following = problem.following(begin, guess or before)
         begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
         if guess is not None:
             begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
@@ -99,7 +103,7 @@ def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
     end = replace(found.state, time=time)
     here = problem.displacement(end)
     before = problem.with_late_points(problem.with_functions(step.before, end), here, closed)
-    following = problem.following(before, here, closed, settled=True)
+    following = problem.following(before, end, settled=True)
     if before is step.before and not following:
         return step, found
     before, guess = (step.problem.led(each, following) for each in (before, found.state))

@@ -32,6 +32,7 @@ from abut.types import Sparse
 Array = NDArray[np.float64]
 KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
+OVERLAP = 1e-6  # facets by which surfaces overlap, beyond rounding
 GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
@@ -234,14 +235,18 @@ class Current:
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
         return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
-    def following(self, displacement: Array, closed: NDArray[np.bool_]) -> Following:
-        """Which functions follow others where the pair is now, with multipliers (n,) closed."""
+    def following(self, displacement: Array, closed: NDArray[np.bool_], offset: float) -> Following:
+        """Which functions follow others where the pair is now, with multipliers (n,) closed; those that overlap there count
+        as closed, too. offset: what is added to all gaps."""
         contactor, target = self.surfaces(displacement)
         sharp = bool(at_corners(self.pair.space).any())
         options = replace(self._options(), keep_points=sharp)
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
         beside = edge_on(self.pair.space, target, covered, self._facet)
-        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal], beside)
+        gap, weight = (self.pair.space.plain.T @ each for each in (covered.gap, covered.weight))
+        added = offset if self.adjusted is None else offset + self.adjusted
+        meets = gap + added * weight < -OVERLAP * self._facet * self.pair.weight[self.pair.normal]
+        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal] | meets, beside)
 
     def _mixture(self, contactor: Surface, target: Surface, inner: Array | None) -> Mixture | None:
         """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""

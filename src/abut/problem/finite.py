@@ -147,17 +147,16 @@ class FiniteProblem(ContactProblem):
                 return False
         return True
 
-    def following(
-        self, before: State, here: Array, closed: NDArray[np.bool_], settled: bool = False
-    ) -> dict[str, Array]:
-        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at displacements ``here``
-        (dim n_points,) with (n,) multipliers closed. Nothing of contacts where that is as at ``before``, or, at the end of a
-        step (settled), doesn't matter."""
-        result, old = {}, before.history.of(FOLLOWING)
-        for kind, touching in zip(self.moving, self.split(closed)):
+    def following(self, before: State, near: State, settled: bool = False) -> dict[str, Array]:
+        """Which functions follow which, by contact, (n_functions,) as in ``Following``, at the state ``near``, in which a
+        step ends or is expected to. Nothing of contacts where that is as at ``before``, or, at the end of a step (settled),
+        doesn't matter."""
+        result, old, here = {}, before.history.of(FOLLOWING), self.displacement(near)
+        for kind, touching in zip(self.moving, self.split(near.closed)):
             if kind is None:
                 continue
-            now, name = kind.following(here, touching), kind.pair.contact.name
+            name = kind.pair.contact.name
+            now = kind.following(here, touching, self._offset(kind.pair, near.time))
             known = old.get(name, np.arange(len(now.to))).astype(np.int64)
             if not np.array_equal(now.to, known) and not (
                 settled and not now.matters(known, touching[kind.pair.normal])
@@ -273,19 +272,22 @@ class FiniteProblem(ContactProblem):
 
     def _contacts(self, before: State, now: State, here: Array, at: State) -> list[ContactNow]:
         """Of all pairs, at displacements ``here`` and the multipliers of ``at``."""
-        factors, there = weights(self.model.histories, now.time), self.displacement(before)
+        there = self.displacement(before)
         inner, following, fits = (before.history.of(term) for term in (INNER, FOLLOWING, FIT))
         result = []
         for pair, kind, tie, part in zip(self.pairs, self.moving, self.ties, self.split(at.multipliers)):
             if kind is None:
                 result.append(_tie(pair, tie, here))
                 continue
-            constant, varying = offsets(self.model, pair.contact)
-            past = self._past(kind, before) if pair.frictional else None
-            offset = constant + float(varying @ factors)
+            past, offset = self._past(kind, before) if pair.frictional else None, self._offset(pair, now.time)
             chosen = (each.get(pair.contact.name) for each in (inner, following, fits))
             result.append(kind.at(Place(here, there, past, offset, *chosen), part))
         return result
+
+    def _offset(self, pair: Pair, time: float) -> float:
+        """What is added to all gaps of a pair at a time."""
+        constant, varying = offsets(self.model, pair.contact)
+        return constant + float(varying @ weights(self.model.histories, time))
 
     def _forces(self, before: State, time: float, here: Array) -> list[Share]:
         """Of every term at displacements ``here``."""
