@@ -30,7 +30,7 @@ public:
     for (double &value : own_load_)
       value = 0;
     lever_.begin(c);
-    couples_ = load_.rubs_on(f, D) ? Lever<D>::FORCES : 0;
+    loaded_ = load_.acts_on(f, D), couples_ = load_.rubs_on(f, D) ? Lever<D>::FORCES : 0;
   }
   // `columns` are those that the rows of all its points have.
   void begin_target(int t, const Facet &facet, const Columns &columns) {
@@ -191,7 +191,7 @@ private:
   void find_rows(const MovingPoint &at) {
     const std::size_t size = columns_->size;
     const int other = first_of_target();
-    for (int q = 0; q < ROWS + couples_; ++q) {
+    for (int q = loaded_ ? FORCE : GAP; q < ROWS + couples_; ++q) {
       const double *d = value_[q].d;
       double *row = row_[q].data();
       for (std::size_t s = 0; s < size; ++s)
@@ -220,6 +220,8 @@ private:
 
   // Shares of the nodes: N_i F on the contactor, -N_j F on the target.
   void add_forces(const MovingPoint &at) {
+    if (!loaded_)
+      return;
     const std::size_t size = columns_->size;
     for (int a = 0; a < D; ++a) {
       const double force = value_[FORCE + a].v;
@@ -379,7 +381,8 @@ private:
   const Numbering &numbering_;
   const std::size_t width_; // of an entry of the operators
   const bool rubs_;
-  int couples_ = 0; // forces that take up the couple of tractions on this facet, or none
+  bool loaded_ = false; // whether this facet carries anything
+  int couples_ = 0;     // forces that take up the couple of tractions on this facet, or none
   Lever<D> lever_;
   const Facet *c_ = nullptr, *facet_ = nullptr;
   const Columns *columns_ = nullptr;

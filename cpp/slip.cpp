@@ -92,11 +92,12 @@ private:
         continue;
       for (int c = 0; c < C; ++c)
         value_[C * (MAX_FACET_NODES * view_.facet[q] + k) + c] += area * at.value[c];
-      for (int j = 0; j < MAX_FACET_NODES; ++j) {
+      for (int j = 0; j < MAX_FACET_NODES && nodes[j] >= 0; ++j) {
         add_block(area * own[j], at.by_apart, by_own_[k][j]);
         add_block(-area * own[j], at.by_sum, by_normal_[k][j]);
-        add_block(-area * other[j], at.by_apart, by_other_[k][j]);
       }
+      for (int j = 0; j < MAX_FACET_NODES && target[j] >= 0; ++j)
+        add_block(-area * other[j], at.by_apart, by_other_[k][j]);
     }
   }
 

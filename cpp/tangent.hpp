@@ -11,10 +11,14 @@ struct Load {
   bool rubs;
   // Whether there are tractions on facet f.
   bool rubs_on(std::size_t f, std::size_t dim) const {
-    auto any = [f](const double *values, std::size_t n) {
-      return values && std::any_of(values + f * n, values + (f + 1) * n, [](double value) { return value != 0; });
-    };
-    return any(traction, MAX_FACET_NODES * dim) || any(turned, MAX_FACET_NODES);
+    return any(traction, f, MAX_FACET_NODES * dim) || any(turned, f, MAX_FACET_NODES);
+  }
+  // Whether there is anything on it.
+  bool acts_on(std::size_t f, std::size_t dim) const { return any(pressure, f, MAX_FACET_NODES) || rubs_on(f, dim); }
+
+private:
+  static bool any(const double *values, std::size_t f, std::size_t n) {
+    return values && std::any_of(values + f * n, values + (f + 1) * n, [](double value) { return value != 0; });
   }
 };
 

@@ -93,7 +93,8 @@ def test_functions_follow_where_a_guess_overlaps(offset: float, overlaps: bool) 
     none, all_of_them = (before.with_closed(np.full(len(before.status), closed)) for closed in (False, True))
     (closed,) = problem.following(none, all_of_them).values()
     found = problem.following(none, none)
-    assert all(np.array_equal(to, closed) for to in found.values()) and bool(found) == overlaps
+    assert bool(found) == overlaps
+    assert all(np.array_equal(to, closed) for to in found.values())
 
 
 def test_pressures_are_handed_over() -> None:

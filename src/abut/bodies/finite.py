@@ -12,7 +12,7 @@ from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.bodies.stress import averaged, to_nodes
 from abut.errors import Unsound
 from abut.materials.hyperelastic import law
-from abut.mesh.quadrature import Rule, cell_rule, stress_rule
+from abut.mesh.quadrature import Rule, stress_rule
 from abut.types import Operator
 
 
@@ -88,7 +88,7 @@ def cauchy_sums(
     unsound = set()
     for group in solids.groups():
         key = group.kind, group.law, group.integration
-        rule = cell_rule(group.kind, group.integration) if key in coarse else stress_rule(group.kind)
+        rule = group.rule if key in coarse else stress_rule(group.kind)
         try:
             sums = _nodal_sums(solids, group, moved, temperature, rule)
         except Inverted:
@@ -126,7 +126,7 @@ def _integrate(
 ) -> None:
     constants = solids.by_cell(group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()})
     unsound = integrate_hyperelastic(
-        group.arrays(solids, rule or cell_rule(group.kind, group.integration)), constants, group.law,
+        group.arrays(solids, rule or group.rule), constants, group.law,
         solids.plane == "stress", moved, temperature.strain(solids, group), **wanted,
     )  # fmt: skip
     if unsound is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -60,8 +60,15 @@ class Solids:
             result[self.mesh.bodies[body]] = number
         return result
 
-    def groups(self) -> Iterator[Group]:
+    def groups(self) -> Sequence[Group]:
         """All cells that have a material."""
+        return self._groups
+
+    @cached_property
+    def _groups(self) -> tuple[Group, ...]:
+        return tuple(self._found())
+
+    def _found(self) -> Iterator[Group]:
         keys = {
             body: (*self._kernel(body, m), self.integration.get(body, "full")) for body, m in self.materials.items()
         }
@@ -74,8 +81,9 @@ class Solids:
                 rows = np.flatnonzero(body_numbers == i)
                 nodes = np.ascontiguousarray(block.nodes[rows], dtype=np.int32)
                 body, law, integration = distinct[i]
-                yield Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]], law)
-                used[distinct[i]] += len(rows) * len(cell_rule(block.kind, integration)[1])
+                group = Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]], law)
+                yield group
+                used[distinct[i]] += len(rows) * len(group.rule[1])
 
     def _kernel(self, body: str, material: Material) -> tuple[str, int]:
         """``body`` and ``law`` of its group."""
@@ -102,6 +110,11 @@ class Group:
     integration: str
     first: int
     law: int = 0
+
+    @cached_property
+    def rule(self) -> Rule:
+        """With which stresses are integrated."""
+        return cell_rule(self.kind, self.integration)
 
     def arrays(self, solids: Solids, rule: Rule) -> Cells:
         """These cells with an integration rule, for the compiled core."""

@@ -132,6 +132,7 @@ class CouplingOptions:
             only, theory (S12).
     componentwise: without the normal, for one displacement component (ties).
     normals: (n_facets, 9, dim) unit normals at the contactor's facets' nodes; ``nodal_normals`` where left out.
+    target_across: where the target's normals are averaged, as decided in another configuration; else as it is now.
     keep_points: keep the integration points; keep_gap_samples: keep corners and middles of the segments, which takes a tenth
             of the time.
     """
@@ -146,6 +147,7 @@ class CouplingOptions:
     keep_points: bool = False
     keep_gap_samples: bool = False
     normals: NDArray[np.float64] | None = None
+    target_across: Smoothing | None = None
 
 
 def couple(
@@ -290,7 +292,8 @@ def _plan_part(part: Surface, target: Surface, options: CouplingOptions, normals
     points, divisions = _plan(part, tables, options.points, turning)
     if options.points == "auto":
         points = np.where(turning > SAME_NORMAL, np.maximum(points, CURVED_POINTS[part.dim]), points).astype(np.int32)
-    return Plan(points, divisions, *_plan(target, tables, options.points, _turning_of_target(target)))
+    turning = _turning_of_target(target, options.target_across)
+    return Plan(points, divisions, *_plan(target, tables, options.points, turning))
 
 
 def _plan(
@@ -310,12 +313,12 @@ def _plan(
     return order, split
 
 
-def _turning_of_target(target: Surface) -> NDArray[np.float64]:
+def _turning_of_target(target: Surface, across: Smoothing | None) -> NDArray[np.float64]:
     """How far the normals of each facet turn, (n_facets,); zero where it doesn't matter, or where they cannot be found."""
     if target.dim == 2 or is_plane(target):
         return np.zeros(len(target))
     try:
-        return turning_within(target, nodal_normals(target))
+        return turning_within(target, nodal_normals(target, across))
     except InputError:  # a facet without a normal at a node: the contactor may still see the others
         return np.zeros(len(target))
 

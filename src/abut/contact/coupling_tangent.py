@@ -148,9 +148,8 @@ def assembled(parts: Sequence[Json], turning: Sparse) -> CouplingTangent:
     """The whole from what disjoint facets have in it. turning: as in ``CouplingTangent``."""
     dim = parts[0]["load"].shape[1]
     points, normals = turning.shape[1] // dim, turning.shape[0] // dim
-    force = np.zeros((points, dim))
-    for part in parts:
-        np.add.at(force, part["loaded"], part["load"])
+    loaded, load = (np.concatenate([part[name] for part in parts]) for name in ("loaded", "load"))
+    force = np.stack([np.bincount(loaded, along, points).astype(float) for along in load.T], axis=1)
     by_points, by_normals = (
         reduce(add, [block_rows(part[name], columns) for part in parts])
         for name, columns in (("force_by_points", points), ("force_by_normals", normals))

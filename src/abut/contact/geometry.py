@@ -66,7 +66,8 @@ def _area_vectors(
     tangents = np.einsum("pna,fnd->fpad", derivatives, _nodes(surface, kind, facets))
     if surface.dim == 2:
         return np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
-    return np.cross(tangents[..., 0, :], tangents[..., 1, :])
+    (a, b, c), (u, v, w) = np.moveaxis(tangents, (-2, -1), (0, 1))
+    return np.stack([b * w - c * v, c * u - a * w, a * v - b * u], axis=-1)
 
 
 def _nodes(surface: Surface, kind: str, facets: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -10,13 +10,14 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
-from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
+from abut.contact.block_rows import CompressedRows, added_up, block_rows, in_place, weights_of_rows
 from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.rim import Rim, goes_on
+from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.adjusted import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
@@ -105,7 +106,7 @@ class Current:
         if not pair.frictional:
             return now
         assert place.past is not None
-        seen = _Seen(pair, now.pair.contactor, target, normals, tangents, by, down, mixed)
+        seen = _Seen(pair, now.pair.contactor, target, normals, tangents, by, down, operators, mixed)
         past = place.past if place.following is None else self._led(place.past, place.following.astype(np.int64))
         made, without = self._rubbed(seen, past, multipliers)
         turned = tangents_2d(normals, *self._anchors) if tangents is None else tangents.now.tangents
@@ -264,7 +265,9 @@ class Current:
         near = NEAR if isinstance(self.pair.contact.law, str) else GIVING
         reach = near * self._facet
         fixed = None if self.pair.space.ordinary else reach  # what is covered decides which functions these are
-        return CouplingOptions(rule.rule, rule.points, reach + 2.0 * way, largest_gap=fixed)
+        return CouplingOptions(
+            rule.rule, rule.points, reach + 2.0 * way, largest_gap=fixed, target_across=self._target_creases
+        )
 
     @cached_property
     def _across(self) -> Smoothing:
@@ -274,6 +277,14 @@ class Current:
     @cached_property
     def _target_across(self) -> Smoothing:
         return smoothing(self.pair.target)
+
+    @cached_property
+    def _target_creases(self) -> Smoothing | None:
+        """None where the target has a facet without a normal: the contactor may still see the others."""
+        try:
+            return self._target_across
+        except InputError:
+            return None
 
     @cached_property
     def _nodes(self) -> NDArray[np.int64]:
@@ -313,7 +324,7 @@ class Current:
 @dataclass(frozen=True)
 class _Seen:
     """A pair where it is, with its functions as they are mixed there. down: (n_functions, 9 n_facets) of the functions;
-    tangents: None in 2D; mixed: None where no function is a dual one."""
+    operators: those of ``by``, added up with it; tangents: None in 2D; mixed: None where no function is a dual one."""
 
     pair: Pair
     contactor: Surface
@@ -322,6 +333,7 @@ class _Seen:
     tangents: Tangents | None
     by: CouplingTangent
     down: Sparse
+    operators: CompressedRows
     mixed: Mixed | None
 
     def rubbed(self, points: SlipPoints, multipliers: Array) -> Rubbing:
@@ -332,8 +344,7 @@ class _Seen:
             made = rub_in_plane(part, self.by, added_up(part, self.by.operators, n_points), slip)
             along = multipliers[self.pair.tangential]
             return made if self.mixed is None else self.mixed.rubbed_in_plane(made, slip, along)
-        operators = added_up(self.down, self.by.operators, n_points)
-        square = in_place(operators[0][..., 3:].reshape(-1, 3, 3), operators)
+        square = in_place(self.operators[0][..., 3:].reshape(-1, 3, 3), self.operators)
         made = rub_in_space(self.down, self.by, square, slip, self.tangents, self.contactor)
         return made if self.mixed is None else self.mixed.rubbed_in_space(made, slip, self.tangents)
 

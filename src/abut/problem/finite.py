@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
 from abut.problem.landed import LANDED, PairEnd, landed
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import Linearised, by_pair
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.terms import Motion, Share
@@ -156,7 +158,7 @@ class FiniteProblem(ContactProblem):
             if kind is None:
                 continue
             name = kind.pair.contact.name
-            now = kind.following(here, touching, self._offset(kind.pair, near.time))
+            now = kind.following(here, touching, self._added(kind.pair, near.time))
             known = old.get(name, np.arange(len(now.to))).astype(np.int64)
             if not np.array_equal(now.to, known) and not (
                 settled and not now.matters(known, touching[kind.pair.normal])
@@ -227,7 +229,8 @@ class FiniteProblem(ContactProblem):
         constraints = self.constraints.near(now.unknowns, there)
         shares, contacts = self._forces(before, now.time, here), self._contacts(before, now, here, now)
         stiff = [share.tangent for share in shares if share.tangent is not None]
-        bending = sum((contact.bending for contact in contacts), sp.csr_matrix((len(here),) * 2))
+        bendings = [contact.bending for contact in contacts]
+        bending = reduce(add, bendings) if bendings else sp.csr_matrix((len(here),) * 2)
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
             whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
@@ -254,7 +257,7 @@ class FiniteProblem(ContactProblem):
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers (n,), pair by pair."""
-        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1])
+        return by_pair(self.pairs, values)
 
     def _idle(self, contacts: Sequence[ContactNow]) -> NDArray[np.bool_]:
         """(n,) multipliers of friction whose slip does not count in this step."""
@@ -279,12 +282,12 @@ class FiniteProblem(ContactProblem):
             if kind is None:
                 result.append(_tie(pair, tie, here))
                 continue
-            past, offset = self._past(kind, before) if pair.frictional else None, self._offset(pair, now.time)
+            past, offset = self._past(kind, before) if pair.frictional else None, self._added(pair, now.time)
             chosen = (each.get(pair.contact.name) for each in (inner, following, fits))
             result.append(kind.at(Place(here, there, past, offset, *chosen), part))
         return result
 
-    def _offset(self, pair: Pair, time: float) -> float:
+    def _added(self, pair: Pair, time: float) -> float:
         """What is added to all gaps of a pair at a time."""
         constant, varying = offsets(self.model, pair.contact)
         return constant + float(varying @ weights(self.model.histories, time))

@@ -54,21 +54,20 @@ def at_multipliers(
     mean = np.zeros(len(pair)) if not len(pair) else gap / weight
     state = LawState(_status(closed, where), slipping=None if slipping is None else _status(slipping, where))
     result = _checked(law.evaluate(_spread(mean, where), _spread(multipliers, where), state), where.shape, pair)
-    number = np.broadcast_to(where[:, :, None], (*where.shape, where.shape[1]))
-    other = np.broadcast_to(where[:, None, :], number.shape)
-    both = (number >= 0) & (other >= 0)
     n = len(pair)
     residual = np.zeros(n)
     residual[where[there]] = result.residual[there]
-    by_gap, by_pressure = (_matrix(of, number, other, both, n) for of in (result.by_jump, result.by_traction))
     if where.shape[1] == 1:
-        by_gap, by_pressure, residual = _normalised(by_gap, by_pressure, residual, weight, pair.stiffness)
+        by_gap, by_pressure, residual = _normalised(result, where[:, 0], residual, weight, pair.stiffness)
+    else:
+        by_gap, of_traction = (_matrix(blocks, where, n) for blocks in (result.by_jump, result.by_traction))
+        by_pressure = (sp.diags(weight) @ of_traction).tocsr()
     decoupled = np.diff(by_gap.indptr) == 0
     plain = (by_gap.diagonal() == -1.0) & (by_pressure.diagonal() <= 0.0)
     shut = np.zeros(n, dtype=bool)
     shut[where[there]] = np.broadcast_to(result.closed[:, None], where.shape)[there]
     return LawRows(
-        weight * residual, shut, by_gap, (sp.diags(weight) @ by_pressure).tocsr(), False, decoupled,
+        weight * residual, shut, by_gap, by_pressure, False, decoupled,
         bool(plain[~decoupled].all()),
     )  # fmt: skip
 
@@ -129,19 +128,27 @@ def _status(closed: NDArray[np.bool_], where: NDArray[np.int64]) -> NDArray[np.b
     return np.where(first >= 0, closed[np.maximum(first, 0)], False) if len(closed) else np.zeros(len(where), bool)
 
 
-def _matrix(
-    blocks: Vector, row: NDArray[np.int64], column: NDArray[np.int64], both: NDArray[np.bool_], n: int
-) -> sp.csr_matrix:
-    keep = both & (blocks != 0.0)
+def _matrix(blocks: Vector, where: NDArray[np.int64], n: int) -> sp.csr_matrix:
+    row = np.broadcast_to(where[:, :, None], blocks.shape)
+    column = np.broadcast_to(where[:, None, :], blocks.shape)
+    keep = (row >= 0) & (column >= 0) & (blocks != 0.0)
     return sp.csr_matrix((blocks[keep], (row[keep], column[keep])), shape=(n, n))
 
 
+def _diagonal(values: Vector) -> sp.csr_matrix:
+    """Without what is zero."""
+    (kept,) = np.nonzero(values)
+    start = np.searchsorted(kept, np.arange(len(values) + 1))
+    return sp.csr_matrix((values[kept], kept, start), shape=(len(values),) * 2)
+
+
 def _normalised(
-    by_gap: Sparse, by_pressure: Sparse, residual: Vector, weight: Vector, stiffness: float
+    result: LawResult, where: NDArray[np.int64], residual: Vector, weight: Vector, stiffness: float
 ) -> tuple[Sparse, Sparse, Vector]:
     """Rows of a normal law divided by minus their derivative by the gap; those that hardly look at it do not at all."""
-    slope, give = by_gap.diagonal(), by_pressure.diagonal()
+    slope, give = np.zeros(len(residual)), np.zeros(len(residual))
+    there = where >= 0
+    slope[where[there]], give[where[there]] = result.by_jump[there, 0, 0], result.by_traction[there, 0, 0]
     sees = np.abs(slope) > FAINT * np.abs(give) * stiffness
     by = np.where(sees, -1.0 / np.where(sees, slope, 1.0), 1.0)
-    divide = sp.diags(by)
-    return (sp.diags(np.where(sees, -1.0, 0.0)).tocsr(), (divide @ by_pressure).tocsr(), by * residual)
+    return _diagonal(np.where(sees, -1.0, 0.0)), _diagonal(weight * (by * give)), by * residual

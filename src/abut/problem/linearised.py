@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -92,7 +94,7 @@ class Linearised:
 
     def split(self, values: Array) -> list[Array]:
         """Values of all multipliers, pair by pair."""
-        return np.split(values, np.cumsum([len(pair) for pair in self.pairs])[:-1]) if self.pairs else []
+        return by_pair(self.pairs, values)
 
     def join(self, values: Sequence[Array]) -> Array:
         return np.concatenate(values) if len(values) else np.zeros(0)
@@ -165,13 +167,24 @@ class Linearised:
                     np.zeros((len(pair), len(self.compliance))) if empty else law.by_gap @ self.compliance[here]
                 )
         at_points = any(law.at_points for law in laws)
-        by_pressure = sp.block_diag([law.by_pressure for law in laws]).tocsr()
+        by_pressure = _diagonal([law.by_pressure for law in laws])
         return Rows(
             residual=np.concatenate([law.residual for law in laws]),
-            by_displacement=sp.vstack(by_displacement).tocsr(),
+            by_displacement=by_displacement[0] if len(laws) == 1 else sp.vstack(by_displacement).tocsr(),
             by_pressure=by_pressure if self.compliance is None else by_pressure.toarray() + np.vstack(by_compliance),
             decoupled=np.concatenate([law.decoupled for law in laws]),
             symmetric=self.symmetric and not at_points and all(law.symmetric for law in laws),
-            by_gap=None if at_points else sp.block_diag([law.by_gap for law in laws]).tocsr(),
+            by_gap=None if at_points else _diagonal([law.by_gap for law in laws]),
             by_multiplier=by_pressure,
         )
+
+
+def by_pair(pairs: Sequence[Pair], values: NDArray[Any]) -> list[NDArray[Any]]:
+    """Values of all multipliers (n,), pair by pair."""
+    ends = accumulate(len(pair) for pair in pairs)
+    return [values[end - len(pair) : end] for pair, end in zip(pairs, ends)]
+
+
+def _diagonal(blocks: Sequence[Sparse]) -> Sparse:
+    """Square matrices one after the other along the diagonal."""
+    return blocks[0].tocsr() if len(blocks) == 1 else sp.block_diag(blocks).tocsr()

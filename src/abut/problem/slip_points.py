@@ -72,9 +72,9 @@ class SlipPoints:
 
     def moments(self, n_facets: int) -> Array:
         """int H_k over what was covered, facet by facet, (9 n_facets,)."""
-        result = np.zeros((n_facets, MAX_FACET_NODES))
-        np.add.at(result, self.facet, self.weight[:, None] * self.pressure)
-        return result.ravel()
+        row = MAX_FACET_NODES * self.facet[:, None] + np.arange(MAX_FACET_NODES)
+        moment = (self.weight[:, None] * self.pressure).ravel()
+        return np.bincount(row.ravel(), moment, MAX_FACET_NODES * n_facets).astype(float)
 
 
 @dataclass(frozen=True)
