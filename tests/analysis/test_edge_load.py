@@ -1,0 +1,59 @@
+"""Edges of the contactor that press on a face: the certificate's line "contactor's edges"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import abut
+from abut.diagnosis.cures import cures
+from abut.mesh.make import join, rectangle
+from abut.solution import Check
+
+
+def tilted(degrees: float, sides: tuple[str, str] = ("skin", "plate.top")) -> abut.Model:
+    """A square, turned about its lower right corner (0, 0), pressed on a plate with that corner."""
+    block = rectangle((-1, 0), (0, 1), (4, 4), "quad4")
+    c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
+    block = replace(block, points=block.points @ np.array([[c, -s], [s, c]]))
+    mesh = join({"block": block, "plate": rectangle((-2, 2), (-1, 0), (16, 4), "quad4")})
+    skin = np.concatenate([mesh.surfaces["block.bottom"], mesh.surfaces["block.right"]])
+    mesh = replace(mesh, surfaces={**mesh.surfaces, "skin": skin})
+    steel = abut.LinearElastic(1000.0, 0.3)
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, steel) for body in mesh.bodies],
+        [abut.Support("plate.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-0.1)],
+        contacts=[abut.Contact(*sides)],
+        plane="strain",
+        kinematics="finite",
+    )
+
+
+def line(solution: abut.Solution) -> Check:
+    return next(check for check in solution.certificate if check.name == "contactor's edges")
+
+
+def test_an_edge_as_contactor_fails() -> None:
+    """It pushes along the normal of its own face, 30 degrees off, and the cure is the other side as contactor: its normal is
+    that of the plate."""
+    solution = abut.solve(tilted(30.0))
+    check = line(solution)
+    assert check.value == pytest.approx(0.5, abs=0.05)  # sine of 30 degrees
+    assert not check.passed
+    (text,) = [text for failed, text in cures(solution) if failed.name == check.name]
+    assert text.startswith("swap the sides (contactor = ")
+    tangential, normal = np.abs(solution.contacts[0].force)
+    assert tangential / normal > 0.2  # without friction it should be none
+
+    other = abut.solve(tilted(30.0, ("plate.top", "skin")))
+    assert line(other).value == 0.0
+    tangential, normal = np.abs(other.contacts[0].force)
+    assert tangential / normal < 1e-6
+
+
+@pytest.mark.parametrize("degrees", [0.0, 5.0])
+def test_faces_that_lie_on_each_other_or_almost(degrees: float) -> None:
+    assert line(abut.solve(tilted(degrees))).value <= np.sin(np.deg2rad(5.0)) + 0.01
