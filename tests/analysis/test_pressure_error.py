@@ -127,7 +127,9 @@ def test_it_counts_where_the_pressure_is_largest() -> None:
 def test_the_cure_names_a_size() -> None:
     """Half of the facets in contact."""
     solution = abut.solve(line("quad8", (4, 4)))
-    assert cure(checked(solution), solution).startswith("refine both surfaces where they touch: facets of half the size (1)")
+    assert cure(checked(solution), solution).startswith(
+        "refine both surfaces where they touch: facets of half the size (1)"
+    )
 
 
 @pytest.mark.parametrize("cell", ["tri3", "tri6", "quad8", "tet4", "tet10", "hex20"])
@@ -139,7 +141,9 @@ def test_linear_stresses_are_carried_to_the_surface(cell: str) -> None:
     rng = np.random.default_rng(1)
     slope, at_zero = rng.normal(size=(mesh.dim, 6)), rng.normal(size=6)
     (block,) = mesh.blocks
-    of_cells = mesh.points[block.nodes] if cell not in ("tri3", "tet4") else mesh.points[block.nodes].mean(axis=1)[:, None]
+    of_cells = (
+        mesh.points[block.nodes] if cell not in ("tri3", "tet4") else mesh.points[block.nodes].mean(axis=1)[:, None]
+    )
     total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
     np.add.at(total, block.nodes, of_cells @ slope + at_zero)
     np.add.at(count, block.nodes, 1.0)

@@ -12,7 +12,10 @@ from abut.contact.geometry import side_normals
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
-SIMPLEX = ("tri3", "tet4")  # one stress a cell, so that a node's average is the stress at the mean of its cells' middles
+SIMPLEX = (
+    "tri3",
+    "tet4",
+)  # one stress a cell, so that a node's average is the stress at the mean of its cells' middles
 ROWS = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of a tensor, in xx yy zz xy yz zx
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 
@@ -61,8 +64,8 @@ def _simplices(mesh: Mesh) -> NDArray[np.int64]:
 
 
 def _carried(cells: NDArray[np.int64], points: Array, tensor: Array, nodes: NDArray[np.int64], normal: Array) -> Array:
-    """Compression (n,) of simplices (m, dim + 1) at ``nodes`` (n,) along ``normal`` (n, dim): averages, each taken at the mean
-    of the middles of its node's cells, are carried on from there by the slope of those of the nodes around."""
+    """Compression (n,) of simplices (m, dim + 1) at ``nodes`` (n,) along ``normal`` (n, dim): averages, each taken at the
+    mean of the middles of its node's cells, are carried on from there by the slope of those of the nodes around."""
     number = np.full(len(points), -1)
     number[nodes] = np.arange(len(nodes))
     star = cells[(number[cells] >= 0).any(axis=1)]

@@ -117,8 +117,8 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     ratio = size / float(np.median(facet_sizes(result.target)))
     finer = f", or {sides}" if sides and ratio > FINER else ""
     return (
-        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{finer}; at the "
-        "edge or tip of a sharp body the pressure has no limit, and no mesh shows its largest: round it"
+        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{finer}; but "
+        "round the edges of sharp bodies, where pressure has no limit"
     )
 
 
