@@ -8,17 +8,23 @@ import numpy as np
 import pytest
 
 import abut
+from abut.analysis.edge_load import edge_load
 from abut.diagnosis.cures import cures
 from abut.mesh.make import join, rectangle
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pair
 from abut.solution import Check
 
 
-def tilted(degrees: float, sides: tuple[str, str] = ("skin", "plate.top")) -> abut.Model:
-    """A square, turned about its lower right corner (0, 0), pressed on a plate with that corner."""
+def tilted(
+    degrees: float, sides: tuple[str, str] = ("skin", "plate.top"), plate: tuple[float, float, int] = (-2.0, 2.0, 16)
+) -> abut.Model:
+    """A square, turned about its lower right corner (0, 0), pressed on a plate with that corner; plate: from, to,
+    and in how many cells."""
     block = rectangle((-1, 0), (0, 1), (4, 4), "quad4")
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     block = replace(block, points=block.points @ np.array([[c, -s], [s, c]]))
-    mesh = join({"block": block, "plate": rectangle((-2, 2), (-1, 0), (16, 4), "quad4")})
+    mesh = join({"block": block, "plate": rectangle(plate[:2], (-1, 0), (plate[2], 4), "quad4")})
     skin = np.concatenate([mesh.surfaces["block.bottom"], mesh.surfaces["block.right"]])
     mesh = replace(mesh, surfaces={**mesh.surfaces, "skin": skin})
     steel = abut.LinearElastic(1000.0, 0.3)
@@ -52,6 +58,21 @@ def test_an_edge_as_contactor_fails() -> None:
     assert line(other).value == 0.0
     tangential, normal = np.abs(other.contacts[0].force)
     assert tangential / normal < 1e-6
+
+
+def test_an_edge_of_the_target_does_not_count() -> None:
+    """Though the contactor has one beside it: a plate of one facet that ends a little way behind the corner, under an even
+    pressure. On a long plate, as contactor, its corner counts by the sine of its angle."""
+    cases = (("plate.top", "skin"), (-0.1, 0.01, 1)), (("skin", "plate.top"), (-2.0, 2.0, 16))
+    found = []
+    for sides, plate in cases:
+        model = tilted(30.0, sides, plate)
+        own = pair(model, model.contacts[0], supports(model))
+        bottom = own.contactor.points[own.contactor.nodes[:, 1], 0] <= 0.0  # the face at 30 degrees
+        ones = np.where((own.contactor.nodes >= 0) & (bottom | (sides[0] == "plate.top"))[:, None], 1.0, np.nan)
+        found.append(edge_load(own, np.nan_to_num(ones).ravel(), ones))
+    assert found[0] == 0.0
+    assert 0.1 < found[1] <= 0.5 + 1e-9  # its facet at the corner, of those under pressure
 
 
 @pytest.mark.parametrize("degrees", [0.0, 5.0])

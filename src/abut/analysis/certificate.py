@@ -180,7 +180,7 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
         "estimated local error of the reported pressure inside the contact, over the largest pressure",
         pressure=case.matters, highest=True, notice=NOTICED, unknown=unknown)  # fmt: skip
     yield case.check("contactor's edges", edges, EDGES,
-        "sine of the angle between the sides where an edge of the contactor presses, in the mean over the force")  # fmt: skip
+        "sine of the angle between the sides where an edge of the contactor presses, mean by force")  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:

@@ -34,9 +34,8 @@ def edge_load(pair: Pair, values: Array, nodal: Array) -> float:
     share = force[at.facet] / force.sum() * pressure / np.maximum(of_facet[at.facet], 1e-300)
     own = _normals(pair.contactor, at.facet, at.contactor_shapes)
     other = _normals(pair.target, at.target_facet, at.target_shapes)
-    edge = _edge_presses(pair.contactor, at.facet, own, other) & ~_edge_presses(
-        pair.target, at.target_facet, other, own
-    )
+    theirs = _edge_presses(pair.target, at.target_facet, other, own)
+    edge = _edge_presses(pair.contactor, at.facet, own, other) & ~theirs
     sine = np.linalg.norm(_leaning(own, other), axis=1)
     return float((share * sine)[edge].sum())
 

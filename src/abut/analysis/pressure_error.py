@@ -51,17 +51,17 @@ def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.b
 
 def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Array:
     """Values (n_points,) that a plane through those of the neighbours has at each point, fitted with the weight of the
-    inverse square of the distance along the surface."""
+    inverse square of the distance along the surface; 0 at points without neighbours."""
     edges = graph.matrix.tocoo()
-    i, j = edges.row, edges.col
-    away = points[j] - points[i]
-    away -= (away * normals[i]).sum(axis=1, keepdims=True) * normals[i]
+    used, i = np.unique(edges.row, return_inverse=True)
+    j = edges.col
+    away = points[j] - points[used[i]]
+    away -= (away * normals[used[i]]).sum(axis=1, keepdims=True) * normals[used[i]]
     close = 1.0 / np.maximum((away**2).sum(axis=1), 1e-300)
 
     def total(of_edges: Array) -> Array:
-        result = np.zeros((len(points), *of_edges.shape[1:]))
-        np.add.at(result, i, of_edges)
-        return result
+        columns = [np.bincount(i, column, len(used)) for column in of_edges.reshape(len(i), -1).T]
+        return np.stack(columns, axis=-1).reshape(len(used), *of_edges.shape[1:])
 
     weight = np.maximum(total(close), 1e-300)
     mean = total(close * values[j]) / weight
@@ -70,4 +70,6 @@ def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Arra
     metric = total(close[:, None, None] * apart[:, :, None] * apart[:, None])
     rate = total((close * (values[j] - mean[i]))[:, None] * apart)
     slope = np.einsum("nab,nb->na", np.linalg.pinv(metric, rcond=EVEN, hermitian=True), rate)
-    return np.asarray(mean - (slope * centre).sum(axis=1))
+    result = np.zeros(len(points))
+    result[used] = mean - (slope * centre).sum(axis=1)
+    return result

@@ -12,10 +12,7 @@ from abut.contact.geometry import side_normals
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
-SIMPLEX = (
-    "tri3",
-    "tet4",
-)  # one stress a cell, so that a node's average is the stress at the mean of its cells' middles
+SIMPLEX = ("tri3", "tet4")  # one stress a cell: a node's average is that at the mean of its cells' middles
 ROWS = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of a tensor, in xx yy zz xy yz zx
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 
@@ -36,18 +33,18 @@ def normal_stress(mesh: Mesh, contactor: Surface, stress: Array) -> Array:
         nodes = contactor.nodes[facets]
         which[nodes[nodes >= 0]] = True
     there = np.linalg.norm(normals, axis=1) > 0.0
-    tensor = stress[:, ROWS][:, : mesh.dim, : mesh.dim]
     result = np.full(len(split.points), np.nan)
     plain = there & (quadratic & ~simplex & ~other)[owner]
-    result[plain] = _compression(normals[plain], tensor[owner[plain]])
+    result[plain] = _compression(normals[plain], stress[owner[plain]])
     carried = there & (simplex & ~quadratic & ~other)[owner]
     if carried.any():
-        result[carried] = _carried(_simplices(mesh), contactor.points, tensor, owner[carried], normals[carried])
+        result[carried] = _carried(_simplices(mesh), contactor.points, stress, owner[carried], normals[carried])
     return result
 
 
-def _compression(normal: Array, tensor: Array) -> Array:
-    return np.asarray(-np.einsum("na,nab,nb->n", normal, tensor, normal))
+def _compression(normal: Array, stress: Array) -> Array:
+    dim = normal.shape[1]
+    return np.asarray(-np.einsum("na,nab,nb->n", normal, stress[:, ROWS][:, :dim, :dim], normal))
 
 
 def _kinds(mesh: Mesh, contactor: Surface) -> Iterator[tuple[str, NDArray[np.bool_]]]:
@@ -63,7 +60,7 @@ def _simplices(mesh: Mesh) -> NDArray[np.int64]:
     return np.concatenate([block.nodes for block in mesh.blocks if block.kind in SIMPLEX]).astype(np.int64)
 
 
-def _carried(cells: NDArray[np.int64], points: Array, tensor: Array, nodes: NDArray[np.int64], normal: Array) -> Array:
+def _carried(cells: NDArray[np.int64], points: Array, stress: Array, nodes: NDArray[np.int64], normal: Array) -> Array:
     """Compression (n,) of simplices (m, dim + 1) at ``nodes`` (n,) along ``normal`` (n, dim): averages, each taken at the
     mean of the middles of its node's cells, are carried on from there by the slope of those of the nodes around."""
     number = np.full(len(points), -1)
@@ -75,13 +72,15 @@ def _carried(cells: NDArray[np.int64], points: Array, tensor: Array, nodes: NDAr
     here, other = here[kept], other[kept]
     i = number[here]
     away = middle[other] - middle[here]
-    rise = _compression(normal[i], tensor[other] - tensor[here])
+    rise = _compression(normal[i], stress[other] - stress[here])
     close = 1.0 / np.maximum((away**2).sum(axis=1), 1e-300)
     metric, rate = np.zeros((len(nodes), *2 * points.shape[1:])), np.zeros((len(nodes), points.shape[1]))
-    np.add.at(metric, i, close[:, None, None] * away[:, :, None] * away[:, None])
-    np.add.at(rate, i, (close * rise)[:, None] * away)
+    for a, b in np.ndindex(metric.shape[1:]):
+        metric[:, a, b] = np.bincount(i, close * away[:, a] * away[:, b], len(nodes))
+    for a in range(rate.shape[1]):
+        rate[:, a] = np.bincount(i, close * rise * away[:, a], len(nodes))
     slope = np.einsum("nab,nb->na", np.linalg.pinv(metric, rcond=EVEN, hermitian=True), rate)
-    return np.asarray(_compression(normal, tensor[nodes]) + (slope * (points[nodes] - middle[nodes])).sum(axis=1))
+    return np.asarray(_compression(normal, stress[nodes]) + (slope * (points[nodes] - middle[nodes])).sum(axis=1))
 
 
 def _middles(cells: NDArray[np.int64], points: Array, star: NDArray[np.int64]) -> Array:
