@@ -27,8 +27,7 @@ def pressure_error(pair: Pair, pressure: Array, share: Array, largest: float, st
     closed = (graph.degree > 0) & (pressure > CLOSED * largest)
     inside = closed & graph.all_of(closed) & ~((share > 0.0) & (np.abs(share - 1.0) > WHOLE))
     axis, mirrored = _mirrored(pair, graph)
-    between = _between(graph, surface.points, normals, pressure)
-    bent = np.where(axis, graph.mean(pressure), between) - pressure
+    bent = _between(graph, surface.points, normals, pressure) - pressure
     parts = [bent[inside & (~graph.rim | axis)]]
     at = inside & (~graph.rim | axis | mirrored)
     if stress is not None and np.nanmax(np.abs(stress[at]), initial=0.0) > TRIFLE * largest:
@@ -51,7 +50,7 @@ def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.b
 
 def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Array:
     """Values (n_points,) that a plane through those of the neighbours has at each point, fitted with the weight of the
-    inverse square of the distance along the surface; 0 at points without neighbours."""
+    inverse square of the distance along the surface; the value at a single one; 0 at points without neighbours."""
     edges = graph.matrix.tocoo()
     used, i = np.unique(edges.row, return_inverse=True)
     j = edges.col
