@@ -123,8 +123,11 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
-    pushes = "its edge pushes along the normal of its own face, not of what it touches"
-    return f"{sides or f'round the edge of {words(contact.contactor)} over two facets'}: {pushes}"
+    way = f"{sides}, or round" if sides else "round"
+    return (
+        f"{way} the edge of {words(contact.contactor)} over two facets: it pushes along the normal of its own face, not of "
+        "what it touches"
+    )
 
 
 def _moments(contact: Contact, result: ContactResult, sides: str) -> str:
