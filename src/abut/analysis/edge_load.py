@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 def edge_load(pair: Pair, values: Array, nodal: Array) -> float:
     """Sine of the angle between the contactor's normal and the target's, on average over the force; zero but where an edge
     of the contactor presses and none of the target: there the pressure acts along the normal of the contactor's face and
-    should along the target's. Theory (L13).
+    should along the target's: theory (L13).
 
     values: (9 n_facets,) facet-wise coefficients of the pressure; nodal: (n_facets, 9) reported at the facets' nodes."""
     at = pair.coupling.gap_samples

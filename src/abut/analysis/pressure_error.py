@@ -21,7 +21,7 @@ def pressure_error(pair: Pair, pressure: Array, share: Array, largest: float, st
     """Estimate of the largest error of the pressure at nodes inside contact over ``largest``, NaN where there are none.
 
     pressure, share: (n_points,) at the corners, of the contactor split at its creases, the covered share of their supports;
-    stress: (n_points,) as from ``normal_stress``. Theory (P17)."""
+    stress: (n_points,) as from ``normal_stress``; theory (P17)."""
     surface, normals = side_normals(pair.contactor)
     graph = Graph.of_nodes(surface)
     closed = (graph.degree > 0) & (pressure > CLOSED * largest)
