@@ -1,4 +1,4 @@
-"""Pictures of large sliding in docs/gallery.md: an O-ring, a snap joint, two gears (a minute; needs matplotlib)."""
+"""Pictures of large sliding in docs/gallery.md: a strip, an O-ring, a snap joint, two gears (a minute; needs matplotlib)."""
 
 from __future__ import annotations
 
@@ -71,6 +71,7 @@ def example(name: str) -> abut.Solution:
 
 
 def main() -> None:
+    series("accordion.png", example("accordion"), (0.1, 0.5, 1.0), 0.02, (-1.4, 2.0, -2.0, 2.0))
     series("o-ring.png", example("o-ring"), (0.05, 0.5, 1.0), 0.12, (-3.6, 3.6, -1.1, 4.6))
     snap = example("snap-joint")
     peak = max(snap.steps, key=lambda step: -step.contacts[0].force[0]).factor
