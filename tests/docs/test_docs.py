@@ -98,6 +98,16 @@ def test_links_lead_somewhere(document: Path) -> None:
         assert not anchor or anchor in anchors(target), link
 
 
+@pytest.mark.parametrize("folder", ["contact", "problem", "nonlinear"])
+def test_files_of_the_largest_folders_exist(folder: str) -> None:
+    """Those that docs/architecture.md names."""
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    (table,) = re.findall(rf"^\| `{folder}` \| files \|$(.*?)\n\n", text, re.DOTALL | re.MULTILINE)
+    names = re.findall(r"`(\w+)`", table)
+    assert len(names) > 20
+    assert [name for name in names if not (ROOT / "src" / "abut" / folder / f"{name}.py").exists()] == []
+
+
 @pytest.mark.parametrize("page", ["api.md"])
 def test_python_on_pages_runs(page: str) -> None:
     """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift. The law
