@@ -65,8 +65,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body in the mesh",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
-        "integration": "how elements integrate their stiffness: full, reduced, or b-bar, which does not lock near Poisson's ratio "
-        "0.5 (F-bar with kinematics finite)",
+        "integration": "how elements integrate their stiffness: full, reduced, or b-bar, which does not lock near Poisson's "
+        "ratio 0.5 (F-bar with kinematics finite)",
     },
     "SupportTable": {
         "on": "name of the surface or node set",
