@@ -28,10 +28,10 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.landed import LANDED, landed_in
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State

@@ -102,12 +102,16 @@ def _head(solution: Solution, origin: Origin) -> str:
     if solution.contacts:
         top = max(solution.contacts, key=lambda c: c.max_pressure)
         most = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
+        end = " at the end" if len(solution.steps) > 1 else ""
         facts = [
-            ("largest pressure", number(top.max_pressure)),
-            ("contact force", number(float(np.linalg.norm(most.force)))),
-            ("contact area", number(sum(c.area for c in solution.contacts))),
+            ("largest pressure" + end, number(top.max_pressure)),
+            ("contact force" + end, number(float(np.linalg.norm(most.force)))),
+            ("contact area" + end, number(sum(c.area for c in solution.contacts))),
             *facts,
         ]
+        before = max(c.max_pressure for step in solution.steps for c in step.contacts)
+        if before > top.max_pressure:
+            facts.insert(0, ("largest pressure of all steps", number(before)))
     facts.append(("seconds", f"{sum(solution.timings.values()):.3g}"))
     chips = "".join(f"<div><b>{escape(value)}</b><span>{name}</span></div>" for name, value in facts)
     mark = "✓" if good else "✗"
