@@ -10,7 +10,7 @@ import pytest
 import abut
 from abut.analysis.edge_load import edge_load
 from abut.diagnosis.cures import cures
-from abut.mesh.make import join, rectangle
+from abut.mesh.make import box, join, rectangle
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pair
 from abut.solution import Check
@@ -78,3 +78,20 @@ def test_an_edge_of_the_target_does_not_count() -> None:
 @pytest.mark.parametrize("degrees", [0.0, 5.0])
 def test_faces_that_lie_on_each_other_or_almost(degrees: float) -> None:
     assert line(abut.solve(tilted(degrees))).value <= np.sin(np.deg2rad(5.0)) + 0.01
+
+
+def test_a_target_without_normals() -> None:
+    """A hexahedron collapsed at an edge, beside the contact: there is no value, and that is said."""
+    upper = box((0.2, 1.5), (0.2, 0.8), (1, 2), (2, 2, 1), "hex8")
+    mesh = join({"lower": box((0, 2), (0, 1), (0, 1), (2, 1, 1), "hex8"), "upper": upper})
+    points = mesh.points.copy()
+    points[(points == [2.0, 0.0, 1.0]).all(axis=1)] = [2.0, 1.0, 1.0]
+    model = abut.Model(
+        replace(mesh, points=points),
+        [abut.Solid(body, abut.LinearElastic(1000.0, 0.3)) for body in mesh.bodies],
+        [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.01)],
+        contacts=[abut.Contact("upper.bottom", "lower.top")],
+    )
+    check = line(abut.solve(model))
+    assert check.verdict == "none"
+    assert check.unknown == "the target has points without a normal"

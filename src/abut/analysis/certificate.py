@@ -179,8 +179,9 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,
         "estimated local error of the reported pressure inside the contact, over the largest pressure",
         pressure=case.matters, highest=True, notice=NOTICED, unknown=unknown)  # fmt: skip
-    yield case.check("contactor's edges", edges, EDGES,
-        "sine of the angle between the sides where an edge of the contactor presses, mean by force")  # fmt: skip
+    yield Check(pair.contact.name, "contactor's edges", edges, EDGES,
+        "sine of the angle between the sides where an edge of the contactor presses, mean by force",
+        unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:

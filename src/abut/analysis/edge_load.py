@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from abut.contact.geometry import nodal_normals, split_at_creases
 from abut.contact.rim import rim
+from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
@@ -19,7 +20,7 @@ Array = NDArray[np.float64]
 def edge_load(pair: Pair, values: Array, nodal: Array) -> float:
     """Sine of the angle between the contactor's normal and the target's, on average over the force; zero but where an edge
     of the contactor presses and none of the target: there the pressure acts along the normal of the contactor's face and
-    should along the target's: theory (L13).
+    should along the target's: theory (L13). NaN where the target has points without a normal.
 
     values: (9 n_facets,) facet-wise coefficients of the pressure; nodal: (n_facets, 9) reported at the facets' nodes."""
     at = pair.coupling.gap_samples
@@ -33,8 +34,11 @@ def edge_load(pair: Pair, values: Array, nodal: Array) -> float:
         return 0.0
     share = force[at.facet] / force.sum() * pressure / np.maximum(of_facet[at.facet], 1e-300)
     own = _normals(pair.contactor, at.facet, at.contactor_shapes)
-    other = _normals(pair.target, at.target_facet, at.target_shapes)
-    theirs = _edge_presses(pair.target, at.target_facet, other, own)
+    try:
+        other = _normals(pair.target, at.target_facet, at.target_shapes)
+        theirs = _edge_presses(pair.target, at.target_facet, other, own)
+    except InputError:
+        return float("nan")
     edge = _edge_presses(pair.contactor, at.facet, own, other) & ~theirs
     sine = np.linalg.norm(_leaning(own, other), axis=1)
     return float((share * sine)[edge].sum())
