@@ -269,9 +269,10 @@ def _print_result(solution: Solution, directory: Path) -> None:
     print("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
-        print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
-        if not check.passed:
-            print(f"        cure: {cure(check, solution)}")
+        value = f"{'unknown':>9}" if check.unknown else f"{check.value:9.2e}"
+        print(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
+        if text := check.unknown or cure(check, solution):
+            print(f"        {'unknown' if check.unknown else 'cure'}: {text}")
     for remedy in remedies(solution):
         print(f"  try {remedy}")
     print(

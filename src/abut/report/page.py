@@ -95,7 +95,9 @@ def _head(solution: Solution, origin: Origin) -> str:
     elif theory:
         good, verdict = False, f"Converged, but different from theory: {', '.join(r['quantity'] for r in theory)}."
     else:
-        good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass."
+        warns = [f"{c.contact}: {c.name}" for c in solution.certificate if c.warns]
+        but = f", with a warning of {', '.join(warns)}" if warns else ""
+        good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass{but}."
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
     if solution.contacts:
         top = max(solution.contacts, key=lambda c: c.max_pressure)
@@ -128,12 +130,13 @@ def _reached(solution: Solution) -> str:
 def _certificate(solution: Solution) -> str:
     rows = [
         [
-            _mark(check.passed),
+            _mark(check.verdict),
             escape(check.contact or "whole model"),
             escape(check.name),
-            f"{check.value:.2e}",
+            "unknown" if check.unknown else f"{check.value:.2e}",
             f"{check.limit:.2e}",
-            escape(check.meaning) + _cure(cure(check, solution)),
+            escape(f"{check.meaning}; unknown: {check.unknown}" if check.unknown else check.meaning)
+            + _cure(cure(check, solution)),
         ]
         for check in solution.certificate
     ]
@@ -144,14 +147,14 @@ def _cure(text: str) -> str:
     return f"<br><b>Cure:</b> {escape(text)}" if text else ""
 
 
-def _mark(passed: bool) -> str:
-    return f"<span class={'pass' if passed else 'fail'}>{'pass' if passed else 'FAIL'}</span>"
+def _mark(verdict: str) -> str:
+    return f"<span class={verdict.lower()}>{verdict}</span>"
 
 
 def _comparison(solution: Solution, origin: Origin) -> str:
     rows = [
         [
-            _mark(row["passed"]),
+            _mark("pass" if row["passed"] else "FAIL"),
             escape(row["quantity"]),
             f"{row['value']:.7g}",
             escape(row["expected"]),
