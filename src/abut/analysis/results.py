@@ -102,7 +102,7 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
-        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
+        rigid={body.name: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -200,7 +200,8 @@ def _largest_size(steps: Sequence[Step]) -> float:
 
 
 def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
-    """Motion of a rigid body, and what moves it."""
+    """Motion of a rigid body or coupling, and what moves it."""
+    forces = forces * (body.follow if body.holds else 0.0)
     if finite:
         return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
     return RigidResult(*body.motion(nodal), *body.resultant(forces))
@@ -276,7 +277,7 @@ def _rounding(system: Linearised, free: NDArray[np.float64]) -> float:
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
     """Nodes, and all of the rigid bodies they belong to: what holds one point of those holds the whole."""
-    touched = [body.nodes for body in bodies if np.isin(nodes, body.nodes).any()]
+    touched = [body.nodes for body in bodies if body.holds and np.isin(nodes, body.nodes).any()]
     return np.unique(np.concatenate([nodes, *touched]))
 
 
