@@ -51,9 +51,9 @@ _HOME = {  # of public names that do not come from abut.model
 
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
-    "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke", "NodalForce", "Pressure", "Probe",
-    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term",
-    "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke", "NodalForce", "Pressure",
+    "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature",
+    "Term", "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

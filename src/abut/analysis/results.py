@@ -102,7 +102,7 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
-        rigid={body.name: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
+        rigid={body.name: _rigid(end, body, by_supports) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -199,12 +199,14 @@ def _largest_size(steps: Sequence[Step]) -> float:
     return max((step.energy.size for step in steps if step.energy is not None), default=0.0)
 
 
-def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
+def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResult:
     """Motion of a rigid body or coupling, and what moves it."""
     forces = forces * (body.follow if body.holds else 0.0)
-    if finite:
-        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
-    return RigidResult(*body.motion(nodal), *body.resultant(forces))
+    histories = end.problem.model.histories
+    if end.problem.model.finite and (body.whole or body.mean):
+        return RigidResult(*body.turned(end.nodal), *body.resultant(forces, end.nodal))
+    given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
+    return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
 
 
 def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:

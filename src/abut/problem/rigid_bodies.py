@@ -119,38 +119,54 @@ class RigidBody:
         sizes, basis = np.linalg.eigh(gram)
         return np.asarray(basis[:, sizes <= LOOSE * sizes[-1]].T)
 
-    def spreading(self) -> NDArray[np.float64]:
-        """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns: theory (F17);
-        transposed, the mean motion by the displacements of the points."""
+    def spreading(self, among: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns, or of the
+        combinations ``among`` (n_unknowns, k) of them only: theory (F17); transposed, the mean motion by the displacements of
+        the points."""
         moved = self.moved(self.points) * self.follow[:, None]
         weighted = (self.weights[:, None, None] * moved).reshape(-1, len(self.components))
-        return np.asarray(
-            weighted @ np.linalg.pinv(weighted.T @ moved.reshape(weighted.shape), rcond=LOOSE, hermitian=True)
-        )
+        basis = np.eye(len(self.components)) if among is None else among
+        inertia = basis.T @ (weighted.T @ moved.reshape(weighted.shape)) @ basis
+        return np.asarray(weighted @ basis @ np.linalg.pinv(inertia, rcond=LOOSE, hermitian=True) @ basis.T)
 
     def spread(self, force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Forces at the points, (n, dim), that are equivalent to a force (dim,) at the reference and a moment (1,) or (3,).
+        """Forces at the points, (n, dim), that are equivalent to a force (dim,) at the reference and a moment (1,) or (3,);
+        where the points do not follow all motions, equivalent in those that are not prescribed.
 
         Raises InputError where they do work on a motion that moves no point."""
         work = self.moved(self.reference[None])[0].T @ force
         work[len(force) :] += moment[: len(work) - len(force)] / self.size
-        at_points = self.spreading() @ work
-        done = self.moved(self.points).reshape(at_points.shape[0], -1).T @ at_points
-        if np.abs(done - work).max(initial=0.0) > SLIGHT * np.abs(work).max(initial=0.0):
-            lost = self.components[int(np.abs(done - work).argmax())]
-            what = f"moment about {lost[1]}" if lost.startswith("r") else f"force along {lost}"
-            raise InputError(
-                f"loads on {self.words}: the {what} moves none of its points; take it out, or couple more points"
-            )
-        return at_points.reshape(self.points.shape)
+        moved = (self.moved(self.points) * self.follow[:, None]).reshape(-1, len(work))
+        for among in (None, self._open()):
+            at_points = self.spreading(among) @ work
+            lost = moved.T @ at_points - work if among is None else among.T @ (moved.T @ at_points - work)
+            if np.abs(lost).max(initial=0.0) <= SLIGHT * np.abs(work).max(initial=0.0):
+                return at_points.reshape(self.points.shape)
+        raise InputError(
+            f"loads on {self.words}: they act on a motion of the reference that moves none of its points; prescribe that motion, "
+            "move the reference, or couple more points"
+        )
 
-    def motion(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim)."""
+    def _open(self) -> NDArray[np.float64]:
+        """Combinations (n_unknowns, k) of the unknowns that are not prescribed."""
+        given = self.prescribed([self.rigid.history(name) for name in self.components])[0]
+        _, sizes, basis = np.linalg.svd(given)
+        return np.asarray(basis[int((sizes > SLIGHT).sum()) :].T)
+
+    def motion(
+        self, displacement: NDArray[np.float64], given: NDArray[np.float64] | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim), and
+        from the prescribed components, given (m,) as ``prescribed`` has them, where the points do not say all."""
         moved = displacement[self.nodes].ravel()
         if self.whole:
             q = np.linalg.lstsq(self.moved(self.points).reshape(len(moved), -1), moved, rcond=None)[0]
-        else:
+        elif self.mean or given is None:
             q = self.spreading().T @ moved
+        else:
+            rows = self.prescribed([self.rigid.history(name) for name in self.components])[0]
+            known, among = np.linalg.pinv(rows) @ given, self._open()
+            q = known + self.spreading(among).T @ (moved - self.moved(self.points).reshape(len(moved), -1) @ known)
         turns = q[self.points.shape[1] :] / self.size if len(q) > 1 else np.zeros(1)
         return np.asarray(self.moved(self.reference[None])[0] @ q), np.asarray(turns)
 
