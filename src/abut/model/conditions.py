@@ -205,6 +205,11 @@ class Rigid:
     def __post_init__(self) -> None:
         check_motion(self, f"rigid '{self.body}'")
 
+    @property
+    def name(self) -> str:
+        """That of the body."""
+        return self.body
+
     def history(self, name: str) -> History:
         """Of the component ``name``."""
         return self.amplitudes.get(name, self.amplitude)

@@ -41,7 +41,7 @@ class RigidBody:
     @property
     def name(self) -> str:
         """Of the body or coupling."""
-        return self.rigid.name if isinstance(self.rigid, Coupling) else self.rigid.body
+        return self.rigid.name
 
     @property
     def words(self) -> str:
@@ -121,8 +121,8 @@ class RigidBody:
 
     def spreading(self, among: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns, or of the
-        combinations ``among`` (n_unknowns, k) of them only: theory (F17); transposed, the mean motion by the displacements of
-        the points."""
+        combinations ``among`` (n_unknowns, k) of them only: theory (F17); transposed, the mean motion by the displacements
+        of the points."""
         moved = self.moved(self.points) * self.follow[:, None]
         weighted = (self.weights[:, None, None] * moved).reshape(-1, len(self.components))
         basis = np.eye(len(self.components)) if among is None else among
@@ -143,8 +143,8 @@ class RigidBody:
             if np.abs(lost).max(initial=0.0) <= SLIGHT * np.abs(work).max(initial=0.0):
                 return at_points.reshape(self.points.shape)
         raise InputError(
-            f"loads on {self.words}: they act on a motion of the reference that moves none of its points; prescribe that motion, "
-            "move the reference, or couple more points"
+            f"loads on {self.words}: they act on a motion of the reference that moves none of its points; prescribe that "
+            "motion, move the reference, or couple more points"
         )
 
     def _open(self) -> NDArray[np.float64]:
@@ -156,8 +156,8 @@ class RigidBody:
     def motion(
         self, displacement: NDArray[np.float64], given: NDArray[np.float64] | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim), and
-        from the prescribed components, given (m,) as ``prescribed`` has them, where the points do not say all."""
+        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim),
+        and from the prescribed components, given (m,) as ``prescribed`` has them, where the points do not say all."""
         moved = displacement[self.nodes].ravel()
         if self.whole:
             q = np.linalg.lstsq(self.moved(self.points).reshape(len(moved), -1), moved, rcond=None)[0]
