@@ -107,17 +107,10 @@ def translate(deck: Deck) -> Translation:
         with reasons.gathered():
             if name not in moving:
                 solids.append(_solid(name, piece))
-    rigid: list[Rigid] = []
-    with reasons.gathered():
-        rigid = rigid_bodies(deck, moving, plane)
-    bound: list[Coupling] = []
-    with reasons.gathered():
-        bound = couplings(deck, groups, plane)
+    rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += _idle(deck, groups)
-    prescribed = _prescribed(deck, groups, parts, plane, notes, reasons)
-    with reasons.gathered():
-        named = zip((*moving, *(coupling.name for coupling in bound)), reference_nodes(deck))
-        prescribed.loads.extend(reference_loads(deck, dict(named), plane, prescribed.thickness))
+    references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
+    prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     reasons.tell()
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
@@ -149,6 +142,19 @@ def translate(deck: Deck) -> Translation:
     return Translation(model, tuple(notes), deck.ignored)
 
 
+def _referenced(
+    deck: Deck, groups: Groups, moving: list[str], plane: str | None, reasons: Reasons
+) -> tuple[list[Rigid], list[Coupling]]:
+    """Rigid bodies, ``moving`` their names, and couplings."""
+    rigid: list[Rigid] = []
+    bound: list[Coupling] = []
+    with reasons.gathered():
+        rigid = rigid_bodies(deck, moving, plane)
+    with reasons.gathered():
+        bound = couplings(deck, groups, plane)
+    return rigid, bound
+
+
 @dataclass(frozen=True)
 class _Prescribed:
     """What acts on the bodies of a deck."""
@@ -156,22 +162,24 @@ class _Prescribed:
     supports: list[Support]
     equations: list[Equation]
     loads: list[Load]
-    thickness: float
 
 
 def _prescribed(
-    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, notes: list[str], reasons: Reasons
-) -> _Prescribed:
+    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, references: dict[str, tuple[int, int]],
+    notes: list[str], reasons: Reasons,
+) -> _Prescribed:  # fmt: skip
     """Supports, equations and loads; ``notes`` and ``reasons`` get what there is to say."""
     thick = 1.0
     with reasons.gathered():
         thick = thickness(deck, plane, notes)
-    result = _Prescribed([], [], [], thick)
+    result = _Prescribed([], [], [])
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(_supports(bound, groups))
         result.equations.extend(_equations(bound, groups))
         result.loads.extend(_forces(bound, groups, plane, thick))
+    with reasons.gathered():
+        result.loads.extend(reference_loads(deck, references, plane, thick))
     for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
         with reasons.gathered():
             result.loads.extend(others)

@@ -309,9 +309,7 @@ class Moment:
     def __post_init__(self) -> None:
         where = f"moment on '{self.on}': value"
         given: Any = self.value
-        numbers = tuple(
-            checks.finite(value, where) for value in (given if isinstance(given, (list, tuple)) else [given])
-        )
+        numbers = tuple(checks.finite(value, where) for value in (given if np.ndim(given) else [given]))
         if len(numbers) not in (1, 3):
             raise InputError(f"{where}: expected 3 numbers, in the plane 1, got {len(numbers)}")
         object.__setattr__(self, "value", numbers)

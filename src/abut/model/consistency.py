@@ -52,7 +52,10 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
             checks.known(load.on, [*rigid, *couplings], f"loads[{i}].on", "rigid body or coupling")
             _check_moment(mesh, load, f"loads[{i}]")
             continue
-        elif not isinstance(load, Force) or load.on not in {*rigid, *couplings} - {*mesh.surfaces}:
+        elif isinstance(load, Force):
+            known = [*mesh.surfaces, *rigid, *couplings]
+            checks.known(load.on, known, f"loads[{i}].on", "surface, rigid body or coupling")
+        else:
             _check_place(mesh, load, f"loads[{i}].on")
             if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
                 raise InputError(f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out")
@@ -70,14 +73,13 @@ def _check_moment(mesh: Mesh, load: Moment, where: str) -> None:
         raise InputError(f"{where}.value: expected {wanted} component{'s' * (wanted > 1)}, got {len(load.value)}")
 
 
-def _check_place(mesh: Mesh, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
+def _check_place(mesh: Mesh, load: Pressure | Traction | NodalForce | Temperature, where: str) -> None:
     if isinstance(load, NodalForce):
         checks.known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
     elif isinstance(load, Temperature):
         checks.known(load.on, [*mesh.node_sets, *mesh.bodies], where, "node set or body")
     else:
-        what = "surface, rigid body or coupling" if isinstance(load, Force) else "surface"
-        checks.known(load.on, mesh.surfaces, where, what)
+        checks.known(load.on, mesh.surfaces, where, "surface")
 
 
 def check_rigid(mesh: Mesh, bodies: Sequence[Rigid]) -> None:

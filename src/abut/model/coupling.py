@@ -24,7 +24,7 @@ class Coupling:
     """Points of a surface or node set ``on`` that move with a reference point. "kinematic": they follow it as a rigid body,
     or in the displacements ``follow`` only ("x", "y", "z"). "distributing": it has their mean motion, and its force and
     moment are spread over them, which stiffens nothing: on a surface by area, on a node set evenly or by ``weights``, one
-    for each point in the order of their numbers (theory (F16)).
+    for each point in the order of their numbers (theory (F13)).
 
     reference: left out, the mean of the points. x to rz: its prescribed motion as of a ``Rigid``, times ``amplitude`` or
     those named in ``amplitudes``; components left out are free. Loads on it: ``Force`` and ``Moment`` by its name.

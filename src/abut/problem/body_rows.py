@@ -25,7 +25,7 @@ class Rows:
 def body_rows(
     body: RigidBody, histories: Sequence[History], free: Sparse, prescribed: Array, columns: NDArray[np.int64]
 ) -> Rows:
-    """What is prescribed of a body, then what holds its points to it, theory (F16). free: (dim n_points, n) displacements by
+    """What is prescribed of a body, then what holds its points to it, theory (F13). free: (dim n_points, n) displacements by
     the unknowns, of which ``columns`` are the body's own; prescribed: (dim n_points, n_histories) the rest of them."""
     given, values = body.prescribed(histories)
     dim = body.points.shape[1]

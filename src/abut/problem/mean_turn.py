@@ -1,4 +1,4 @@
-"""The turn that takes points nearest to where they are, and its derivative; theory (D14), (D15)."""
+"""The turn that takes points nearest to where they are, and its derivative; theory (D14), (D15), (D16)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """Rigid bodies and couplings: points that follow a few unknowns, translation and small rotations about the centre, or whose
-mean motion these are; theory (F12), (F16)."""
+mean motion these are; theory (F12), (F13)."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class RigidBody:
 
     def spreading(self, among: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns, or of the
-        combinations ``among`` (n_unknowns, k) of them only: theory (F17); transposed, the mean motion by the displacements
+        combinations ``among`` (n_unknowns, k) of them only: theory (F14); transposed, the mean motion by the displacements
         of the points."""
         moved = self.moved(self.points) * self.follow[:, None]
         weighted = (self.weights[:, None, None] * moved).reshape(-1, len(self.components))
