@@ -25,7 +25,12 @@ def test_a_kinematic_coupling_and_what_it_carries(tmp_path):
     text = COLUMN + KINEMATIC + step("*CLOAD", "REF, 3, 10.", "99, 6, 2.") + step("*CLOAD", "99, 6, 5.")
     model = load(tmp_path, text).model
     (coupling,) = model.couplings
-    assert (coupling.name, coupling.kind, coupling.reference, coupling.follow) == ("Top", "kinematic", (0.5, 0.5, 3.0), None)
+    assert (coupling.name, coupling.kind, coupling.reference, coupling.follow) == (
+        "Top",
+        "kinematic",
+        (0.5, 0.5, 3.0),
+        None,
+    )
     assert coupling.given == ()
     force, moment = model.loads
     assert (type(force), force.on, force.value) == (abut.Force, "Top", (0.0, 0.0, 10.0))
@@ -84,7 +89,7 @@ def test_some_directions(tmp_path):
     solution = solve(tmp_path, text + step("*BOUNDARY", "99, 4, 6", "*CLOAD", "99, 3, 10."))
     (coupling,) = solution.model.couplings
     assert coupling.follow == ("z",)
-    assert solution.displacement[solution.model.mesh.nodes_of("PUSHED"), 2] == pytest.approx(0.02, rel=1e-9)
+    assert solution.displacement[solution.model.mesh.nodes_of("TOP"), 2] == pytest.approx(0.02, rel=1e-9)
 
 
 def test_large_displacements(tmp_path):
@@ -92,9 +97,10 @@ def test_large_displacements(tmp_path):
     text = COLUMN + KINEMATIC + step("*BOUNDARY", "99, 6, 6, 1.2", "99, 1, 2").replace("*STEP", "*STEP, NLGEOM")
     solution = solve(tmp_path, text)
     step_ = solution.steps[-1]
-    assert step_.converged and solution.model.finite
+    assert step_.converged
+    assert solution.model.finite
     moved = solution.model.mesh.points + step_.displacement
-    arms = moved[solution.model.mesh.nodes_of("PUSHED")][:, :2] - 0.5
+    arms = moved[solution.model.mesh.nodes_of("TOP")][:, :2] - 0.5
     assert np.linalg.norm(arms, axis=1) == pytest.approx(np.sqrt(0.5), rel=1e-12)
     assert step_.rigid["Top"].rotation[2] == pytest.approx(1.2, rel=1e-9)
 
@@ -148,17 +154,17 @@ def test_plane_models_are_one_thick(tmp_path):
         (DISTRIBUTING.replace("UTING\n", "UTING, WEIGHTING METHOD=LINEAR\n"), "weights over the distance are not read"),
         (DISTRIBUTING.replace("UTING\n", "UTING, COUPLING=STRUCTURAL\n"), "solids have displacements only"),
         (KINEMATIC + DISTRIBUTING, "node 99 is the reference of another coupling .*give this one a node of its own"),
-        (KINEMATIC + "*RIGID BODY, ELSET=HIGH, REF NODE=99\n", "node 99 is that of a .RIGID BODY too"),
+        (KINEMATIC + "*RIGID BODY, ELSET=EALL, REF NODE=99\n", "node 99 is that of a .RIGID BODY too"),
         (DISTRIBUTING.replace("=99", "=1"), "reference node 1 belongs to an element"),
         (KINEMATIC + "*TRANSFORM, NSET=REF\n0, 1, 0, 1, 0, 0\n", "node 99 is the reference of a coupling; give its forces"),
-        (KINEMATIC + "*EQUATION\n2\n99, 1, 1., 1, 1, -1.\n", "node 99 is the reference of a rigid body or coupling, and equat"),
-        ("*SURFACE, NAME=N, TYPE=NODE\nREF,\n" + KINEMATIC.replace("PUSHED", "N"), "none of its nodes belongs to an element"),
+        (KINEMATIC + "*EQUATION\n2\n99, 1, 1., 1, 1, -1.\n", "node 99 is the reference of a rigid body or coupling"),
+        ("*SURFACE, NAME=N, TYPE=NODE\nREF,\n" + KINEMATIC.replace("PUSHED", "N"), "none of its nodes belongs"),
         ("*KINEMATIC COUPLING, REF NODE=99\n", "its data line is missing: expected nodes and directions"),
         ("*KINEMATIC COUPLING, REF NODE=99\nTOP, 3, 1\n", "directions 3 to 1"),
         ("*KINEMATIC COUPLING, REF NODE=99, ORIENTATION=O\nTOP, 1\n", "ORIENTATION: axes of its own are not read"),
         ("*DISTRIBUTING COUPLING, ELSET=D\nTOP, 1.\n", "ELSET=D: expected one element DCOUP3D or DCOUP2D"),
         ("*ELEMENT, TYPE=DCOUP3D, ELSET=D\n9, 98\n*DISTRIBUTING COUPLING, ELSET=D\nTOP, 1.\n", "node 98 does not exist"),
-        ("*ELEMENT, TYPE=DCOUP3D, ELSET=D\n9, 99\n*DISTRIBUTING COUPLING, ELSET=D\nTOP, 0.\n", "weight: expected a number > 0"),
+        ("*ELEMENT, TYPE=DCOUP3D, ELSET=D\n9, 99\n*DISTRIBUTING COUPLING, ELSET=D\nTOP, 0.\n", "weight: expected a num"),
     ],
 )  # fmt: skip
 def test_what_is_refused(text, message, tmp_path):
@@ -168,9 +174,9 @@ def test_what_is_refused(text, message, tmp_path):
 
 def test_nodes_of_two_couplings(tmp_path):
     text = COLUMN + "*NODE\n97, 0., 0., 5.\n*KINEMATIC COUPLING, REF NODE=97\nTOP\n99\n" + KINEMATIC
-    with pytest.raises(InputError, match="node 99 is the reference of another coupling .*; couple the nodes of both"):
+    with pytest.raises(InputError, match=r"node 99 is the reference of another coupling .*; couple the nodes of both"):
         load(tmp_path, text + step("*CLOAD", "15, 3, 1."))
-    with pytest.raises(InputError, match="belongs to coupling '.*' too; take it out of one of them"):
+    with pytest.raises(InputError, match=r"belongs to coupling '.*' too; take it out of one of them"):
         load(tmp_path, text.replace("TOP\n99", "TOP") + step("*CLOAD", "15, 3, 1."))
 
 
@@ -178,7 +184,9 @@ def test_a_reference_in_the_mesh_moves_as_one_of_the_points(tmp_path):
     one = solve(tmp_path, COLUMN + "*KINEMATIC COUPLING, REF NODE=15\n16\n17\n18\n" + step("*CLOAD", "15, 3, 4."))
     top = one.model.mesh.node_sets[one.model.couplings[0].on]
     assert len(top) == 4
-    assert one.steps[-1].rigid[one.model.couplings[0].name].displacement == pytest.approx(one.displacement[top[0]], rel=1e-9)
+    assert one.steps[-1].rigid[one.model.couplings[0].name].displacement == pytest.approx(
+        one.displacement[top[0]], rel=1e-9
+    )
 
 
 def test_couplings_of_an_assembly(tmp_path):

@@ -188,7 +188,7 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("BOTTOM, 1, 3", "BOTTOM, 1, 11", "belongs to heat transfer"),
         ("BOTTOM, 1, 3", "BOTTOM, 3, 1", "directions 3 to 1"),
         ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 7, 1.", r"direction 7: expected 1 to 3 \(forces\) or 4 to 6 \(moments\)"),
-        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", r"node 18 carries no moment \(direction 4\); only rigid bodies and couplings do"),
+        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", "node 18 carries no moment"),
         ("*DLOAD", "*DLOAD, AMPLITUDE=A", r"no \*AMPLITUDE named 'A'"),
         ("*STEP\n*STATIC\n*DLOAD", "*STEP\n*DLOAD", "the step has no procedure"),
         ("*END STEP\n", "", r"the step has no \*END STEP"),

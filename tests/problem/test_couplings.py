@@ -17,7 +17,9 @@ EXACT = 1e-9
 
 
 def beam(coupling, loads=(), kinematics="small", steps=1, cell="hex20", cells=(8, 1, 1)):
-    mesh = join({"beam": box([0, LENGTH], [-HEIGHT / 2, HEIGHT / 2], [-WIDTH / 2, WIDTH / 2], cells=list(cells), cell=cell)})
+    mesh = join(
+        {"beam": box([0, LENGTH], [-HEIGHT / 2, HEIGHT / 2], [-WIDTH / 2, WIDTH / 2], cells=list(cells), cell=cell)}
+    )
     return abut.Model(
         mesh,
         [abut.Solid("beam", abut.LinearElastic(YOUNG, 0.0))],
@@ -52,8 +54,8 @@ def test_a_beam_bent_by_a_moment(kind):
 
 
 def test_a_bar_twisted_by_a_moment():
-    """The end turns by T L / (G J), J of a square with the sides a 0.1406 a^4 (Timoshenko and Goodier), but for what the held
-    ends keep from warping, which shortens a bar of ten widths by a few hundredths."""
+    """The end turns by T L / (G J), J of a square with the sides a 0.1406 a^4 (Timoshenko and Goodier), but that held
+    ends do not warp: so much stiffer, a few hundredths for a bar of ten widths."""
     side, torque = 2.0, 100.0
     mesh = join({"beam": box([0, 20.0], [-1, 1], [-1, 1], cells=[10, 4, 4], cell="hex20")})
     model = replace(
@@ -105,14 +107,19 @@ def test_a_prescribed_motion_needs_the_force_that_gives_it(kind):
 
 def test_points_that_follow_in_some_displacements():
     """Across only: the end slides along freely, as the equations say that make the points' y one with the reference's."""
-    model = beam(tip(follow=("y", "z"), rx=0.0, ry=0.0, rz=0.0), [abut.Force("tip", (0, 100.0, 0)), abut.Pressure("beam.top", 5.0)])
+    model = beam(
+        tip(follow=("y", "z"), rx=0.0, ry=0.0, rz=0.0),
+        [abut.Force("tip", (0, 100.0, 0)), abut.Pressure("beam.top", 5.0)],
+    )
     step, result = end(model)
     nodes = model.mesh.nodes_of("beam.right")
     assert np.ptp(step.displacement[nodes, 1]) < EXACT * abs(result.displacement[1])
     assert np.ptp(step.displacement[nodes, 0]) > 0.1 * abs(result.displacement[1]) * HEIGHT / LENGTH
     first = int(nodes[0])
     equal = [
-        abut.Equation((abut.Term(int(n), c, 1.0), abut.Term(first, c, -1.0))) for n in nodes[1:].tolist() for c in ("y", "z")
+        abut.Equation((abut.Term(int(n), c, 1.0), abut.Term(first, c, -1.0)))
+        for n in nodes[1:].tolist()
+        for c in ("y", "z")
     ]
     sets = {"one": np.array([first])}
     loads = [abut.NodalForce("one", (0, 100.0, 0)), model.loads[1]]
@@ -124,8 +131,7 @@ def test_points_that_follow_in_some_displacements():
 @pytest.mark.parametrize("kind", ["kinematic", "distributing"])
 @pytest.mark.parametrize("turns", [1.0, 4.0])
 def test_a_moment_bends_a_beam_into_an_arc(kind, turns):
-    """Moment and angle of the elastica under pure bending: M = E I angle / L on a circle of radius L / angle. Beam theory leaves
-    out (angle h / L)^2."""
+    """Pure bending: M = E I angle / L on a circle of radius L / angle. Beam theory leaves out (angle h / L)^2."""
     length, height, young, angle = 10.0, 0.1, 1.2e4, 2.0 * np.pi / turns
     mesh = join({"beam": rectangle((0, length), (-height / 2, height / 2), (40, 1), "quad8")})
     moment = angle * young * height**3 / 12.0 / length
@@ -164,10 +170,41 @@ def test_kinematic_and_rigid_are_one(loads):
         rigid=[abut.Rigid("tip", (LENGTH + 2, 1.0, 0.0))],
     )
     one, two = (abut.solve(model).steps[-1] for model in (coupled, glued))
-    assert one.converged and two.converged
+    assert one.converged
+    assert two.converged
     assert np.linalg.norm(one.rigid["tip"].rotation) > 0.1
     assert one.rigid["tip"].displacement == pytest.approx(two.rigid["tip"].displacement, rel=1e-6, abs=1e-7)
     assert one.rigid["tip"].rotation == pytest.approx(two.rigid["tip"].rotation, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["kinematic", "distributing"])
+def test_a_flange_pressed_and_bent(kind):
+    """Columns on each other under a force N and a moment M that leaves all in contact: pressure N / A + M x / I, which
+    quadratic cells and pressures hold exactly below a plane end; what shares is no plane end, and right in its resultant."""
+    width, depth, force, moment = 4.0, 2.0, 100.0, 40.0
+    x, y = [-width / 2, width / 2], [-depth / 2, depth / 2]
+    mesh = join(
+        {"low": box(x, y, [-3, 0], [3, 1, 2], cell="hex20"), "flange": box(x, y, [0, 3], [4, 2, 2], cell="hex20")}
+    )
+    steel = abut.LinearElastic(YOUNG, 0.0)
+    motion = {"x": 0.0, "y": 0.0, "rx": 0.0, "rz": 0.0} if kind == "kinematic" else {}
+    held = [] if kind == "kinematic" else [abut.Support("flange.top", x=0.0, y=0.0)]
+    model = abut.Model(
+        mesh,
+        [abut.Solid("low", steel), abut.Solid("flange", steel)],
+        [abut.Support("low.bottom", x=0, y=0, z=0), *held],
+        [abut.Force("bolt", (0, 0, -force)), abut.Moment("bolt", (0, -moment, 0))],
+        contacts=[abut.Contact("flange.bottom", "low.top")],
+        couplings=[abut.Coupling("bolt", "flange.top", kind, (0, 0, 9.0), **motion)],
+    )
+    (contact,) = abut.solve(model).steps[-1].contacts
+    facets = mesh.surface("flange.bottom")
+    there = facets.nodes >= 0
+    exact = force / (width * depth) - moment * mesh.points[facets.nodes[there], 0] * 12.0 / (depth * width**3)
+    off = np.abs(contact.pressure[there] - exact).max()
+    assert contact.force[2] == pytest.approx(force, rel=1e-9)
+    assert contact.resultant.moment[1] == pytest.approx(moment, rel=1e-6)
+    assert off < (1e-6 if kind == "kinematic" else 0.5) * exact.max()
 
 
 def test_weights_and_areas():
@@ -193,11 +230,15 @@ def test_points_on_a_line_leave_the_turn_about_it():
     edge = [n for n in model.mesh.nodes_of("beam.right") if model.mesh.points[n, 1] == HEIGHT / 2]
     model = replace(model, mesh=replace(model.mesh, node_sets={"edge": np.array(edge)}), couplings=[])
     edge_tip = abut.Coupling("tip", "edge")
-    _, result = end(replace(model, couplings=[edge_tip], loads=[abut.Force("tip", (0, 5.0, 0)), abut.Moment("tip", (0, 30.0, 0))]))
+    _, result = end(
+        replace(model, couplings=[edge_tip], loads=[abut.Force("tip", (0, 5.0, 0)), abut.Moment("tip", (0, 30.0, 0))])
+    )
     assert result.displacement[1] > 0.0
     assert abs(result.rotation[2]) < 1e-12
     lost = replace(model, couplings=[edge_tip], loads=[abut.Moment("tip", (0, 0, 5.0))])
-    with pytest.raises(InputError, match="coupling 'tip': they act on a motion of the reference that moves none of its points"):
+    with pytest.raises(
+        InputError, match="coupling 'tip': they act on a motion of the reference that moves none of its points"
+    ):
         abut.solve(lost)
     with pytest.raises(InputError, match="its points lie on one line, which leaves the turn about it open"):
         abut.solve(replace(lost, kinematics="finite", loads=[abut.Moment("tip", (0, 1.0, 0))]))
@@ -216,7 +257,10 @@ def test_points_on_a_line_leave_the_turn_about_it():
         ({"kind": "distributing", "follow": ("x",)}, 'follow goes with kind = "kinematic"; take it out'),
         ({"weights": (1.0,)}, 'weights go with kind = "distributing"'),
         ({"kind": "distributing", "weights": (-1.0, 2.0)}, "are >= 0, not all of them 0"),
-        ({"kind": "distributing", "weights": (1.0,)}, r"couplings\[0\]\.weights: expected 8 numbers, one for each point, got 1"),
+        (
+            {"kind": "distributing", "weights": (1.0,)},
+            r"couplings\[0\]\.weights: expected 8 numbers, one for each point, got 1",
+        ),
         ({"amplitudes": {"x": abut.Amplitude(((0, 1),))}}, "coupling 'tip': amplitudes: 'x' is none of the components"),
         ({"x": float("nan")}, "coupling 'tip': x: expected a finite number"),
     ],
@@ -234,7 +278,10 @@ def replace_all(**change):
 @pytest.mark.parametrize(
     ("coupling", "message"),
     [
-        (tip(follow=("x",)), r"couplings\[0\]\.follow: points that follow in some displacements only need small turns; .*rz = 0"),
+        (
+            tip(follow=("x",)),
+            r"couplings\[0\]\.follow: points that follow in some displacements only need small turns; .*rz = 0",
+        ),
         (tip("distributing", rz=0.1), "a mean motion can be prescribed with small turns only"),
         (tip("distributing", (LENGTH, 0.0, 1.0), y=0.1), "but for translations at the mean of the points"),
     ],

@@ -43,7 +43,9 @@ def test_forces_balance_the_load_and_their_derivative_is_exact(dim, flat):
     assert about[0 if dim == 3 else 2 :] == pytest.approx(moment, rel=1e-11)
     columns = []
     for direction in STEP * np.eye(points.size):
-        ends = [spread(arms, points + s * direction.reshape(points.shape), weights, offset, force, moment) for s in (1, -1)]
+        ends = [
+            spread(arms, points + s * direction.reshape(points.shape), weights, offset, force, moment) for s in (1, -1)
+        ]
         columns.append((ends[0].force - ends[1].force).ravel() / (2.0 * STEP))
     assert np.abs(at.left @ at.right - np.array(columns).T).max() < CLOSE
 
