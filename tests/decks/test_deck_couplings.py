@@ -201,3 +201,8 @@ def test_couplings_of_an_assembly(tmp_path):
     text += f"*COUPLING, CONSTRAINT NAME=C, REF NODE=_REF, SURFACE=TOP\n*KINEMATIC\n*END ASSEMBLY\n{material}"
     text += "*BOUNDARY\nLOW, 1, 3\n" + step("*CLOAD", "_REF, 3, 10.")
     assert solve(tmp_path, text).steps[-1].rigid["C"].displacement[2] == pytest.approx(0.02, rel=1e-9)
+
+
+def test_rotations_that_are_not_listed_are_free(tmp_path):
+    text = COLUMN + DISTRIBUTING + "1, 3\n" + step("*BOUNDARY", "99, 3, 6, 0.1")
+    assert load(tmp_path, text).model.couplings[0].given == ("z",)

@@ -10,6 +10,7 @@ import pytest
 import abut
 from abut.errors import InputError, SingularModelError
 from abut.mesh.make import box, join, rectangle
+from abut.problem.constraints import supports
 
 YOUNG, LENGTH, HEIGHT, WIDTH = 210e3, 40.0, 4.0, 3.0
 BENDING = YOUNG * WIDTH * HEIGHT**3 / 12.0
@@ -150,6 +151,8 @@ def test_a_moment_bends_a_beam_into_an_arc(kind, turns):
     radius = length / angle
     exact = np.array([radius * np.sin(angle) - length, radius * (1.0 - np.cos(angle))])
     assert solution.steps[-1].rigid["tip"].displacement == pytest.approx(exact, abs=5e-3 * length)
+    if kind == "kinematic":  # whose turn is an unknown; that of positions is known up to whole turns
+        assert solution.steps[-1].rigid["tip"].rotation[0] == pytest.approx(angle, rel=5e-3)
     largest = [min(i.residual for i in step.iterations[-3:-1]) for step in solution.steps]
     assert max(largest) < 1e-2  # the last iterations converge quadratically: an inexact tangent needs many more
     assert max(len(step.iterations) for step in solution.steps) < 20
@@ -230,6 +233,9 @@ def test_points_on_a_line_leave_the_turn_about_it():
     edge = [n for n in model.mesh.nodes_of("beam.right") if model.mesh.points[n, 1] == HEIGHT / 2]
     model = replace(model, mesh=replace(model.mesh, node_sets={"edge": np.array(edge)}), couplings=[])
     edge_tip = abut.Coupling("tip", "edge")
+    assert (
+        np.abs(supports(replace(model, couplings=[edge_tip])).free).sum(axis=0).min() > 0.0
+    )  # all unknowns move points
     _, result = end(
         replace(model, couplings=[edge_tip], loads=[abut.Force("tip", (0, 5.0, 0)), abut.Moment("tip", (0, 30.0, 0))])
     )
@@ -349,3 +355,44 @@ def test_rings_move_along_their_axis_only():
         replace(model, loads=[abut.Moment("cap", 1.0)])
     with pytest.raises(InputError, match="the model is axisymmetric; leave rz out"):
         replace(model, couplings=[abut.Coupling("cap", "ring.top", rz=0.1)])
+
+
+def test_supports_of_points_that_follow():
+    """What holds points in a displacement in which they follow moves the reference; what holds them in another is no
+    force on it."""
+    model = beam(tip(follow=("y", "z"), rx=0.0, ry=0.0, rz=0.0))
+    held = [abut.Support("beam.left", x=0, y=0, z=0), abut.Support("beam.right", x=0.05, y=0.1)]
+    step, result = end(replace(model, supports=held))
+    assert result.displacement[1] == pytest.approx(0.1, rel=1e-12)
+    assert step.reactions["beam.right"][0] == pytest.approx(YOUNG * 0.05 * HEIGHT * WIDTH / LENGTH, rel=0.02)
+    assert result.force[0] == 0.0
+
+
+def test_supports_of_points_that_share():
+    """Without a prescribed motion nothing holds the points together: each support has its own reaction."""
+    model = beam(tip("distributing"))
+    points = model.mesh.points
+    right = model.mesh.nodes_of("beam.right")
+    sets = {"up": right[points[right, 1] > 0], "down": right[points[right, 1] < 0]}
+    held = [*model.supports, abut.Support("up", x=0.1), abut.Support("down", x=-0.1)]
+    step, result = end(replace(model, supports=held, mesh=replace(model.mesh, node_sets=sets)))
+    assert step.reactions["up"][0] == pytest.approx(-step.reactions["down"][0], rel=1e-9)
+    assert step.reactions["up"][0] > 1e3
+    assert not result.force.any()
+
+
+def test_sides_whose_points_follow_have_the_smallest_pressure():
+    """Many pressures have the resultants that two couplings feel: the smallest is taken, and a note says so."""
+    mesh = join({"low": box([-1, 3], [-1, 3], [-2, 0], [4, 4, 2]), "flange": box([0, 2], [0, 2], [0, 1], [2, 2, 1])})
+    steel = abut.LinearElastic(YOUNG, 0.3)
+    model = abut.Model(
+        mesh,
+        [abut.Solid("low", steel), abut.Solid("flange", steel)],
+        [abut.Support("low.bottom", x=0, y=0, z=0)],
+        [abut.Force("foot", (0, 0, -100.0))],
+        contacts=[abut.Contact("flange.bottom", "low.top")],
+        couplings=[abut.Coupling("foot", "flange.bottom", x=0.0, y=0.0, rz=0.0), abut.Coupling("seat", "low.top")],
+    )
+    solution = abut.solve(model)
+    assert solution.contacts[0].force[2] == pytest.approx(100.0, rel=1e-9)
+    assert any("the smallest is taken" in note for note in solution.notes)

@@ -204,7 +204,12 @@ def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResu
     forces = forces * (body.follow if body.holds else 0.0)
     histories = end.problem.model.histories
     if end.problem.model.finite and (body.whole or body.mean):
-        return RigidResult(*body.turned(end.nodal), *body.resultant(forces, end.nodal))
+        moved, turn = body.turned(end.nodal)
+        own = end.problem.constraints.turn_of(body.nodes)
+        if own is not None:  # which knows of whole turns
+            vector = own.vector(end.state.unknowns, weights(histories, end.state.time))
+            turn = vector if len(turn) == 3 else vector[2:]
+        return RigidResult(moved, turn, *body.resultant(forces, end.nodal))
     given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
     return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
 

@@ -70,6 +70,11 @@ class Constraints:
         linear = np.asarray(self.free @ free + self.prescribed @ factors)
         return linear if self.turns is None else linear + self.turns.displacement(free, factors)
 
+    def turn_of(self, nodes: NDArray[np.int64]) -> Turn | None:
+        """The finite turn of points (n,), those of a rigid body or coupling; None without."""
+        turns = () if self.turns is None else self.turns.turns
+        return next((turn for turn in turns if np.array_equal(turn.nodes, nodes)), None)
+
     def near(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> Constraints:
         """The same as a linear change of variables near a state: its columns are the derivatives there."""
         if self.turns is None:

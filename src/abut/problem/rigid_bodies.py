@@ -171,7 +171,7 @@ class RigidBody:
         return np.asarray(self.moved(self.reference[None])[0] @ q), np.asarray(turns)
 
     def turned(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """As ``motion`` by a finite turn, whose rotation vector is at most half a turn long."""
+        """As ``motion`` by a finite turn, of which the positions say at most half a turn."""
         if self.axisymmetric:
             return self.motion(displacement)
         from scipy.spatial.transform import Rotation  # slow to import
