@@ -366,6 +366,22 @@ def test_supports_of_points_that_follow():
     assert result.displacement[1] == pytest.approx(0.1, rel=1e-12)
     assert step.reactions["beam.right"][0] == pytest.approx(YOUNG * 0.05 * HEIGHT * WIDTH / LENGTH, rel=0.02)
     assert result.force[0] == 0.0
+    both = replace(model, supports=held, couplings=[replace(model.couplings[0], y=0.1)])
+    assert np.abs(abut.solve(both).displacement - step.displacement).max() < EXACT * np.abs(step.displacement).max()
+
+
+def test_a_reference_beside_its_points_is_where_it_is_prescribed():
+    """However far the points turn about it, which nothing prescribes."""
+    model = beam(
+        tip(reference=(LENGTH + 7.0, 0.0, 0.0), y=6.0, z=-2.0),
+        kinematics="finite",
+        steps=2,
+        cell="hex8",
+        cells=(8, 2, 2),
+    )
+    _, result = end(model)
+    assert np.linalg.norm(result.rotation) > 0.1
+    assert result.displacement[1:] == pytest.approx([6.0, -2.0], rel=1e-9)
 
 
 def test_supports_of_points_that_share():
