@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.contact.kin import RANK
+from abut.contact.self_contact import RANK
 from abut.contact.sides import Names, moving_sides
 from abut.problem.current import Current
 from abut.solution import Solution

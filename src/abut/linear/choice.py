@@ -94,4 +94,5 @@ class Direct:
         done = self.repeated
         if not done.factorisations:
             return ""
-        return f"{done.factorisations} factorisations in all, with {done.analyses} symbolic analyses"
+        analyses = "one symbolic analysis" if done.analyses == 1 else f"{done.analyses} symbolic analyses"
+        return f"{done.factorisations} factorisations in all, with {analyses}"
