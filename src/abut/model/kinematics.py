@@ -58,7 +58,10 @@ def check_finite(
     for i, support in enumerate(supports):
         held = next((moving[n] for n in mesh.nodes_of(support.on).tolist() if n in moving), None) if moving else None
         if held is not None:
-            raise InputError(f"supports[{i}].on: '{support.on}' has points of {held}; prescribe the motion of that")
+            raise InputError(
+                f"supports[{i}].on: '{support.on}' has points of {held}, which move as a whole; take them out of it, and "
+                f"prescribe the motion of {held}"
+            )
     for i, equation in enumerate(equations):
         for term in equation.terms:
             nodes = mesh.node_sets[term.on].tolist() if isinstance(term.on, str) else [term.on]
