@@ -14,7 +14,7 @@ RUBBER = abut.NeoHooke(100.0, 0.45)
 
 
 def beam() -> abut.Model:
-    """A heated cantilever under a pressure that follows it, with F-bar, and under a force and a moment that are spread over its
+    """A heated cantilever under a pressure that follows it, with F-bar, under a force and a moment that are spread over its
     end: no contact, and a tangent that is not symmetric."""
     return abut.Model(
         box([0, 4], [0, 1], [0, 0.5], cells=[6, 2, 2], cell="hex8"),
