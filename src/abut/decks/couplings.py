@@ -177,8 +177,9 @@ def _check(deck: Deck, groups: Groups, bound: Bound) -> None:
             bound.place,
             f"*DISTRIBUTING: reference node {reference} belongs to an element; give the coupling one of its own",
         )
+    nodes = set(nodes_of(deck, groups, bound).tolist())
     for other in deck.couplings:
-        if other.reference != reference and other.reference in nodes_of(deck, groups, bound):
+        if other.reference != reference and other.reference in nodes:
             raise DeckError(
                 bound.place,
                 f"*COUPLING: node {other.reference} is the reference of another coupling ({other.place}); couple the nodes "
