@@ -45,7 +45,8 @@ public:
   void add(const MovingPoint &at) {
     look(at);
     find_rows(at);
-    add_forces(at);
+    if (loaded_)
+      add_forces(at);
     add_couples();
     add_moments(at);
     add_values(at);
@@ -220,8 +221,6 @@ private:
 
   // Shares of the nodes: N_i F on the contactor, -N_j F on the target.
   void add_forces(const MovingPoint &at) {
-    if (!loaded_)
-      return;
     const std::size_t size = columns_->size;
     for (int a = 0; a < D; ++a) {
       const double force = value_[FORCE + a].v;
@@ -381,14 +380,13 @@ private:
   const Numbering &numbering_;
   const std::size_t width_; // of an entry of the operators
   const bool rubs_;
-  bool loaded_ = false; // whether this facet carries anything
-  int couples_ = 0;     // forces that take up the couple of tractions on this facet, or none
+  int couples_ = 0; // forces that take up the couple of tractions on this facet, or none
   Lever<D> lever_;
   const Facet *c_ = nullptr, *facet_ = nullptr;
   const Columns *columns_ = nullptr;
   std::size_t f_ = 0, own_columns_ = 0;
   int t_ = 0, functions_ = 0;
-  bool hit_ = false;
+  bool hit_ = false, loaded_ = false; // whether this facet has a target, and carries anything
   std::vector<double> own_, block_, couple_, row_[ROWS + Lever<D>::FORCES], own_operator_, other_operator_;
   double own_load_[MAX_FACET_NODES * D], other_load_[MAX_FACET_NODES * D];
   Number value_[ROWS + Lever<D>::FORCES];

@@ -98,6 +98,16 @@ def test_links_lead_somewhere(document: Path) -> None:
         assert not anchor or anchor in anchors(target), link
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=name)
+def test_files_in_commands_exist(document: Path) -> None:
+    """Jobs, decks, meshes and scripts of the repository that a page names, in commands and elsewhere."""
+    named = re.findall(
+        r"\b(?:examples|tests|bench|src|docs/make)/[\w./-]+\.(?:toml|inp|py|msh|json)\b",
+        document.read_text(encoding="utf-8"),
+    )
+    assert [path for path in named if not (ROOT / path).exists()] == []
+
+
 @pytest.mark.parametrize("folder", ["contact", "problem", "nonlinear"])
 def test_files_of_the_largest_folders_exist(folder: str) -> None:
     """Those that docs/architecture.md names."""

@@ -74,6 +74,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     """Arguments; what abut does not know of them, and PETSc may, as ``petsc``."""
     parser = _parser()
+    if not (sys.argv[1:] if argv is None else argv):
+        if not rank():
+            parser.print_help()
+        raise SystemExit(InputError.exit_status)
     with contextlib.ExitStack() as silence:
         if rank():
             nowhere = silence.enter_context(open(os.devnull, "w"))

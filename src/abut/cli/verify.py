@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.errors import InputError, nearest
+from abut.errors import InputError, closest
 
 if TYPE_CHECKING:
     from abut.benchmarks import Outcome
@@ -67,7 +67,8 @@ def _verify(arguments: argparse.Namespace) -> int:
 
     for name in arguments.names:
         if name not in BENCHMARKS:
-            raise InputError(f"verify: no benchmark named {name!r}{nearest(name, BENCHMARKS)}")
+            cure = closest(name, BENCHMARKS) or "; abut verify --list names them"
+            raise InputError(f"verify: no benchmark named {name!r}{cure}")
     chosen = [BENCHMARKS[name] for name in arguments.names or BENCHMARKS]
     if arguments.list:
         longest = max(len(benchmark.name) for benchmark in chosen)
