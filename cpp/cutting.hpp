@@ -20,7 +20,7 @@ inline Box box_of(const Hull &hull, int dim) {
 
 // How far the outline of a target facet in the plane may lie beside its true image: it goes through the images of
 // corners and middles, along which normals that turn carry it; over the sizes of both facets. See theory (S8).
-constexpr double BESIDE = 0.25;
+constexpr double BESIDE = 0.125;
 
 // All that lies within reach of a contactor facet along its normals, and whose outline may meet it; widest: diagonal of
 // the largest target facet's box.
