@@ -103,10 +103,11 @@ def test_no_target_within_sight_is_left_out(kc: str, kt: str) -> None:
     assert own.covered / area == pytest.approx(1.0, abs=1e-5)  # (Q6)
 
 
-
 def on_cylinder(facets: list[list[tuple[float, float]]]) -> Surface:
     """Quadratic triangles on a cylinder of radius 3 about z, by their corners: angle in degrees, and z."""
-    places = [[*corners, *(np.mean([corners[i], corners[(i + 1) % 3]], axis=0) for i in range(3))] for corners in facets]
+    places = [
+        [*corners, *(np.mean([corners[i], corners[(i + 1) % 3]], axis=0) for i in range(3))] for corners in facets
+    ]
     every, nodes = np.unique(np.array(places).reshape(-1, 2), axis=0, return_inverse=True)
     angle, z = np.radians(every[:, 0]), every[:, 1]
     return pack(np.column_stack([3.0 * np.sin(angle), -3.0 * np.cos(angle), z]), "tri6", nodes.reshape(-1, 6))

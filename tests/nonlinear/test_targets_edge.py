@@ -109,6 +109,8 @@ def test_what_is_apart_at_the_outset_is_open(cell: str) -> None:
     model = pressed(cell, 0.1, "finite", "auto", 1e-7)
     size, touching = finite(model).pairs[0].size, []
     for gap in (0.005, 0.0005):
-        from_the_start = replace(model.contacts[0], offset=gap * size, amplitude=abut.Amplitude(((0.0, 1.0), (1.0, 1.0))))
+        from_the_start = replace(
+            model.contacts[0], offset=gap * size, amplitude=abut.Amplitude(((0.0, 1.0), (1.0, 1.0)))
+        )
         touching.append(finite(replace(model, contacts=[from_the_start])).start().closed.any())
     assert touching == [False, True]
