@@ -111,8 +111,8 @@ def _head(solution: Solution, origin: Origin) -> str:
             ("contact area" + end, number(sum(c.area for c in touching))),
             *facts,
         ]
-        names = {c.name for c in touching}
-        before = max(c.max_pressure for step in solution.steps for c in step.contacts if c.name in names)
+        shown = {c.name for c in touching}
+        before = max(c.max_pressure for step in solution.steps for c in step.contacts if c.name in shown)
         if before > top.max_pressure:
             facts.insert(0, ("largest pressure of all steps", number(before)))
     facts.append(("seconds", f"{sum(solution.timings.values()):.3g}"))
