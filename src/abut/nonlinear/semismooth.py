@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import FINE, forcing
@@ -77,6 +78,7 @@ class Step:
     observe: Callable[[Iteration], None]
     careful: bool = False
     asked: Asked = field(default_factory=Asked)
+    drag: Drag | None = None
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
@@ -205,13 +207,20 @@ def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy:
     return there, False
 
 
-def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
+def _iterated(
+    step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float, begins: bool = False
+) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
-    there = step.advanced(system, state, laws, accuracy)
+    there = step.advanced(_begun(step, system, state, begins), state, laws, accuracy)
     stuck = sticking(step.problem, system, state, there)
     if stuck is not state:
-        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+        laws = laws_of(system, stuck, step.asked)
+        there = step.advanced(_begun(step, system, stuck, begins), stuck, laws, accuracy)
     return not_adrift(step.problem, system, stuck, there)
+
+
+def _begun(step: Step, system: Linearised, state: State, begins: bool) -> Linearised:
+    return resisting(step.problem, system, state) if begins and step.drag is None else system
 
 
 def _balanced(here: Balance, before: float) -> bool:
@@ -223,13 +232,16 @@ def _balanced(here: Balance, before: float) -> bool:
 def _carried(step: Step, time: float) -> State:
     """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes
     as far as it takes to hold every body."""
-    system = step.problem.ahead(step.before, time)
+    system = dragged(step.problem.ahead(step.before, time), step.drag)
     state = replace(step.before, time=time)
-    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~barely_covered(system)
+    closed = state.closed
+    if step.drag is None:
+        closed = system.restraint.complete(system.forces, state.closed, system.gap(state))
+    closed = closed & ~barely_covered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
         laws = laws_of(system, state, step.asked)
-        there = _iterated(step, resisting(step.problem, system, state), state, laws, FINE)
+        there = _iterated(step, system, state, laws, FINE, begins=True)
         fewer = without_pulling(system, state, there, step.increment)
         if fewer is None:
             return there
@@ -238,7 +250,7 @@ def _carried(step: Step, time: float) -> State:
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
-    system = step.problem.linearise(step.before, state)
+    system = dragged(step.problem.linearise(step.before, state), step.drag)
     before = state.status
     state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))
     laws = laws_of(system, state, step.asked)

@@ -1,0 +1,101 @@
+"""A load step that Newton's method cannot follow, led by a drag on all motion until all is at rest again: bodies that jump
+to another equilibrium, or that hardly anything holds; theory (G23)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from abut.nonlinear.drag import Drag, scale
+from abut.nonlinear.holding import loosely_held
+from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.one_step import Setting
+from abut.nonlinear.pace import Pace
+from abut.nonlinear.semismooth import BALANCED
+from abut.problem.finite import FiniteProblem
+from abut.problem.stabilising import drag_of, with_drag
+from abut.solution import Iteration
+from abut.solution.state import State
+
+FIRST, GREATEST, LEAST = 1e-3, 1e2, 1e-9  # drag over the stiffness of each displacement: to begin with, at most, at least
+AGAIN = 1e-5  # to begin with, after a step that ended under a drag
+MORE, LESS, MUCH_LESS = 10.0, 3.0, 10.0  # by which it grows where a part fails, and falls where one is easy, or very easy
+EASY, VERY_EASY = 6, 3  # iterations up to which a part is
+MOST = 12  # iterations in a part
+PARTS = 60  # of a step, tried
+SLOW = 1e-3  # drag's largest force over the largest of all up to which a part may be the last but one,
+PAST = 1e-2  # and over the largest drag so far: at the outset bodies are slow, too
+GONE = 2.0  # sizes of the model by which bodies that move on are gone
+STRIDES = (1.0 / 64.0, 1.0 / 512.0)  # of the way to the next goal, that are tried
+
+
+@dataclass(frozen=True)
+class Led:
+    """Parts of a step, the last of them at rest; none where one ``failed`` that nothing follows, with the reason."""
+
+    parts: tuple[Attempt, ...] = ()
+    failed: Attempt | None = None
+
+    @property
+    def reason(self) -> str:
+        """Why there are no parts; empty where there are."""
+        return "" if self.failed is None else f"under a drag on all motion {self.failed.reason}"
+
+
+def led_on(setting: Setting, before: State, pace: Pace) -> Led:
+    """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
+    length."""
+    led = Led()
+    for share in STRIDES:
+        pace.stride(share)
+        assert pace.end is not None
+        led = stabilised(setting, before, pace.end)
+        if led.parts:
+            break
+    return led
+
+
+def stabilised(setting: Setting, before: State, time: float) -> Led:
+    """The step from the converged state ``before`` to ``time`` in parts, each with a drag on the way since the one before:
+    backward Euler steps of a motion without inertia."""
+    problem, setting = setting.problem, replace(setting, limit=min(MOST, setting.limit))
+    size, most = scale(problem.linearise(before, before)), 0.0
+    share = AGAIN if drag_of(before).any() else FIRST
+    here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
+    part, why = None, "bodies do not come to rest"
+    for _ in range(PARTS):
+        part = setting.attempted(here, None, time, drag=Drag(share * size, here.unknowns))
+        spent += part.iterations
+        if not part.converged and share * MORE > GREATEST:
+            why = part.reason
+            break
+        if not part.converged:
+            share *= MORE
+            continue
+        force = share * size * (part.state.unknowns - here.unknowns)
+        here = with_drag(part.state, force)
+        parts.append(replace(part, state=here, iterations=spent, whole=False))
+        spent = ()
+        if _gone(problem, before, here):
+            why = "bodies move on and on: the loads are more than what they act on can carry"
+            break
+        left = float(np.abs(force).max(initial=0.0)) / here.largest.force
+        most = max(most, left)
+        loose = loosely_held(problem, problem.linearise(here, here), here)
+        if loose and left <= BALANCED:
+            return Led((*parts[:-1], replace(parts[-1], whole=True)))
+        if not loose and left < SLOW and (left < PAST * most or share <= LEAST):
+            last = setting.attempted(here, here, time)
+            spent += last.iterations
+            if last.converged:
+                return Led((*parts, replace(last, state=with_drag(last.state, 0.0 * force), iterations=spent)))
+        if len(part.iterations) <= EASY:
+            share = max(share / (MUCH_LESS if len(part.iterations) <= VERY_EASY else LESS), LEAST)
+    assert part is not None
+    return Led(failed=replace(part, iterations=spent or part.iterations, converged=False, reason=why))
+
+
+def _gone(problem: FiniteProblem, before: State, here: State) -> bool:
+    way = problem.displacement(here) - problem.displacement(before)
+    return bool(np.abs(way).max() > GONE * np.ptp(problem.model.mesh.points, axis=0).max())
