@@ -31,8 +31,8 @@ from abut.problem.landed import LANDED, landed_in
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
-from abut.problem.terms import Motion
 from abut.problem.stabilising import drag_of, is_dragged
+from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 

@@ -204,8 +204,8 @@ class Run:
         taken = self.steps[-1].energy
         if is_dragged(attempts[-1].state) and taken is not None:
             self.told.note(
-                f"step {attempts[-1].number} was led to time {attempts[-1].time:.6g} by a drag on all motion, in {len(attempts)} "
-                f"parts: it took {taken.stabilisation:.3g} of energy, and is gone at the end"
+                f"step {attempts[-1].number} was led to time {attempts[-1].time:.6g} by a drag on all motion, in "
+                f"{len(attempts)} parts: it took {taken.stabilisation:.3g} of energy, and is gone at the end"
             )
         elif len(attempts) > 1:
             times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)

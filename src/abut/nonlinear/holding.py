@@ -61,7 +61,7 @@ def resisting(problem: ContactProblem, system: Linearised, state: State) -> Line
 
 
 def loosely_held(problem: ContactProblem, system: Linearised, state: State) -> bool:
-    """Whether supports, ties, closed gaps and what sticks hardly resist some rigid motion, as the spin of a ball on one node."""
+    """Whether supports, ties, closed gaps and what sticks hardly resist some rigid motion: a ball on one node may spin."""
     if system.restraint.by_supports:
         return False
     rigid, supports = _now(problem, system)

@@ -11,8 +11,8 @@ from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.pace import Pace
 from abut.nonlinear.one_step import Setting
+from abut.nonlinear.pace import Pace
 from abut.nonlinear.stabilised import led_on, stabilised
 from abut.nonlinear.stepping import Control
 from abut.problem.finite import FiniteProblem
@@ -66,19 +66,18 @@ def _attempts(setting: Setting, before: State, guess: State | None, time: float,
     """One at the step to ``time``; after a step that ended under a drag its parts under a drag as well."""
     if not drag_of(before).any():
         return [setting.attempted(before, guess, time, careful=careful)]
-    led = stabilised(setting, before, time)
-    return led.parts or [led.failed]
+    return stabilised(setting, before, time).attempts
 
 
 def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequence[Attempt]:
     """The parts of a step under a drag, where all others have ``failed``; that with the reasons if there are none."""
     time = failed.time
     led = led_on(setting, before, pace)
-    if led.parts:
-        return led.parts
+    if led.converged:
+        return led.attempts
     where = hanging(setting.problem, before, failed.cycling)
     away = lifted(setting.problem.ahead(before, time), before)
-    return [replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, led.reason))))]
+    return [replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, led.attempts[-1].reason))))]
 
 
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:

@@ -18,9 +18,17 @@ from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
-FIRST, GREATEST, LEAST = 1e-3, 1e2, 1e-9  # drag over the stiffness of each displacement: to begin with, at most, at least
+FIRST, GREATEST, LEAST = (
+    1e-3,
+    1e2,
+    1e-9,
+)  # drag over the stiffness of each displacement: to begin with, at most, at least
 AGAIN = 1e-5  # to begin with, after a step that ended under a drag
-MORE, LESS, MUCH_LESS = 10.0, 3.0, 10.0  # by which it grows where a part fails, and falls where one is easy, or very easy
+MORE, LESS, MUCH_LESS = (
+    10.0,
+    3.0,
+    10.0,
+)  # by which it grows where a part fails, and falls where one is easy, or very easy
 EASY, VERY_EASY = 6, 3  # iterations up to which a part is
 MOST = 12  # iterations in a part
 PARTS = 60  # of a step, tried
@@ -32,26 +40,24 @@ STRIDES = (1.0 / 64.0, 1.0 / 512.0)  # of the way to the next goal, that are tri
 
 @dataclass(frozen=True)
 class Led:
-    """Parts of a step, the last of them at rest; none where one ``failed`` that nothing follows, with the reason."""
+    """Attempts at a step: its parts, the last of them at rest; or the one that failed and that nothing follows."""
 
-    parts: tuple[Attempt, ...] = ()
-    failed: Attempt | None = None
+    attempts: tuple[Attempt, ...]
 
     @property
-    def reason(self) -> str:
-        """Why there are no parts; empty where there are."""
-        return "" if self.failed is None else f"under a drag on all motion {self.failed.reason}"
+    def converged(self) -> bool:
+        """Whether they are its parts."""
+        return self.attempts[-1].converged
 
 
 def led_on(setting: Setting, before: State, pace: Pace) -> Led:
     """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
     length."""
-    led = Led()
     for share in STRIDES:
         pace.stride(share)
         assert pace.end is not None
         led = stabilised(setting, before, pace.end)
-        if led.parts:
+        if led.converged:
             break
     return led
 
@@ -93,7 +99,8 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
         if len(part.iterations) <= EASY:
             share = max(share / (MUCH_LESS if len(part.iterations) <= VERY_EASY else LESS), LEAST)
     assert part is not None
-    return Led(failed=replace(part, iterations=spent or part.iterations, converged=False, reason=why))
+    why = f"under a drag on all motion {why}"
+    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),))
 
 
 def _gone(problem: FiniteProblem, before: State, here: State) -> bool:

@@ -63,7 +63,9 @@ def energy_summary(step: Step) -> Json:
     energy = step.energy
     if energy is None:
         return {}
-    elastic = {} if energy.elastic is None else {name: number(getattr(energy, name)) for name in ("stabilisation", "elastic")}
+    elastic = (
+        {} if energy.elastic is None else {name: number(getattr(energy, name)) for name in ("stabilisation", "elastic")}
+    )
     return {"energy": {name: number(getattr(energy, name)) for name in (*ENERGIES, "error")} | elastic}
 
 

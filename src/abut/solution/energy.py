@@ -11,7 +11,8 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 @dataclass(frozen=True)
 class Energy:
     """Where the energy of one load step comes from and where it goes, theory (R10), (G13): loads + supports + contact =
-    stored + friction + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
+    stored + friction + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric models of
+    the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
     the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;

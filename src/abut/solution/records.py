@@ -220,7 +220,7 @@ class Solution:
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
-        return tuple([*checks, *(check for check in (self._load_steps, self._stabilisation) if check is not None)])
+        return (*checks, *(check for check in (self._load_steps, self._stabilisation) if check is not None))
 
     @property
     def _load_steps(self) -> Check | None:
@@ -242,7 +242,8 @@ class Solution:
             return None
         work = sum(abs(energy.loads + energy.supports + energy.contact) for energy in energies)
         return Check("", "stabilisation", taken / max(work, 1e-300), STABILISED,
-                     "energy that a drag took where bodies jumped or hardly anything held them, over the work done on them")  # fmt: skip
+                     "energy that a drag took, where bodies jumped or hardly anything held them, over the work "
+                     "done on them")  # fmt: skip
 
     @property
     def displacement(self) -> NDArray[np.float64]:

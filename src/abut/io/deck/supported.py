@@ -47,7 +47,16 @@ READ: dict[str, tuple[str, ...]] = {
     "RIGID BODY": ("NSET", "ELSET", "REF NODE", "ROT NODE"),
     "TRANSFORM": ("NSET", "TYPE"),
     "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER", "NLGEOM"),
-    "STATIC": ("SOLVER", "DIRECT", "TIME RESET", "TOTAL TIME AT START"),
+    "STATIC": (
+        "SOLVER",
+        "DIRECT",
+        "TIME RESET",
+        "TOTAL TIME AT START",
+        "STABILIZE",
+        "ALLSDTOL",
+        "FACTOR",
+        "CONTINUE",
+    ),
     "END STEP": (),
 }
 
@@ -133,7 +142,6 @@ REFUSED: dict[str, str] = {
 _PARAMETERS = {  # reasons for parameters that are refused
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
-    ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
     (
         "BOUNDARY",
         "FIXED",
