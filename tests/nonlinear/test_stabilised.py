@@ -13,11 +13,11 @@ from abut.diagnosis.cures import cures
 from abut.nonlinear.drag import Drag, dragged, scale
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.semismooth import BALANCED
-from abut.nonlinear.stabilised import stabilised
+from abut.nonlinear.stabilised import is_gone, stabilised
 from abut.output.contact_rows import energy_columns, energy_row
 from abut.problem.stabilising import drag_of, is_dragged, with_drag, without_drag
 from abut.solution import Saved, Solution
-from models.arches import FORCE, RISE, ROLLED, THICKNESS, arch, ball
+from models.arches import FORCE, RISE, ROLLED, SPAN, THICKNESS, arch, ball
 from models.sliding import finite
 
 AGREES = 1e-3  # forces and energies of an arch whose punch may tilt by its facets, held along its whole top or free
@@ -127,3 +127,11 @@ def test_a_drag_is_kept_in_the_state() -> None:
     held = with_drag(state, force)
     assert np.array_equal(drag_of(held), force)
     assert not is_dragged(without_drag(held))
+
+
+def test_bodies_that_are_gone() -> None:
+    """After twice the size of the model."""
+    problem = finite(arch(way=0.1))
+    state = problem.start()
+    for ways, expected in ((1.9, False), (2.1, True)):
+        assert is_gone(problem, state, replace(state, unknowns=state.unknowns + ways * SPAN)) is expected

@@ -12,7 +12,9 @@ from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
 SAME = 1e-9  # times that differ by less are the same
-DRAG = "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
+DRAG = (
+    "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
+)
 NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
 KINDS = ("boundary", "force", "pressure", "gravity")
 

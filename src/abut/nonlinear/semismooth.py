@@ -159,7 +159,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
         if step.failed:
             break
         step.asked = replace(step.asked, by_pressure=False)
-        there = _balance(step, following)
+        there = _tried(step, here, following)
         closings += there.state.closed & ~here.state.closed
         if (step.careful and not swapped) or not np.isfinite(there.size):
             there = _shortened(step, here, there)
@@ -267,6 +267,17 @@ def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     )  # fmt: skip
 
 
+def _tried(step: Step, here: Balance, state: State) -> Balance:
+    """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
+    tried."""
+    try:
+        return _balance(step, state)
+    except Unsound:
+        if step.drag is None:
+            raise
+        return replace(here, state=state, size=np.inf)
+
+
 def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
     """Force and pressure, now or in a step before."""
     pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
@@ -280,7 +291,7 @@ def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
         if best.size <= (1.0 - LESS * share) * here.size:
             return best
         share *= 0.5
-        best = _balance(step, part_of(here.state, full.state, share))
+        best = _tried(step, here, part_of(here.state, full.state, share))
     return best if np.isfinite(best.size) else full
 
 

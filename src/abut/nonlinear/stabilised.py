@@ -18,18 +18,13 @@ from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
-FIRST, GREATEST, LEAST = (
+FIRST, AGAIN = (
     1e-3,
-    1e2,
-    1e-9,
-)  # drag over the stiffness of each displacement: to begin with, at most, at least
-AGAIN = 1e-5  # to begin with, after a step that ended under a drag
-MORE, LESS, MUCH_LESS = (
-    10.0,
-    3.0,
-    10.0,
-)  # by which it grows where a part fails, and falls where one is easy, or very easy
-EASY, VERY_EASY = 6, 3  # iterations up to which a part is
+    1e-5,
+)  # drag over the stiffness of each displacement to begin with, and after a step that ended under one
+GREATEST, LEAST = 1e2, 1e-9  # the same at most and at least
+MORE, LESS = 5.0, 10.0  # by which it grows where a part fails, and falls at most where one is easy
+EASY, VERY_EASY = 6, 3  # iterations up to which a part is, after one that failed and before any has
 MOST = 12  # iterations in a part
 PARTS = 60  # of a step, tried
 SLOW = 1e-3  # drag's largest force over the largest of all up to which a part may be the last but one,
@@ -38,11 +33,33 @@ GONE = 2.0  # sizes of the model by which bodies that move on are gone
 STRIDES = (1.0 / 64.0, 1.0 / 512.0)  # of the way to the next goal, that are tried
 
 
+@dataclass
+class Strength:
+    """Of a drag from part to part. share: of the stiffness; fall: by which it falls next, 1 after a part that failed and
+    twice as much after each easy one; failed: whether one has."""
+
+    share: float
+    fall: float = LESS
+    failed: bool = False
+
+    def grow(self) -> bool:
+        """After a part that failed; whether it may."""
+        self.share, self.fall, self.failed = self.share * MORE, 1.0, True
+        return self.share <= GREATEST
+
+    def ease(self, iterations: int) -> None:
+        """After one that took so many."""
+        if iterations <= (EASY if self.failed else VERY_EASY):
+            self.share = max(self.share / self.fall, LEAST)
+            self.fall = min(2.0 * self.fall, LESS)
+
+
 @dataclass(frozen=True)
 class Led:
     """Attempts at a step: its parts, the last of them at rest; or the one that failed and that nothing follows."""
 
     attempts: tuple[Attempt, ...]
+    began: bool = True  # whether any part has converged
 
     @property
     def converged(self) -> bool:
@@ -57,7 +74,7 @@ def led_on(setting: Setting, before: State, pace: Pace) -> Led:
         pace.stride(share)
         assert pace.end is not None
         led = stabilised(setting, before, pace.end)
-        if led.converged:
+        if led.converged or led.began:
             break
     return led
 
@@ -67,23 +84,23 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     backward Euler steps of a motion without inertia."""
     problem, setting = setting.problem, replace(setting, limit=min(MOST, setting.limit))
     size, most = scale(problem.linearise(before, before)), 0.0
-    share = AGAIN if drag_of(before).any() else FIRST
+    strength = Strength(AGAIN if drag_of(before).any() else FIRST)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
     for _ in range(PARTS):
-        part = setting.attempted(here, None, time, drag=Drag(share * size, here.unknowns))
+        drag = Drag(strength.share * size, here.unknowns)
+        part = setting.attempted(here, here if parts else None, time, drag=drag)
         spent += part.iterations
-        if not part.converged and share * MORE > GREATEST:
+        if not part.converged:
+            if strength.grow():
+                continue
             why = part.reason
             break
-        if not part.converged:
-            share *= MORE
-            continue
-        force = share * size * (part.state.unknowns - here.unknowns)
+        force = drag.force(part.state.unknowns)
         here = with_drag(part.state, force)
         parts.append(replace(part, state=here, iterations=spent, whole=False))
         spent = ()
-        if _gone(problem, before, here):
+        if is_gone(problem, before, here):
             why = "bodies move on and on: the loads are more than what they act on can carry"
             break
         left = float(np.abs(force).max(initial=0.0)) / here.largest.force
@@ -91,18 +108,18 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
         loose = loosely_held(problem, problem.linearise(here, here), here)
         if loose and left <= BALANCED:
             return Led((*parts[:-1], replace(parts[-1], whole=True)))
-        if not loose and left < SLOW and (left < PAST * most or share <= LEAST):
+        if not loose and left < SLOW and (left < PAST * most or strength.share <= LEAST):
             last = setting.attempted(here, here, time)
             spent += last.iterations
             if last.converged:
                 return Led((*parts, replace(last, state=with_drag(last.state, 0.0 * force), iterations=spent)))
-        if len(part.iterations) <= EASY:
-            share = max(share / (MUCH_LESS if len(part.iterations) <= VERY_EASY else LESS), LEAST)
+        strength.ease(len(part.iterations))
     assert part is not None
     why = f"under a drag on all motion {why}"
-    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),))
+    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
 
 
-def _gone(problem: FiniteProblem, before: State, here: State) -> bool:
+def is_gone(problem: FiniteProblem, before: State, here: State) -> bool:
+    """Whether something has moved beyond all that loads of a model may mean."""
     way = problem.displacement(here) - problem.displacement(before)
     return bool(np.abs(way).max() > GONE * np.ptp(problem.model.mesh.points, axis=0).max())
