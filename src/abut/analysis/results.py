@@ -15,6 +15,7 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.surface_stress import normal_stress
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
 from abut.model.conditions import weights
@@ -27,11 +28,11 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.landed import LANDED, landed_in
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.stabilising import drag_of, is_dragged
+from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
@@ -80,7 +81,8 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
-    contacts = _contacts(end, attempt, before)
+    stress = assembled.bodies.stress(end.motion)
+    contacts = _contacts(end, attempt, before, stress)
     told = _finite_energy if model.finite else _energy
     acting, balance = told(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
@@ -92,7 +94,7 @@ def step_result(
         reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
-        stress=assembled.bodies.stress(end.motion),
+        stress=stress,
         reaction=end.reaction.reshape(-1, model.dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
@@ -208,8 +210,10 @@ def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float
     return RigidResult(*body.motion(nodal), *body.resultant(forces))
 
 
-def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
-    """Of all pairs."""
+def _contacts(
+    end: _End, attempt: Attempt, before: Sequence[Step], stress: NDArray[np.float64]
+) -> tuple[ContactResult, ...]:
+    """Of all pairs; stress: (n_points, 6) nodal averages."""
     system, model, constraints = end.system, end.problem.model, end.problem.constraints
     references = _largest_pressures(len(system.pairs), before)
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
@@ -220,7 +224,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         constant, varying = offsets(model, pair.contact)
         moved = end.nodal if support is None else np.zeros_like(end.nodal)
         overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
-        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere, support))
+        free, cells = free_axes(model, constraints, pair), None
+        if not pair.tied:
+            cells = normal_stress(model.mesh, pair.contactor, stress)
+        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(

@@ -34,7 +34,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "output": "where the results go",
     },
     "MeshTable": {
-        "file": "mesh file beside the job file (.msh, .vtu)",
+        "file": "mesh file beside the job file (.msh, .vtu, or .inp, of which the mesh alone is read)",
         "bodies": "bodies meshed by abut, by name",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
@@ -65,7 +65,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body in the mesh",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
-        "integration": "how elements integrate their stiffness",
+        "integration": "how elements integrate their stiffness: full, reduced, or b-bar, which does not lock near Poisson's "
+        "ratio 0.5 (F-bar with kinematics finite)",
     },
     "SupportTable": {
         "on": "name of the surface or node set",
@@ -124,9 +125,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "x": "translation of the reference point along x; left out: free [length]",
         "y": "translation of the reference point along y; left out: free [length]",
         "z": "translation of the reference point along z; left out: free [length]",
-        "rx": "small rotation about x; left out: free [radian]",
-        "ry": "small rotation about y; left out: free [radian]",
-        "rz": "small rotation about z (in 2D the only one); left out: free [radian]",
+        "rx": "rotation about x, small; with kinematics finite a component of the rotation vector; left out: free [radian]",
+        "ry": "the same about y; left out: free [radian]",
+        "rz": "the same about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
     "ContactTable": {

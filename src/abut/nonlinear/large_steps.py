@@ -16,8 +16,8 @@ from abut.nonlinear.pace import Pace
 from abut.nonlinear.stabilised import led_on, stabilised
 from abut.nonlinear.stepping import Control
 from abut.problem.finite import FiniteProblem
-from abut.problem.landed import landed_in
 from abut.problem.stabilising import drag_of, is_dragged
+from abut.problem.step_error import landed_in
 from abut.solution.state import State
 
 MOST = 25  # iterations in a step, above which it is halved

@@ -114,6 +114,7 @@ def summary(solution: Solution) -> Json:
                     "value": number(check.value),
                     "limit": check.limit,
                     "passed": check.passed,
+                    "verdict": check.verdict,
                     "meaning": check.meaning,
                     "cure": cure(check, solution),
                 }

@@ -19,7 +19,7 @@ from abut.contact.pressure_space import (
     with_plain_facets,
 )
 from abut.contact.rim import Rim, ends_on_target, goes_on, rim
-from abut.contact.shared import Functions, functions, one_each
+from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
