@@ -66,7 +66,8 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; asked:
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; drag: that
+    it is led by, None without; asked:
     which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
     ended without a solution."""
 
@@ -211,16 +212,13 @@ def _iterated(
     step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float, begins: bool = False
 ) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
-    there = step.advanced(_begun(step, system, state, begins), state, laws, accuracy)
+    if begins and step.drag is None:
+        system = resisting(step.problem, system, state)
+    there = step.advanced(system, state, laws, accuracy)
     stuck = sticking(step.problem, system, state, there)
     if stuck is not state:
-        laws = laws_of(system, stuck, step.asked)
-        there = step.advanced(_begun(step, system, stuck, begins), stuck, laws, accuracy)
+        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
     return not_adrift(step.problem, system, stuck, there)
-
-
-def _begun(step: Step, system: Linearised, state: State, begins: bool) -> Linearised:
-    return resisting(step.problem, system, state) if begins and step.drag is None else system
 
 
 def _balanced(here: Balance, before: float) -> bool:
