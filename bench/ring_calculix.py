@@ -18,7 +18,7 @@ MM, MPA, THICK = 1e3, 1e-6, 5.0
 STIFFNESS, SLOPE = (
     1e4,
     1e4,
-)  # of penalty and stick, MPa/mm: a tenth of the slope moves the zero crossing by 0.1 mm of 41
+)  # of penalty and stick, MPa/mm: 200 MPa press in 0.02
 SMALLEST = 1e-7  # step, of 1
 
 Cells = dict[str, NDArray[np.int64]]
