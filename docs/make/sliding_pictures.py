@@ -1,4 +1,4 @@
-"""Pictures of large sliding in docs/gallery.md: an O-ring, a snap joint, two gears (a minute; needs matplotlib)."""
+"""Pictures of large sliding in docs/gallery.md: a strip, an O-ring, a snap joint, two gears (a minute; needs matplotlib)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def series(
         rows, len(times) // rows, figsize=(9.0, 1.4 + 1.3 * rows), constrained_layout=True, squeeze=False
     )
     for axes, time in zip(frames.ravel(), times):
-        step = min(solution.steps, key=lambda own: abs(own.factor - time))
+        step = min(solution.steps, key=lambda candidate: abs(candidate.factor - time))
         draw(axes, solution, step, scale)
         axes.set_xlim(limits[0], limits[1])
         axes.set_ylim(limits[2], limits[3])
@@ -71,9 +71,11 @@ def example(name: str) -> abut.Solution:
 
 
 def main() -> None:
+    series("accordion.png", example("accordion"), (0.1, 0.5, 1.0), 0.02, (-1.4, 2.0, -2.0, 2.0))
     series("o-ring.png", example("o-ring"), (0.05, 0.5, 1.0), 0.12, (-3.6, 3.6, -1.1, 4.6))
     snap = example("snap-joint")
-    series("snap-joint.png", snap, (0.17, 0.45, 0.7, 1.0), 0.01, (0.0, 13.5, -2.5, 3.0), rows=2)
+    peak = max(snap.steps, key=lambda step: -step.contacts[0].force[0]).factor
+    series("snap-joint.png", snap, (peak, 0.45, 0.7, 1.0), 0.01, (0.0, 13.5, -2.5, 3.0), rows=2)
     snap_curve(snap)
     gears = abut.solve(BENCHMARKS["gears"].model(0))
     series("gears.png", gears, (0.1, 0.55, 1.0), 0.1, (22.0, 68.0, -24.0, 24.0))

@@ -52,10 +52,13 @@ class OutOfTime(Stopped):
     exit_status = 124  # as of timeout(1)
 
 
+def closest(name: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the closest known name, nothing where none is close."""
+    match = difflib.get_close_matches(name, sorted(known), n=1)
+    return f"; did you mean '{match[0]}'?" if match else ""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the closest known name, else the list of what exists."""
+    """The closest known name as of ``closest``, else the list of what exists."""
     known = sorted(known)
-    match = difflib.get_close_matches(name, known, n=1)
-    if match:
-        return f"; did you mean '{match[0]}'?"
-    return f"; known: {', '.join(known)}" if known else "; there are none"
+    return closest(name, known) or (f"; known: {', '.join(known)}" if known else "; there are none")

@@ -28,7 +28,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
     *("force balance", "moment balance", "penetration", "overlap", "faceting"),
-    *("tension", "complementarity", "oscillation", "resolution"),
+    *("tension", "complementarity", "oscillation", "resolution", "pressure error", "contactor's edges"),
     *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
 
@@ -81,7 +81,7 @@ def test_ties_are_checked_for_their_integration_only() -> None:
         "response",
         "strain",
         "force balance",
-        *CONTACT[9:],
+        *CONTACT[11:],
     )
 
 
@@ -347,19 +347,26 @@ def test_model_balance_and_the_worst_step() -> None:
 
 
 def test_written_and_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`abut run` ends with one line for each check; summary.json has value, limit and verdict of each."""
+    """`abut run` ends with one line for each check; summary.json has value, limit and verdict of each. The edges of the
+    upper block are sharp, where no mesh shows the largest pressure: a warning, with what to do."""
     assert main(["run", str(EXAMPLES / "two-blocks" / "job.toml"), "--output", str(tmp_path / "out")]) == 0
     lines = capsys.readouterr().out.splitlines()
     written = json.loads((tmp_path / "out" / "summary.json").read_text())["certificate"]
     assert written["passed"] is True
     assert [c["name"] for c in written["checks"]] == ["model balance", "response", "strain", *CONTACT]
     start = lines.index("certificate   value      limit")
-    for check, text in zip(written["checks"], lines[start + 1 :]):
+    told = [text for text in lines[start + 1 : -1] if not text.strip().startswith("cure: ")]
+    assert len(told) == len(written["checks"]) == len(lines) - start - 3  # one cure; then only where the results are
+    assert [c["name"] for c in written["checks"] if c["verdict"] != "pass"] == ["pressure error"]
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert "checks pass, with a warning of blocks: pressure error." in report
+    assert "<span class=warn>warn</span>" in report
+    for check, text in zip(written["checks"], told):
         assert check["passed"] is (check["value"] <= check["limit"]) is True
         assert check["meaning"]
         name = f"{check['contact']}: {check['name']}" if check["contact"] else check["name"]
-        assert text.split() == ["pass", f"{check['value']:.2e}", f"{check['limit']:.2e}", *name.split()]
-    assert start + 1 + len(written["checks"]) == len(lines) - 1  # then only where the results are
+        assert bool(check["cure"]) is (check["verdict"] == "warn")
+        assert text.split() == [check["verdict"], f"{check['value']:.2e}", f"{check['limit']:.2e}", *name.split()]
 
 
 def test_failures_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

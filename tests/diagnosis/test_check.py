@@ -89,6 +89,12 @@ def said(report: Report, severity: str) -> str:
     return finding.line
 
 
+def test_what_a_deck_is_read_as(capsys: pytest.CaptureFixture[str]) -> None:
+    """What stands in place of what the deck says is said under its name."""
+    assert main(["check", str(EXAMPLES / "deck" / "pad.inp")]) == 0
+    assert "info     deck: CPE4H: mean dilatation (b-bar)" in capsys.readouterr().out
+
+
 def test_wrong_side_of_a_body() -> None:
     """The surfaces that do face each other are named."""
     report = check(blocks(contacts=[abut.Contact("upper.bottom", "lower.bottom", name="blocks")]))

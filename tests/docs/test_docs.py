@@ -18,10 +18,10 @@ from abut.verify import law_tangents, material_tangent
 ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
 CODE = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "cpp").glob("*.[ch]pp")])
-DOCUMENTS = sorted([ROOT / "README.md", ROOT / "examples" / "README.md", *(ROOT / "docs").rglob("*.md")])
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "examples").rglob("README.md"), *(ROOT / "docs").rglob("*.md")])
 
 TAG = re.compile(r"\\tag\{([^}]*)\}")
-LABEL = re.compile(r"\(([DFSQPLVERT]\d+)\)")
+LABEL = re.compile(r"\(([DEFGLPQRSTV]\d+)\)")
 CITATION = re.compile(r"\btheory((?:,? \([A-Z]\d+\))+)")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
@@ -98,6 +98,26 @@ def test_links_lead_somewhere(document: Path) -> None:
         assert not anchor or anchor in anchors(target), link
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=name)
+def test_files_in_commands_exist(document: Path) -> None:
+    """Jobs, decks, meshes and scripts of the repository that a page names, in commands and elsewhere."""
+    named = re.findall(
+        r"\b(?:examples|tests|bench|src|docs/make)/[\w./-]+\.(?:toml|inp|py|msh|json)\b",
+        document.read_text(encoding="utf-8"),
+    )
+    assert [path for path in named if not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("folder", ["contact", "problem", "nonlinear"])
+def test_files_of_the_largest_folders_exist(folder: str) -> None:
+    """Those that docs/architecture.md names."""
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    (table,) = re.findall(rf"^\| `{folder}` \| files \|$(.*?)\n\n", text, re.DOTALL | re.MULTILINE)
+    names = re.findall(r"`(\w+)`", table)
+    assert len(names) > 20
+    assert [name for name in names if not (ROOT / "src" / "abut" / folder / f"{name}.py").exists()] == []
+
+
 @pytest.mark.parametrize("page", ["api.md"])
 def test_python_on_pages_runs(page: str) -> None:
     """The coupling of two triangles with a square: no gap where they lie on each other, and none by a rigid shift. The law
@@ -112,6 +132,17 @@ def test_python_on_pages_runs(page: str) -> None:
     law, material = scope["SoftLayer"](1e5), scope["Hooke"](5.0, 1.0)
     assert law_tangents(law, np.array([[-0.01], [0.02]]), np.array([[5.0], [1.0]])) < 1e-7
     assert material_tangent(material, np.random.default_rng(0).uniform(-1, 1, (5, 6))) < 1e-7
+
+
+def test_python_on_the_front_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A punch pressed on a block: what it writes, and a force that pushes it up."""
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    scope: dict = {}
+    exec(code, scope)
+    assert (tmp_path / "results" / "report.html").exists()
+    assert scope["solution"].contacts[0].force[1] > 0.0
+    assert all(check.passed for check in scope["solution"].certificate)
 
 
 def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

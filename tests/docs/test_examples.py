@@ -1,4 +1,4 @@
-"""Every job file in examples/ is found, loads, and (but for the long ones) runs to balance."""
+"""Every job file and deck in examples/ is found, loads, and (but for the long ones) runs to balance."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from abut.report.origin import PROFILE, ellipse
 from abut.report.origin import quantities as known_quantities
 
 FOLDER = Path(__file__).parents[2] / "examples"
-JOBS = [path for path in sorted(FOLDER.rglob("*.toml")) if path.parent.name != "faulty"]  # those: test_check.py
+FILES = sorted([*FOLDER.rglob("*.toml"), *FOLDER.rglob("*.inp")])
+JOBS = [path for path in FILES if path.parent.name != "faulty"]  # those: test_check.py
 LONG = {"pin-lug", "hertz-sphere", "snap-joint"}
 
 
@@ -79,7 +80,19 @@ def check_snap_joint(solution: abut.Solution) -> None:
         assert friction_.force_by_area <= friction_.force_limit * (1.0 + 1e-9)
 
 
-MORE = {"twisted-hub": check_twisted_hub, "snap-joint": check_snap_joint}  # what else theory says of an example
+def check_deck(solution: abut.Solution) -> None:
+    """In the end all of the pad slips, and Coulomb's law holds for the resultants but for how the surfaces lean (1 %)."""
+    contact = solution.contacts[0]
+    assert contact.friction.sticking_area == 0.0
+    assert -contact.force[0] == pytest.approx(0.3 * contact.force[1], rel=0.01)
+    assert all(check.passed for check in solution.certificate)
+
+
+MORE = {
+    "twisted-hub": check_twisted_hub,
+    "snap-joint": check_snap_joint,
+    "deck": check_deck,
+}  # what else theory says of an example
 
 
 def check_expected(path: Path, step: abut.solution.Step) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.linear import direct, static_condensation
+from abut.linear import dense, direct, static_condensation
 from abut.mesh.make import box, join
 
 
@@ -95,7 +95,7 @@ def test_units_do_not_matter_to_dense_systems(units: float) -> None:
     """One pass over columns and rows left the two kinds of unknowns so far apart that a joint in metres was taken for
     singular: now the accuracy is that of the system in good units."""
     matrix, solution, sizes = bordered(units)
-    found = static_condensation.solve_dense(matrix, matrix @ solution, False)
+    found = dense.solve_dense(matrix, matrix @ solution, False)
     assert np.abs((found - solution) / sizes).max() < 1e-12
 
 
@@ -105,7 +105,7 @@ def test_small_right_hand_sides_are_no_sign_of_a_singular_matrix() -> None:
     matrix = np.vander(np.linspace(0.1, 1.0, 9))  # condition 1e8
     large = rng.uniform(1.0, 2.0, 9)
     small = matrix @ large - np.linalg.norm(matrix) * 1e-16
-    assert np.abs(static_condensation.solve_dense(matrix, small, False) - large).max() < 1e-6
+    assert np.abs(dense.solve_dense(matrix, small, False) - large).max() < 1e-6
 
 
 def test_singular_dense_systems() -> None:
@@ -114,16 +114,16 @@ def test_singular_dense_systems() -> None:
     matrix[:6, 8] = matrix[8, :6] = 0.0  # a motion that nothing resists
     matrix[:6, 7] = matrix[7, :6] = matrix[:6, 6]  # and one that does what another does
     rhs = matrix @ solution
-    found = static_condensation.solve_dense(matrix, rhs, False)
+    found = dense.solve_dense(matrix, rhs, False)
     assert np.abs(matrix @ found - rhs).max() < 1e-10
     with pytest.raises(abut.SingularModelError, match="no unique solution"):
-        static_condensation.solve_dense(matrix, rhs + np.eye(9)[7], False)
+        dense.solve_dense(matrix, rhs + np.eye(9)[7], False)
 
 
 def test_motions_that_rows_let_go() -> None:
     """Rows that see only the first of three motions, in two units."""
     rows = np.outer([1e-3, 2e-3, 1e-9], [3.0, 4.0, 0.0])
-    loose, held = static_condensation.let_go(rows, np.array([1e-3, 2e-3, 1e-9]))
+    loose, held = dense.let_go(rows, np.array([1e-3, 2e-3, 1e-9]))
     assert np.abs(held[:, 0]) == pytest.approx([0.6, 0.8, 0.0])
     assert np.abs(rows @ loose).max() < 1e-15
     assert loose.T @ loose == pytest.approx(np.eye(2))

@@ -73,6 +73,7 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "message"),
     [
         (["patch-punsh"], "no benchmark named 'patch-punsh'; did you mean 'patch-punch'?"),
+        (["nonsense"], "no benchmark named 'nonsense'; abut verify --list names them"),
         (["patch-punch", "--levels", "0"], "--levels: expected a whole number >= 1, got 0"),
         (["--job", BLOCKS, "patch-punch"], "--job goes without benchmark names and --levels"),
         (["--job", BLOCKS, "--levels", "2"], "--job goes without benchmark names and --levels"),

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.edge_load import edge_load
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
+from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
@@ -28,9 +30,13 @@ COMPLEMENTARITY = 1e-6
 OSCILLATION = 0.08
 RESOLUTION = 0.4  # three facets to each side of the middle
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
+ERROR, NOTICED = 0.3, 0.05  # of the pressure: wrong, and worth knowing
+EDGES = 0.2  # sine of 12 degrees
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
 COVERED_TWICE = 1e-3  # share of a facet
+UNSEEN = "no node of the contactor has closed neighbours only"
+NARROW = "contact is less than three facets wide on each side of its middle: refine where it touches"
 NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after unloading
 
 
@@ -40,7 +46,7 @@ class Surroundings:
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
     support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
-    opposite now is no sign of wrong surfaces; else None."""
+    opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -48,6 +54,7 @@ class Surroundings:
     free: NDArray[np.bool_] | None = None
     elsewhere: NDArray[np.float64] | None = None
     support: NDArray[np.float64] | None = None
+    stress: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -163,9 +170,18 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
         "largest alternating part of the pressure inside the contact over the largest pressure",
         pressure=case.matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
-    facets = resolution(pair, pressure, support, largest) if counts else 0.0
-    yield case.check("resolution", facets, RESOLUTION,
+    facets = resolution(pair, pressure, support, largest)
+    yield case.check("resolution", facets if counts else 0.0, RESOLUTION,
         "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
+    off = pressure_error(pair, pressure, support, largest, case.around.stress) * largest / case.matters
+    unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
+    edges = edge_load(pair, case.values, case.nodal) if counts else 0.0
+    yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,
+        "estimated local error of the reported pressure inside the contact, over the largest pressure",
+        pressure=case.matters, highest=True, notice=NOTICED, unknown=unknown)  # fmt: skip
+    yield Check(pair.contact.name, "contactor's edges", edges, EDGES,
+        "sine of the angle between the sides where an edge of the contactor presses, mean by force",
+        unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:

@@ -236,7 +236,7 @@ def friction_checks(
          "power that is missing because slip is not opposite to the traction, over the largest"),
         ("sticking", float((way - _creep(pair, size, bound))[sticks].max(initial=0.0)) * pair.stiffness / largest, STUCK,
          "slip of sticking points in the step, as a pressure over the largest pressure"),
-        ("friction work", max(-float(work.min(initial=0.0)), 0.0) / unit, WORK,
+        ("friction work", max(0.0, -float(work.min(initial=0.0))) / unit, WORK,
          "work that friction gives back at a point in the step, over the largest that it takes"),
         ("friction left out", left_out, NEW,
          "share of what friction can carry where none counts in the step, as the target was not opposite before"),

@@ -15,6 +15,7 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.surface_stress import normal_stress
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
 from abut.model.conditions import weights
@@ -27,10 +28,10 @@ from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.landed import LANDED, landed_in
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
@@ -79,7 +80,8 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
-    contacts = _contacts(end, attempt, before)
+    stress = assembled.bodies.stress(end.motion)
+    contacts = _contacts(end, attempt, before, stress)
     told = _finite_energy if model.finite else _energy
     acting, balance = told(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
@@ -91,7 +93,7 @@ def step_result(
         reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
-        stress=assembled.bodies.stress(end.motion),
+        stress=stress,
         reaction=end.reaction.reshape(-1, model.dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
@@ -102,7 +104,7 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
-        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
+        rigid={body.name: _rigid(end, body, by_supports) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -199,15 +201,25 @@ def _largest_size(steps: Sequence[Step]) -> float:
     return max((step.energy.size for step in steps if step.energy is not None), default=0.0)
 
 
-def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
-    """Motion of a rigid body, and what moves it."""
-    if finite:
-        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
-    return RigidResult(*body.motion(nodal), *body.resultant(forces))
+def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResult:
+    """Motion of a rigid body or coupling, and what moves it."""
+    forces = forces * (body.follow if body.holds else 0.0)
+    histories = end.problem.model.histories
+    if end.problem.model.finite and (body.whole or body.mean):
+        moved, turn = body.turned(end.nodal)
+        own = end.problem.constraints.turn_of(body.nodes)
+        if own is not None:  # which knows of whole turns
+            vector = own.vector(end.state.unknowns, weights(histories, end.state.time))
+            turn = vector if len(turn) == 3 else vector[2:]
+        return RigidResult(moved, turn, *body.resultant(forces, end.nodal))
+    given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
+    return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
 
 
-def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[ContactResult, ...]:
-    """Of all pairs."""
+def _contacts(
+    end: _End, attempt: Attempt, before: Sequence[Step], stress: NDArray[np.float64]
+) -> tuple[ContactResult, ...]:
+    """Of all pairs; stress: (n_points, 6) nodal averages."""
     system, model, constraints = end.system, end.problem.model, end.problem.constraints
     references = _largest_pressures(len(system.pairs), before)
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
@@ -218,7 +230,10 @@ def _contacts(end: _End, attempt: Attempt, before: Sequence[Step]) -> tuple[Cont
         constant, varying = offsets(model, pair.contact)
         moved = end.nodal if support is None else np.zeros_like(end.nodal)
         overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
-        around.append(Surroundings(reference, beside, overlap, free_axes(model, constraints, pair), elsewhere, support))
+        free, cells = free_axes(model, constraints, pair), None
+        if not pair.tied:
+            cells = normal_stress(model.mesh, pair.contactor, stress)
+        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(
@@ -276,7 +291,7 @@ def _rounding(system: Linearised, free: NDArray[np.float64]) -> float:
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
     """Nodes, and all of the rigid bodies they belong to: what holds one point of those holds the whole."""
-    touched = [body.nodes for body in bodies if np.isin(nodes, body.nodes).any()]
+    touched = [body.nodes for body in bodies if body.holds and np.isin(nodes, body.nodes).any()]
     return np.unique(np.concatenate([nodes, *touched]))
 
 

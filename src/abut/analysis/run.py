@@ -26,8 +26,8 @@ from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.finite import FiniteProblem
-from abut.problem.landed import landed_in
 from abut.problem.restraint import require_balance
+from abut.problem.step_error import landed_in
 from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
 

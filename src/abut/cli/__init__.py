@@ -20,6 +20,14 @@ from abut.errors import AbutError, InputError
 from abut.parallel.launch import processes, rank
 
 DONE, BUG, INTERRUPTED, NO_READER = 0, 1, 130, 141
+EXAMPLES = """examples:
+  abut check punch.toml              mistakes, before the solve
+  abut run punch.toml                then open results/report.html in a browser, results/*.pvd in ParaView
+  abut run deck.inp                  an Abaqus or CalculiX deck
+  abut convert deck.inp punch.toml   the same as a job file with its mesh, to edit
+
+`abut COMMAND --help` says more of a command.
+"""
 PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 0 must get to its message first
 
 
@@ -66,6 +74,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     """Arguments; what abut does not know of them, and PETSc may, as ``petsc``."""
     parser = _parser()
+    if not (sys.argv[1:] if argv is None else argv):
+        if not rank():
+            parser.print_help()
+        raise SystemExit(InputError.exit_status)
     with contextlib.ExitStack() as silence:
         if rank():
             nowhere = silence.enter_context(open(os.devnull, "w"))
@@ -85,7 +97,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="abut",
         description="Finite element contact mechanics that one can trust.",
-        epilog="example: abut run punch.toml   then open results/fields.pvd in ParaView",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     parser.set_defaults(together=False)  # whether all processes take part
@@ -95,7 +108,12 @@ def _parser() -> argparse.ArgumentParser:
     add_convert(commands)
     add_verify(commands)
     add_infsup(commands)
-    schema = commands.add_parser("schema", help="print the JSON Schema of job files, for editors")
+    schema = commands.add_parser(
+        "schema",
+        help="print the JSON Schema of job files, for editors",
+        description="Print the JSON Schema of job files: every key with its type and meaning. Editors with a TOML language "
+        "server complete and check jobs by it.",
+    )
     schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
     schema.set_defaults(command=_schema)
     return parser

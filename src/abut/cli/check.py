@@ -37,6 +37,7 @@ def add_check(commands: Any) -> None:
 def _check(arguments: argparse.Namespace) -> int:
     from abut.diagnosis import Finding, Report, check, from_error
     from abut.job import load_job
+    from abut.job.load import DECK
     from abut.job.pairs import write_pairs
 
     try:
@@ -46,7 +47,8 @@ def _check(arguments: argparse.Namespace) -> int:
         _print(report, arguments.json)
         return report.status
     report = check(job.model)
-    found = tuple(Finding("info", "contacts", note) for note in job.notes)
+    where = "deck" if job.path.suffix.lower() == DECK else "notes"
+    found = tuple(Finding("info", where, note) for note in job.notes)
     report = Report(report.findings + found, report.motions)
     if arguments.output is not None:
         _write_motions(arguments.output, job, report)

@@ -17,9 +17,10 @@ def add_convert(commands: Any) -> None:
     convert = commands.add_parser(
         "convert",
         help="a deck to a job file with its mesh, a mesh to VTU",
-        description="Convert an Abaqus or CalculiX deck (.inp) to a job file (.toml) and a mesh beside it (.vtu), or a mesh "
-        "(.inp, .msh, .vtu) to VTU with its names.",
-        epilog="examples: abut convert deck.inp job.toml   abut convert punch.msh punch.vtu",
+        description="Convert an Abaqus or CalculiX deck (.inp) to a job file (.toml) and a mesh beside it (.vtu),\n"
+        "or a mesh (.inp, .msh, .vtu) to VTU with its names.",
+        epilog="examples:\n  abut convert deck.inp job.toml\n  abut convert punch.msh punch.vtu",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     convert.add_argument("source", type=Path, help="deck or mesh")
     convert.add_argument("target", type=Path, help="job file (.toml) or mesh (.vtu)")

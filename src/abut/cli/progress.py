@@ -150,7 +150,7 @@ def _table_row(item: Iteration) -> str:
     friction = "" if item.slipping is None else f"{item.sticking:7d}  {item.slipping:7d}  "
     return (
         f"{item.step:4d}  {item.iteration:4d}  {item.active:7d}  {friction}{item.changed:7d}  {item.residual:9.2e}  "
-        f"{item.contact_residual:9.2e}    {item.penetration:9.2e}  {item.seconds:8.2f}"
+        f"{item.contact_residual:9.2e}    {item.penetration + 0.0:9.2e}  {item.seconds:8.2f}"
     )
 
 

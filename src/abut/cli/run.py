@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 DONE = 0
 STATUS = """exit status:
   0    done
+  1    internal error: a bug in abut
   2    bad input: the message says what, where, and how to correct it
-  124  the time of solve.seconds is over: all steps done so far are written, and --restart goes on from there
   3    not converged: the last state is written, the message names facets and gives advice
   4    the model has no unique solution
+  124  the time of solve.seconds is over: all steps done so far are written, and --restart goes on from there
   130  stopped by Ctrl-C (143: by SIGTERM) after the current iteration: all steps done so far are written, and
        --restart goes on from there
-  1    internal error: a bug in abut
 
 several processes (docs/mpi.md): mpiexec -n N abut run JOB [OPTION OF PETSC ...]
   needs petsc4py and mpi4py; process 0 prints, and its exit status counts. Options that abut does not know and PETSc
@@ -72,7 +72,7 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="CARD",
-        help="omit a card (FRICTION) or parameter (NLGEOM) of a deck that abut does not support; may be repeated",
+        help="leave out a card (PLASTIC) or a parameter (NLGEOM) of a deck; may be repeated",
     )
 
 
@@ -269,9 +269,10 @@ def _print_result(solution: Solution, directory: Path) -> None:
     print("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
-        print(f"  {'pass' if check.passed else 'FAIL'}  {check.value:9.2e}  {check.limit:9.2e}  {name}")
-        if not check.passed:
-            print(f"        cure: {cure(check, solution)}")
+        value = f"{'unknown':>9}" if check.unknown else f"{check.value:9.2e}"
+        print(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
+        if text := check.unknown or cure(check, solution):
+            print(f"        {'unknown' if check.unknown else 'cure'}: {text}")
     for remedy in remedies(solution):
         print(f"  try {remedy}")
     print(

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.errors import InputError, nearest
+from abut.errors import InputError, closest
 
 if TYPE_CHECKING:
     from abut.benchmarks import Outcome
@@ -30,7 +30,7 @@ def add_verify(commands: Any) -> None:
     verify.add_argument("--list", action="store_true", help="list the benchmarks")
     verify.add_argument("--levels", type=int, metavar="N", help="refine N times, fit the rate of convergence, plot it")
     verify.add_argument("--plot", type=Path, metavar="FILE", help="with --levels: save the plot (png, svg; matplotlib)")
-    verify.add_argument("--job", type=Path, help="patch test of every contact of this job, on its own meshes")
+    verify.add_argument("--job", type=Path, help="patch test of every contact of this job (or deck), on its own meshes")
     verify.add_argument("--json", action="store_true", help="print the results as JSON")
     verify.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     verify.set_defaults(command=_verify)
@@ -44,7 +44,7 @@ def add_infsup(commands: Any) -> None:
         description="The numerical inf-sup test of a contact: is its pressure stable? Supports are those of the job.",
         epilog="exit status: 0 stable; 1 not stable; 2 bad input",
     )
-    infsup.add_argument("job", type=Path, help="the job file")
+    infsup.add_argument("job", type=Path, help="the job file or deck")
     infsup.add_argument("--contact", metavar="NAME", help="which contact (all of them if left out)")
     infsup.add_argument(
         "--levels",
@@ -67,11 +67,13 @@ def _verify(arguments: argparse.Namespace) -> int:
 
     for name in arguments.names:
         if name not in BENCHMARKS:
-            raise InputError(f"verify: no benchmark named {name!r}{nearest(name, BENCHMARKS)}")
+            cure = closest(name, BENCHMARKS) or "; abut verify --list names them"
+            raise InputError(f"verify: no benchmark named {name!r}{cure}")
     chosen = [BENCHMARKS[name] for name in arguments.names or BENCHMARKS]
     if arguments.list:
+        longest = max(len(benchmark.name) for benchmark in chosen)
         for benchmark in chosen:
-            print(f"{benchmark.name:24s} {benchmark.title}")
+            print(f"{benchmark.name:{longest}s}  {benchmark.title}")
         return DONE
     if arguments.levels is not None and arguments.levels < 1:
         raise InputError(f"verify: --levels: expected a whole number >= 1, got {arguments.levels}")

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from abut.contact.coupling import Coupling, CouplingOptions, couple, default_reach
 from abut.contact.geometry import CREASE, area_vectors, full_moments, straight
-from abut.contact.kin import with_kin
+from abut.contact.self_contact import with_kin
 from abut.errors import InputError, nearest
 from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh

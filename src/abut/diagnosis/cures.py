@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from abut.contact.contactor_choice import FINER
+from abut.contact.contactor_choice import FINER, Choice
 from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
 from abut.diagnosis.contactor import swap
@@ -14,13 +14,15 @@ from abut.model import LAWS, METHODS, Contact
 from abut.solution import Check, ContactResult, Solution
 
 SECOND = " (second pass)"
+EITHER = Choice(1, "alike", False)  # whatever else speaks for the present contactor
+LOADED = 1e-3  # pressure over the largest
 UNSETTLED = {"complementarity", "friction cone", "slip direction", "sticking", "friction work"}
 SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"
 
 
 def cure(check: Check, solution: Solution) -> str:
-    """What to change so that a failed check passes, a sentence; empty for one that passed."""
-    if check.passed:
+    """What to change so that a failed check passes, or one that warns does no more, a sentence; empty for the others."""
+    if check.passed and not check.warns:
         return ""
     if not check.contact:
         return MODEL[check.name]
@@ -31,7 +33,8 @@ def cure(check: Check, solution: Solution) -> str:
     name = check.contact.removesuffix(SECOND)
     contact = next(c for c in solution.model.contacts if c.name == name)
     result = next(c for c in solution.contacts if c.name == check.contact)
-    return OF_CONTACT[check.name](contact, result, swap(solution.model, contact))
+    choice = EITHER if check.name == "contactor's edges" else None
+    return OF_CONTACT[check.name](contact, result, swap(solution.model, contact, choice))
 
 
 def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
@@ -108,6 +111,25 @@ def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
     return f"refine {words(contact.contactor)} where it touches: contact needs three facets to each side of its middle"
 
 
+def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
+    loaded = np.nanmax(result.pressure, axis=1) > LOADED * result.max_pressure
+    size = float(np.median(facet_sizes(result.contactor)[loaded]))
+    ratio = size / float(np.median(facet_sizes(result.target)))
+    finer = f", or {sides}" if sides and ratio > FINER else ""
+    return (
+        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{finer}; but "
+        "round the edges of sharp bodies, where pressure has no limit"
+    )
+
+
+def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
+    way = f"{sides}, or round" if sides else "round"
+    return (
+        f"{way} the edge of {words(contact.contactor)} over two facets: it pushes along the normal of its own face, not of "
+        "what it touches"
+    )
+
+
 def _moments(contact: Contact, result: ContactResult, sides: str) -> str:
     return "leave `integration` out; on curved facets refine, or let both sides have the same facets"
 
@@ -151,6 +173,8 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "complementarity": _complementarity,
     "oscillation": _oscillation,
     "resolution": _resolution,
+    "pressure error": _pressure_error,
+    "contactor's edges": _edges,
     "facet moments": _moments,
     "loaded area without target": _bare,
     "force at the target's edge": _bare,

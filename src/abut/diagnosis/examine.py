@@ -21,7 +21,7 @@ from abut.mesh.exterior import exterior
 from abut.model import Contact, Model
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pair
-from abut.problem.whole_pairs import whole_pair
+from abut.problem.finite_pairs import finite_pair
 
 
 def check(model: Model) -> Report:
@@ -51,7 +51,7 @@ def check(model: Model) -> Report:
 def _built(model: Model, contact: Contact, supported: Constraints) -> Pair:
     """The pair as a run builds it."""
     sliding = model.finite and contact.kind != "tied"
-    return whole_pair(model, contact, supported) if sliding else pair(model, contact, supported)
+    return finite_pair(model, contact, supported) if sliding else pair(model, contact, supported)
 
 
 def _why(model: Model, contact: Contact, supported: Constraints, error: AbutError) -> Finding:

@@ -33,11 +33,12 @@ def motions(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> tu
     basis, size, _ = np.linalg.svd(by_contact, full_matrices=False)
     shown = _motions(model, restrained, basis[:, size > 0.5], "contact")
     if shown and complete:
+        modes = "one rigid-body mode is" if len(shown) == 1 else f"{len(shown)} rigid-body modes are"
         findings.append(
             Finding(
                 "info",
                 "bodies",
-                f"{len(shown)} rigid-body modes are constrained by contact{_rub(pairs)} alone, which carries no tension",
+                f"{modes} constrained by contact{_rub(pairs)} alone, which carries no tension",
                 details=tuple(motion.text for motion in shown),
             )
         )

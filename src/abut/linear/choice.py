@@ -12,13 +12,15 @@ import numpy as np
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.linear.cost_model import LARGE, LARGE_FINITE
+from abut.linear.dense import Dense, dense
 from abut.linear.direct import solver_name
+from abut.linear.foresight import foresight
 from abut.linear.multigrid import wide
 from abut.linear.repeated import Repeated
 from abut.linear.saddle_point import SaddlePoint
-from abut.linear.schur_preconditioner import foresight, half_spaces, interfaces
+from abut.linear.schur_preconditioner import half_spaces, interfaces
 from abut.linear.solver import Prepared
-from abut.linear.static_condensation import Dense, condense, dense
+from abut.linear.static_condensation import condense
 from abut.mesh.mesh import Mesh
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
@@ -94,4 +96,5 @@ class Direct:
         done = self.repeated
         if not done.factorisations:
             return ""
-        return f"{done.factorisations} factorisations in all, with {done.analyses} symbolic analyses"
+        analyses = "one symbolic analysis" if done.analyses == 1 else f"{done.analyses} symbolic analyses"
+        return f"{done.factorisations} factorisations in all, with {analyses}"

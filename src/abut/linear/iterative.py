@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from abut.contact.geometry import facet_products, full_moments
 from abut.errors import SingularModelError
 from abut.linear.bodies_now import bodies_now
+from abut.linear.dense import UNBALANCED, UNBALANCED_LOADS
+from abut.linear.foresight import Predict, foresight
 from abut.linear.interface_conditions import Conditions, conditions
 from abut.linear.krylov import fgmres
 from abut.linear.loose_motions import Loose, loose
 from abut.linear.multigrid import Hierarchy, hierarchy
-from abut.linear.schur_preconditioner import Apply, Predict, PressureBlock, foresight, pressure_block
+from abut.linear.schur_preconditioner import Apply, PressureBlock, pressure_block
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
-from abut.linear.static_condensation import UNBALANCED, UNBALANCED_LOADS
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem

@@ -9,8 +9,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.linear import direct
+from abut.linear.foresight import Predict
 from abut.linear.repeated import Repeated
-from abut.linear.schur_preconditioner import Predict
 from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.problem.linearised import Linearised, Rows
 from abut.types import Sparse

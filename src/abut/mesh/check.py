@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from abut._core import shape_functions, smallest_determinants
 from abut.cells import CELLS
 from abut.errors import InputError
+from abut.mesh.clockwise import clockwise
 from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
 from abut.mesh.quadrature import stiffness_rule
-from abut.mesh.turn import clockwise
 
 if TYPE_CHECKING:
     from abut.mesh.mesh import Mesh

@@ -21,8 +21,8 @@ from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
 from abut.mesh.cell_block import CellBlock
 from abut.mesh.check import check_mesh, inside
+from abut.mesh.clockwise import turn_bodies
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
-from abut.mesh.turn import turn_bodies
 
 if TYPE_CHECKING:
     from abut.mesh.mesh import Mesh

@@ -20,8 +20,9 @@ class Surface:
             normal points out of the body.
     axisymmetric: the coordinates are (r, z), and integrals run round the axis.
     parts:  (n_facets,) numbers, where the pressure on it may jump from facets of one number to those of another.
-    kin: (n_facets, 10) where the surface may touch itself, ``abut.contact.kin``: number of the body, rank (of two facets the
-            lower is the contactor), and of the undeformed body middle, normal, how far its other side may be, thickness.
+    kin: (n_facets, 10) where the surface may touch itself (``abut.contact.self_contact``): number of the body, rank (of
+            two facets the lower is the contactor), and of the undeformed body middle, normal, how far its other side may
+            be, thickness.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 

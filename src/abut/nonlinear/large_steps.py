@@ -16,7 +16,7 @@ from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.stepping import Control
 from abut.problem.finite import FiniteProblem
-from abut.problem.landed import landed_in
+from abut.problem.step_error import landed_in
 from abut.solution.state import State
 
 MOST = 25  # iterations in a step, above which it is halved

@@ -13,18 +13,12 @@ from abut.linear.bodies_now import BodiesNow, bodies_now
 from abut.linear.choice import chosen
 from abut.linear.cost_model import LARGE_ON_MANY
 from abut.linear.direct import SINGULAR
+from abut.linear.foresight import Predict, foresight
 from abut.linear.interface_conditions import conditions
 from abut.linear.iterative import RESPONSE, compliance, covered_shares, require_held, wholly_covered
 from abut.linear.loose_motions import Loose
 from abut.linear.saddle_point import saddle
-from abut.linear.schur_preconditioner import (
-    Predict,
-    PressureBlock,
-    foresight,
-    half_spaces,
-    interfaces,
-    pressure_block,
-)
+from abut.linear.schur_preconditioner import PressureBlock, half_spaces, interfaces, pressure_block
 from abut.linear.solver import Count, NotConverged, Prepared, Solve
 from abut.parallel.factors import by_factors, direct_solver, drop_factors, factorise, keep_factors
 from abut.parallel.krylov import MULTIGRID, STIFFNESS, Task, iterate, multigrid

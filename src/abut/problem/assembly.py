@@ -17,13 +17,13 @@ from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.finite import finite_problem
 from abut.problem.finite_bodies import FiniteBodies
+from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
-from abut.problem.whole_pairs import whole_pairs
 from abut.solution import Observer, Phase
 
 
@@ -55,7 +55,7 @@ def assemble(
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     sliding = model.finite and bool(model.contacts)
-    every = whole_pairs(model, constraints) if sliding else pairs(model, constraints, backend.couple)
+    every = finite_pairs(model, constraints) if sliding else pairs(model, constraints, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
@@ -78,7 +78,11 @@ def assemble(
         bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
-        terms=(bodies, DeadLoads(loaded, model.histories), *([FollowerLoads(model)] if followers(model) else [])),
+        terms=(
+            bodies,
+            DeadLoads(loaded, model.histories),
+            *([FollowerLoads(model, constraints.bodies)] if followers(model) else []),
+        ),
         constraints=constraints,
         pairs=every,
         operator=stacked(every, n_free),

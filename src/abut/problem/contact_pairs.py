@@ -19,7 +19,7 @@ from abut.contact.pressure_space import (
     with_plain_facets,
 )
 from abut.contact.rim import Rim, ends_on_target, goes_on, rim
-from abut.contact.shared import Functions, functions, one_each
+from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
@@ -200,7 +200,7 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
             each if keep is None else _in_space(model, each, reduce(each.space, each.coupling, keep), constraints)
             for each, keep in zip(result, kept)
         ]
-    tied_together = bool(model.equations or model.rigid)
+    tied_together = bool(model.equations or model.rigid or model.couplings)
     return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 

@@ -18,13 +18,13 @@ from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_no
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.rim import Rim, goes_on
 from abut.mesh.surface import Surface
-from abut.problem.adjusted import BARELY, with_adjusted
+from abut.problem.adjusted_gaps import BARELY, with_adjusted
 from abut.problem.contact_pairs import Pair
+from abut.problem.current_friction import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
 from abut.problem.first_touch import Sides, apart
 from abut.problem.gap_fit import MovedSides, Sight, fit_change
-from abut.problem.rubbing import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.slip_points import Past, SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse
@@ -66,7 +66,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Current:
-    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``whole_pair``; differentiate: what cuts
+    """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``finite_pair``; differentiate: what cuts
     and integrates, here or on several processes; adjusted: as from ``taken_off``, None for nothing."""
 
     pair: Pair

@@ -14,14 +14,14 @@ from abut.contact.coupling_tangent import Differentiate, differentiated
 from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.problem.adjusted import BARELY, taken_off
+from abut.problem.adjusted_gaps import BARELY, taken_off
 from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
-from abut.problem.landed import LANDED, PairEnd, landed
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import Past, SlipPoints
+from abut.problem.step_error import LANDED, PairEnd, landed
 from abut.problem.terms import Motion, Share
 from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
@@ -65,7 +65,7 @@ class Latest:
 
 @dataclass(frozen=True)
 class FiniteProblem(ContactProblem):
-    """As ``ContactProblem``, with ``pairs`` as from ``whole_pairs``. moving: kinematics of each pair, None of ties; ties: of
+    """As ``ContactProblem``, with ``pairs`` from ``finite_pairs``. moving: kinematics of each pair, None of ties; ties: of
     those across a gap, None of all others."""
 
     moving: Sequence[Current | None] = ()
@@ -310,7 +310,7 @@ def _tie(pair: Pair, tie: TurningTie | None, displacement: Array) -> ContactNow:
 
 
 def finite_problem(problem: ContactProblem, differentiate: Differentiate = differentiated) -> FiniteProblem:
-    """A problem with pairs as from ``whole_pairs`` at large displacements. differentiate: as in ``Current``."""
+    """A problem with pairs as from ``finite_pairs`` at large displacements. differentiate: as in ``Current``."""
     values = {each.name: getattr(problem, each.name) for each in fields(ContactProblem)}
     apart = [reach_of(problem.constraints, pair.contactor, pair.target) for pair in problem.pairs]
     moving = [None if pair.tied else _current(pair, reach, differentiate) for pair, reach in zip(problem.pairs, apart)]

@@ -145,6 +145,6 @@ class _Patches:
         before, after = (x - middle[patch, None] for x, middle in zip((start, now), middles))
         dim = start.shape[2]
         spread = rows @ np.einsum("mk,mka,mkb->mab", weight, after, before).reshape(-1, dim * dim)
-        left, _, right = np.linalg.svd(np.nan_to_num(spread).reshape(n, dim, dim))
+        left, _, right = np.linalg.svd(spread.reshape(n, dim, dim))
         left[..., -1] *= np.sign(np.linalg.det(left @ right))[:, None]
         return cls(left @ right, *middles)

@@ -95,17 +95,23 @@ def _head(solution: Solution, origin: Origin) -> str:
     elif theory:
         good, verdict = False, f"Converged, but different from theory: {', '.join(r['quantity'] for r in theory)}."
     else:
-        good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass."
+        warns = [f"{c.contact}: {c.name}" for c in solution.certificate if c.warns]
+        but = f", with a warning of {', '.join(warns)}" if warns else ""
+        good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass{but}."
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
     if solution.contacts:
         top = max(solution.contacts, key=lambda c: c.max_pressure)
         most = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
+        end = " at the end" if len(solution.steps) > 1 else ""
         facts = [
-            ("largest pressure", number(top.max_pressure)),
-            ("contact force", number(float(np.linalg.norm(most.force)))),
-            ("contact area", number(sum(c.area for c in solution.contacts))),
+            ("largest pressure" + end, number(top.max_pressure)),
+            ("contact force" + end, number(float(np.linalg.norm(most.force)))),
+            ("contact area" + end, number(sum(c.area for c in solution.contacts))),
             *facts,
         ]
+        before = max(c.max_pressure for step in solution.steps for c in step.contacts)
+        if before > top.max_pressure:
+            facts.insert(0, ("largest pressure of all steps", number(before)))
     facts.append(("seconds", f"{sum(solution.timings.values()):.3g}"))
     chips = "".join(f"<div><b>{escape(value)}</b><span>{name}</span></div>" for name, value in facts)
     mark = "✓" if good else "✗"
@@ -124,12 +130,13 @@ def _reached(solution: Solution) -> str:
 def _certificate(solution: Solution) -> str:
     rows = [
         [
-            _mark(check.passed),
+            _mark(check.verdict),
             escape(check.contact or "whole model"),
             escape(check.name),
-            f"{check.value:.2e}",
+            "unknown" if check.unknown else f"{check.value:.2e}",
             f"{check.limit:.2e}",
-            escape(check.meaning) + _cure(cure(check, solution)),
+            escape(f"{check.meaning}; unknown: {check.unknown}" if check.unknown else check.meaning)
+            + _cure(cure(check, solution)),
         ]
         for check in solution.certificate
     ]
@@ -140,14 +147,14 @@ def _cure(text: str) -> str:
     return f"<br><b>Cure:</b> {escape(text)}" if text else ""
 
 
-def _mark(passed: bool) -> str:
-    return f"<span class={'pass' if passed else 'fail'}>{'pass' if passed else 'FAIL'}</span>"
+def _mark(verdict: str) -> str:
+    return f"<span class={verdict.lower()}>{verdict}</span>"
 
 
 def _comparison(solution: Solution, origin: Origin) -> str:
     rows = [
         [
-            _mark(row["passed"]),
+            _mark("pass" if row["passed"] else "FAIL"),
             escape(row["quantity"]),
             f"{row['value']:.7g}",
             escape(row["expected"]),
@@ -206,7 +213,7 @@ def _rigid(solution: Solution) -> str:
         [name, *(vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
         for name, r in solution.steps[-1].rigid.items()
     ]
-    head = ["rigid body", "displacement", "rotation", "force on it", "moment about its reference"]
+    head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
     return _table(head, rows) if rows else ""
 
 

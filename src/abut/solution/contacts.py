@@ -15,8 +15,9 @@ from abut.mesh.surface import Surface
 @dataclass(frozen=True)
 class Check:
     """One line of the certificate: a dimensionless error of a contact, its limit, and its meaning.
-    last: it counts in the last step only, since it fails while loads are small. pressure: what the value is relative to, 0
-    where it is relative to something else."""
+    last: it counts in the last step only, since it fails while loads are small; highest: in that of the largest pressure.
+    pressure: what the value is relative to, 0 where it is relative to something else. notice: from which value on it is
+    worth knowing though it passes; unknown: why there is no value, which then is NaN and passes."""
 
     contact: str
     name: str
@@ -25,11 +26,26 @@ class Check:
     meaning: str
     last: bool = False
     pressure: float = 0.0
+    highest: bool = False
+    notice: float = inf
+    unknown: str = ""
 
     @property
     def passed(self) -> bool:
-        """Whether the value is within its limit; what is no number is not."""
-        return self.value <= self.limit
+        """Whether the value is within its limit; what is no number is not, unless that is so for a reason."""
+        return bool(self.unknown) or self.value <= self.limit
+
+    @property
+    def warns(self) -> bool:
+        """Whether it passes with a value that is worth knowing."""
+        return self.passed and self.value > self.notice
+
+    @property
+    def verdict(self) -> str:
+        """One word: "pass", "warn", "none" (nothing to measure) or "FAIL"."""
+        if self.unknown:
+            return "none"
+        return "FAIL" if not self.passed else "warn" if self.warns else "pass"
 
 
 def worst(checks: Sequence[Check]) -> Check:
@@ -37,6 +53,8 @@ def worst(checks: Sequence[Check]) -> Check:
     to the largest one: where contact has just begun they matter as little as the pressure does."""
     if checks[-1].last:
         return checks[-1]
+    if checks[-1].highest:
+        return max(reversed(checks), key=lambda check: check.pressure)
     largest = max(check.pressure for check in checks)
     of_all = [replace(c, value=c.value * c.pressure / largest, pressure=largest) if largest else c for c in checks]
     return max(of_all, key=lambda check: inf if isnan(check.value) else check.value / check.limit)

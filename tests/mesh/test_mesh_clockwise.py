@@ -14,9 +14,9 @@ from abut.cli import main
 from abut.errors import InputError
 from abut.job import load_job
 from abut.mesh.check import check_mesh
+from abut.mesh.clockwise import order, turn_bodies
 from abut.mesh.make import join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
-from abut.mesh.turn import order, turn_bodies
 from abut.mesh.write import write_mesh
 from models.volume import volume
 

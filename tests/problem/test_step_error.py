@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.diagnosis.cures import cures
-from abut.problem.landed import PairEnd, landed
+from abut.problem.step_error import PairEnd, landed
 from models.sliding import arched, finite
 
 FRICTION = 0.3

@@ -24,7 +24,7 @@ def taken_off(pair: Pair, reach: float) -> NDArray[np.float64]:
     """What ``adjust`` adds to the mean gap of each function from the outset on, (n_functions,) lengths: theory (G16). Zero
     where hardly any target is opposite at the outset.
 
-    pair: as from ``whole_pair``, undeformed; reach: how far apart the surfaces may lie, a length. Raises InputError for a
+    pair: as from ``finite_pair``, undeformed; reach: how far apart the surfaces may lie, a length. Raises InputError for a
     surface in contact with itself."""
     contact, contactor, target = pair.contact, pair.contactor, pair.target
     if not contact.adjust:

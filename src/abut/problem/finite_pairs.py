@@ -22,18 +22,18 @@ from abut.problem.held_multipliers import without_held
 from abut.problem.scales import scales
 
 
-def whole_pairs(model: Model, constraints: Constraints) -> list[Pair]:
+def finite_pairs(model: Model, constraints: Constraints) -> list[Pair]:
     """All contact pairs of a model with finite kinematics, at the outset. Ties stay what they are.
 
     Raises InputError for what goes with small displacements only."""
     made = [
-        pair(model, contact, constraints) if contact.kind == "tied" else whole_pair(model, contact, constraints)
+        pair(model, contact, constraints) if contact.kind == "tied" else finite_pair(model, contact, constraints)
         for contact in model.contacts
     ]
     return [replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim)) for each in made]
 
 
-def whole_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:
+def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:
     """One pair: functions of the undeformed contactor, with their weights over all of it, theory (G3); rows as at the
     outset."""
     contactor, target = model.sides(contact)

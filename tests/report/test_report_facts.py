@@ -1,0 +1,41 @@
+"""The numbers at the top of the report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import abut
+from abut.mesh import make
+from abut.report import Origin
+from abut.report.page import page
+
+STEEL = abut.LinearElastic(1000.0, 0.3)
+
+
+def _pressed(*course: tuple[float, float]) -> abut.Model:
+    """A block on another one, pressed by factors over time."""
+    mesh = make.join(
+        {"lower": make.rectangle([0, 2], [0, 1], cells=[4, 2]), "upper": make.rectangle([0, 1], [1, 2], cells=[3, 2])}
+    )
+    return abut.Model(
+        mesh,
+        plane="strain",
+        solids=[abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
+        supports=[
+            abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0),
+            abut.Support("upper.top", y=-0.01, amplitude=abut.Amplitude(((0.0, 0.0), *course))),
+        ],
+        contacts=[abut.Contact("upper.bottom", "lower.top")],
+    )  # fmt: skip
+
+
+def test_the_largest_pressure_of_all_steps() -> None:
+    """Beside that at the end if it was more: of linear steps, twice as much where twice as much presses."""
+    back = abut.solve(replace(_pressed((0.5, 1.0), (1.0, 0.5)), solve=abut.SolveOptions(steps=2)))
+    text = page(back, Origin("back"))
+    first, last = (step.contacts[0].max_pressure for step in back.steps)
+    assert first > 1.9 * last > 0.0
+    assert f"<b>{first:.6g}</b><span>largest pressure of all steps</span>" in text
+    assert f"<b>{last:.6g}</b><span>largest pressure at the end</span>" in text
+    on = abut.solve(replace(_pressed((1.0, 1.0)), solve=abut.SolveOptions(steps=2)))
+    assert "of all steps</span>" not in page(on, Origin("on"))
