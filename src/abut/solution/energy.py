@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 ENERGY = 1e-8  # limit of the error of the balance
 ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and where far motions leave no more digits
@@ -51,3 +51,8 @@ class Energy:
         more, at most a share of that. A body that contact alone holds rocks within the tolerance of forces, which is much
         beside a step in which hardly anything else moves."""
         return max(ENERGY, min(self.left / self.size, max(ROUNDED, ENERGY * self.earlier / self.size)))
+
+    def limit_beside(self, most: float) -> float:
+        """The same where other steps of the run, before or after, have a size of up to ``most``: before the first touch
+        what equilibrium leaves open is much beside the work of a step, but nothing beside the run."""
+        return self.limit if self.elastic is None else replace(self, earlier=max(self.earlier, most)).limit

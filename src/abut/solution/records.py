@@ -200,6 +200,7 @@ class Solution:
         lines: dict[tuple[str, str], list[Check]] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
+        most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
             balance = Check(
                 "",
@@ -214,7 +215,7 @@ class Solution:
                 model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
-                model.append(Check("", "energy balance", step.energy.error, step.energy.limit,
+                model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
                                    "work of loads and supports less what is stored and what friction takes, over the "
                                    "work of all nodal forces by size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
