@@ -16,7 +16,6 @@ from models.clamps import DEPTH, NAMED, WHOLE, balanced, clamp, tube
 from models.folding import accordion
 from models.sliding import finite
 
-
 COARSE = "pressure error"  # two or three facets from the edge of contact to its middle: up to 40 % off between nodes
 
 
