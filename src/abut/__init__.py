@@ -16,11 +16,13 @@ if TYPE_CHECKING:
         Amplitude,
         BodyForce,
         Contact,
+        Coupling,
         Equation,
         Force,
         Gravity,
         Integration,
         Model,
+        Moment,
         NodalForce,
         Pressure,
         Probe,
@@ -48,10 +50,10 @@ _HOME = {  # of public names that do not come from abut.model
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Equation", "Force", "FoundContact", "Gravity",
-    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "NeoHooke", "NodalForce", "Pressure", "Probe",
-    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term",
-    "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
+    "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke", "NodalForce", "Pressure",
+    "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature",
+    "Term", "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -234,8 +234,16 @@ def test_rigid_body(tmp_path):
     assert (body.z, body.rz) == pytest.approx((-0.01, 0.2))
     assert [body.history("z")(t) for t in (0.5, 1.0)] == [1.0, 1.0]  # comes down in the first step
     assert [body.history("rz")(t) for t in (0.5, 1.0)] == [0.0, 1.0]  # and turns in the second
-    with pytest.raises(InputError, match="forces on a rigid body are not supported"):
-        load(tmp_path, text + step("*CLOAD", "99, 3, -1."))
+    free = text.replace("99, 1, 3", "99, 1, 2").replace("98, 1, 3", "98, 3")
+    pushed = solve(tmp_path, free + step("*CLOAD", "99, 3, -5.", "98, 1, 0.2", "99, 5, -0.3"))
+    assert pushed.contacts[0].force[2] == pytest.approx(-5.0, rel=1e-9)
+    loads = load(tmp_path, free + step("*CLOAD", "99, 3, -5.", "98, 1, 0.2")).model.loads
+    assert [(type(one).__name__, one.value) for one in loads] == [
+        ("Force", (0.0, 0.0, -5.0)),
+        ("Moment", (0.2, 0.0, 0.0)),
+    ]
+    place = pushed.contacts[0].resultant.moment / 5.0  # the middle of the pressure balances the moments
+    assert place[:2] == pytest.approx([-0.5 + 0.04, 0.5 - 0.06], rel=1e-6)
     with pytest.raises(InputError, match="rigid in part only"):
         load(tmp_path, text.replace("BODY, ELSET=HIGH", "BODY, NSET=TOP") + step())
 

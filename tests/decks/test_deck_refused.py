@@ -72,12 +72,12 @@ def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
         .replace("PRESSURE-OVERCLOSURE=HARD", "PRESSURE-OVERCLOSURE=SOFT")
         .replace("*BOUNDARY", "*PLASTIC\n1., 0.\n*BOUNDARY")
         .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, PERTURBATION")
-        .replace("*STATIC", "*STATIC\n*CLOAD\n18, 4, 1.\n*BOUNDARY\n1, 9\n")
+        .replace("*STATIC", "*STATIC\n*CLOAD\n18, 7, 1.\n*BOUNDARY\n1, 9\n")
     )
     lines = text.splitlines()
     expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*PLASTIC: ", "*EQUATION: 2 terms",
-                "*STEP: PERTURBATION", "*CLOAD: direction 4", "*BOUNDARY: directions 9"]  # fmt: skip
-    starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*PLASTIC", "*EQUATION", "*STEP", "18, 4", "1, 9"]
+                "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
+    starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*PLASTIC", "*EQUATION", "*STEP", "18, 7", "1, 9"]
     own = told(tmp_path, text)
     assert len(own) == len(expected)
     for i, (reason, want, start) in enumerate(zip(own, expected, starts)):
@@ -187,7 +187,8 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("2, P2, 10.", "2, P2", "magnitude is missing"),
         ("BOTTOM, 1, 3", "BOTTOM, 1, 11", "belongs to heat transfer"),
         ("BOTTOM, 1, 3", "BOTTOM, 3, 1", "directions 3 to 1"),
-        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", "only forces"),
+        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 7, 1.", r"direction 7: expected 1 to 3 \(forces\) or 4 to 6 \(moments\)"),
+        ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", "node 18 carries no moment"),
         ("*DLOAD", "*DLOAD, AMPLITUDE=A", r"no \*AMPLITUDE named 'A'"),
         ("*STEP\n*STATIC\n*DLOAD", "*STEP\n*DLOAD", "the step has no procedure"),
         ("*END STEP\n", "", r"the step has no \*END STEP"),

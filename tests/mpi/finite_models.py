@@ -14,12 +14,15 @@ RUBBER = abut.NeoHooke(100.0, 0.45)
 
 
 def beam() -> abut.Model:
-    """A heated cantilever under a pressure that follows it, with F-bar: no contact, and a tangent that is not symmetric."""
+    """A heated cantilever under a pressure that follows it, with F-bar, under a force and a moment that are spread over its
+    end: no contact, and a tangent that is not symmetric."""
     return abut.Model(
         box([0, 4], [0, 1], [0, 0.5], cells=[6, 2, 2], cell="hex8"),
         [abut.Solid("body", abut.NeoHooke(100.0, 0.45, expansion=1e-3), integration="b-bar", temperature=5.0)],
         [abut.Support("left", x=0.0, y=0.0, z=0.0)],
-        [abut.Pressure("top", 0.05), abut.Temperature("body", lambda x: 3.0 * x[:, 0])],
+        [abut.Pressure("top", 0.05), abut.Temperature("body", lambda x: 3.0 * x[:, 0]),
+         abut.Force("end", (0.0, 0.01, 0.02)), abut.Moment("end", (0.1, -0.1, 0.05))],
+        couplings=[abut.Coupling("end", "right", "distributing", (4.5, 0.5, 0.0))],
         kinematics="finite", solve=abut.SolveOptions(steps=2),
     )  # fmt: skip
 

@@ -60,7 +60,7 @@ def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Arra
 
     def total(of_edges: Array) -> Array:
         columns = [np.bincount(i, column, len(used)) for column in of_edges.reshape(len(i), -1).T]
-        return np.stack(columns, axis=-1).reshape(len(used), *of_edges.shape[1:])
+        return np.stack(columns, axis=-1, dtype=float).reshape(len(used), *of_edges.shape[1:])
 
     weight = np.maximum(total(close), 1e-300)
     mean = total(close * values[j]) / weight

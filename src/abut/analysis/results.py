@@ -104,7 +104,7 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(system, end.cycling),
         flips=_flips(system, attempt),
-        rigid={body.rigid.body: _rigid(body, end.nodal, by_supports, model.finite) for body in constraints.bodies},
+        rigid={body.name: _rigid(end, body, by_supports) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
@@ -201,11 +201,19 @@ def _largest_size(steps: Sequence[Step]) -> float:
     return max((step.energy.size for step in steps if step.energy is not None), default=0.0)
 
 
-def _rigid(body: RigidBody, nodal: NDArray[np.float64], forces: NDArray[np.float64], finite: bool) -> RigidResult:
-    """Motion of a rigid body, and what moves it."""
-    if finite:
-        return RigidResult(*body.turned(nodal), *body.resultant(forces, nodal))
-    return RigidResult(*body.motion(nodal), *body.resultant(forces))
+def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResult:
+    """Motion of a rigid body or coupling, and what moves it."""
+    forces = forces * (body.follow if body.holds else 0.0)
+    histories = end.problem.model.histories
+    if end.problem.model.finite and (body.whole or body.mean):
+        moved, turn = body.turned(end.nodal)
+        own = end.problem.constraints.turn_of(body.nodes)
+        if own is not None:  # which knows of whole turns
+            vector = own.vector(end.state.unknowns, weights(histories, end.state.time))
+            turn = vector if len(turn) == 3 else vector[2:]
+        return RigidResult(moved, turn, *body.resultant(forces, end.nodal))
+    given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
+    return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
 
 
 def _contacts(
@@ -283,7 +291,7 @@ def _rounding(system: Linearised, free: NDArray[np.float64]) -> float:
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
     """Nodes, and all of the rigid bodies they belong to: what holds one point of those holds the whole."""
-    touched = [body.nodes for body in bodies if np.isin(nodes, body.nodes).any()]
+    touched = [body.nodes for body in bodies if body.holds and np.isin(nodes, body.nodes).any()]
     return np.unique(np.concatenate([nodes, *touched]))
 
 

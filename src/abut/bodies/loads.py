@@ -61,9 +61,14 @@ def traction_load(surface: Surface, value: Given, name: str = "traction: value")
 
 def surface_area(surface: Surface) -> float:
     """Area (2D: length; axisymmetric: all round) of a surface."""
+    return float(area_weights(surface).sum())
+
+
+def area_weights(surface: Surface) -> NDArray[np.float64]:
+    """Share of each point in the area of a surface: int N, (n_points,)."""
     first = np.zeros(surface.dim)
     first[0] = 1.0
-    return float(_spread(surface, first, 1)[:, 0].sum())
+    return np.asarray(_spread(surface, first, 1)[:, 0])
 
 
 def force_load(surface: Surface, vector: NDArray[np.float64]) -> NDArray[np.float64]:

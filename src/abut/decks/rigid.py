@@ -6,58 +6,39 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from abut.decks.couplings import MOTIONS, components, motion_of
 from abut.io.deck.faces import element_nodes
 from abut.io.deck.groups import Piece
 from abut.io.deck.nodal_constraints import coordinates
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Numbers, RigidBody
-from abut.io.deck.time_histories import Course, courses, scaled, zero
-from abut.model import Amplitude, Rigid
+from abut.io.deck.time_histories import Course, courses
+from abut.model import Rigid
+from abut.model.conditions import TURNS
 
 
 def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Rigid]:
-    """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one that carries a
-    force."""
+    """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one without its
+    reference node."""
     result = []
-    supported = courses(deck, "boundary") if deck.rigid else {}
+    given = courses(deck, "boundary") if deck.rigid else {}
     for name, body in zip(names, deck.rigid):
-        _check_forces(deck, body)
-        components = _components(supported, body, plane)
-        values = {name: scaled(course)[0] for name, course in components.items()}
-        units = {name: scaled(course)[1] for name, course in components.items() if not zero(course)}
-        own = {name: Amplitude(unit) for name, unit in units.items() if unit is not None}
-        alike = len(own) == len(units) and len(set(own.values())) == 1
-        amplitude = next(iter(own.values())) if alike else None
+        motion = motion_of(_components(given, body), components(plane))
         if body.reference not in deck.nodes:
             raise DeckError(body.place, f"*RIGID BODY: REF NODE {body.reference} does not exist; give it in *NODE")
         reference = tuple(coordinates(deck, np.array([body.reference]))[0][: 2 if plane else 3].tolist())
-        result.append(Rigid(name, reference, **values, amplitude=amplitude, amplitudes={} if alike else own))
+        result.append(Rigid(name, reference, **motion.values, amplitude=motion.amplitude, amplitudes=motion.amplitudes))
     return result
 
 
-def _check_forces(deck: Deck, body: RigidBody) -> None:
-    for step in deck.steps:
-        for value in step.values:
-            if value.kind == "force" and value.value and {body.reference, body.turning} & set(value.numbers.tolist()):
-                raise DeckError(
-                    value.place,
-                    "*CLOAD: forces on a rigid body are not supported; give its displacement with *BOUNDARY",
-                )
-
-
-def _components(supported: Mapping[tuple[float, ...], Course], body: RigidBody, plane: str | None) -> dict[str, Course]:
+def _components(given: Mapping[tuple[float, ...], Course], body: RigidBody) -> dict[str, Course]:
     """Prescribed components by their name in ``abut.Rigid``."""
-    known = {None: ("x", "y", "z", "rx", "ry", "rz"), "axisymmetric": ("y",)}.get(plane, ("x", "y", "rz"))
     result = {}
-    for (node, direction), course in supported.items():
+    for (node, direction), course in given.items():
         if node == body.reference:
-            name = ("x", "y", "z", "rx", "ry", "rz")[int(direction) - 1]
+            result[MOTIONS[int(direction) - 1]] = course
         elif node == body.turning and direction <= 3:
-            name = ("rx", "ry", "rz")[int(direction) - 1]
-        else:
-            continue
-        if name in known:
-            result[name] = course
+            result[TURNS[int(direction) - 1]] = course
     return result
 
 

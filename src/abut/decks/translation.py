@@ -10,8 +10,10 @@ import numpy as np
 
 from abut.bodies.loads import stress_load, surface_area
 from abut.contact.sides import bodies_of, find_sides
+from abut.decks.couplings import couplings, reference_loads, reference_nodes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
+from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
@@ -33,6 +35,7 @@ from abut.mesh.read import build
 from abut.model import (
     Amplitude,
     Contact,
+    Coupling,
     Equation,
     Gravity,
     Load,
@@ -86,7 +89,7 @@ def translate(deck: Deck) -> Translation:
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)
-    plane = _plane(deck)
+    plane = plane_of(deck)
     deck = cut(deck)
     notes = [*deck.notes, *finite_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
@@ -104,11 +107,10 @@ def translate(deck: Deck) -> Translation:
         with reasons.gathered():
             if name not in moving:
                 solids.append(_solid(name, piece))
-    rigid: list[Rigid] = []
-    with reasons.gathered():
-        rigid = rigid_bodies(deck, moving, plane)
+    rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += _idle(deck, groups)
-    prescribed = _prescribed(deck, groups, parts, plane, notes, reasons)
+    references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
+    prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     reasons.tell()
     if deck.quiet:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
@@ -132,11 +134,25 @@ def translate(deck: Deck) -> Translation:
         contacts=contacts,
         equations=prescribed.equations,
         rigid=rigid,
+        couplings=bound,
         plane=plane,
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else _options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored)
+
+
+def _referenced(
+    deck: Deck, groups: Groups, moving: list[str], plane: str | None, reasons: Reasons
+) -> tuple[list[Rigid], list[Coupling]]:
+    """Rigid bodies, ``moving`` their names, and couplings."""
+    rigid: list[Rigid] = []
+    bound: list[Coupling] = []
+    with reasons.gathered():
+        rigid = rigid_bodies(deck, moving, plane)
+    with reasons.gathered():
+        bound = couplings(deck, groups, plane)
+    return rigid, bound
 
 
 @dataclass(frozen=True)
@@ -149,18 +165,21 @@ class _Prescribed:
 
 
 def _prescribed(
-    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, notes: list[str], reasons: Reasons
-) -> _Prescribed:
+    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, references: dict[str, tuple[int, int]],
+    notes: list[str], reasons: Reasons,
+) -> _Prescribed:  # fmt: skip
     """Supports, equations and loads; ``notes`` and ``reasons`` get what there is to say."""
-    thickness = 1.0
+    thick = 1.0
     with reasons.gathered():
-        thickness = _thickness(deck, plane, notes)
+        thick = thickness(deck, plane, notes)
     result = _Prescribed([], [], [])
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(_supports(bound, groups))
         result.equations.extend(_equations(bound, groups))
-        result.loads.extend(_forces(bound, groups, plane, thickness))
+        result.loads.extend(_forces(bound, groups, plane, thick))
+    with reasons.gathered():
+        result.loads.extend(reference_loads(deck, references, plane, thick))
     for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
         with reasons.gathered():
             result.loads.extend(others)
@@ -171,7 +190,7 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
     made = set(groups.used.tolist())
     made |= {n for e in deck.equations for n, _, _ in e.terms}
-    made |= {n for r in deck.rigid for n in (r.reference, r.turning)}
+    made |= deck.references
     given = set(deck.nodes.tolist())
     notes: dict[str, None] = {}
     for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):
@@ -180,18 +199,6 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
             what = "belongs to no element and no equation" if node in given else "does not exist"
             notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
     return list(notes)
-
-
-def _plane(deck: Deck) -> str | None:
-    planes = {block.type.plane: block for block in deck.blocks}
-    if len(planes) > 1:
-        codes = " and ".join(sorted(block.code for block in planes.values()))
-        raise DeckError(
-            list(planes.values())[1].place,
-            f"*ELEMENT: elements {codes} in one deck: abut solves 3D, plane strain, "
-            "plane stress or axisymmetry, not two of them together; use one of the types",
-        )
-    return next(iter(planes))
 
 
 def _solid(name: str, piece: Piece) -> Solid:
@@ -206,20 +213,6 @@ def _solid(name: str, piece: Piece) -> Solid:
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
     return Solid(name, law, integration=piece.integration)
-
-
-def _thickness(deck: Deck, plane: str | None, notes: list[str]) -> float:
-    """By which forces are divided: a plane model of abut is one unit thick."""
-    if plane not in ("strain", "stress"):
-        return 1.0
-    values = {section.thickness: section for section in deck.sections}
-    if len(values) > 1:
-        place = next(reversed(values.values())).place
-        raise DeckError(place, "*SOLID SECTION: sections of different thickness are not supported; give all the same")
-    value = next(iter(values))
-    if value != 1.0:
-        notes.append(f"forces in the results are those of unit thickness: times {value:g} gives the deck's")
-    return value
 
 
 def _history(course: Course) -> tuple[float, Amplitude | None]:

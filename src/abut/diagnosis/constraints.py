@@ -62,4 +62,9 @@ def _holding(model: Model, nodes: NDArray[np.int64]) -> str:
         for support in model.supports
         if np.isin(nodes, model.mesh.nodes_of(support.on)).mean() > MOST
     ]
+    names += [
+        f"coupling '{coupling.name}'"
+        for coupling in model.couplings
+        if not coupling.distributing and np.isin(nodes, model.mesh.nodes_of(coupling.on)).mean() > MOST
+    ]
     return " and ".join(dict.fromkeys(names)) or "supports"

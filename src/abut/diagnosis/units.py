@@ -76,6 +76,8 @@ def _loads(model: Model) -> list[Finding]:
     for i, load in enumerate(model.loads):
         if not isinstance(load, (Pressure, Traction, Force)) or callable(load.value):
             continue
+        if load.on not in model.mesh.surfaces:  # a force at a reference
+            continue
         size = float(np.linalg.norm(load.value))
         if isinstance(load, Force):
             size /= float(full_moments(model.mesh.surface(load.on), 0)[:, 0].sum())

@@ -26,6 +26,7 @@ from abut.model import (
     Integration,
     Load,
     Model,
+    Moment,
     NodalForce,
     Pressure,
     SolveOptions,
@@ -38,6 +39,7 @@ KINDS: dict[type, str] = {
     Pressure: "pressure",
     Traction: "traction",
     Force: "force",
+    Moment: "moment",
     NodalForce: "nodal-force",
     Temperature: "temperature",
     Gravity: "gravity",
@@ -76,7 +78,7 @@ def job_table(model: Model, mesh: str) -> Json:
         del table["model"]
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
-    for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "probes"):
+    for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "probes"):
         records = [_load(record) if name == "loads" else _plain(record) for record in getattr(model, name)]
         if records:
             table[name] = records

@@ -28,6 +28,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contacts": "pairs of surfaces that may touch, or are tied",
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
+        "couplings": "points that move with a reference point, which carries forces and moments",
         "rotations": "surfaces, node sets and bodies that turn about an axis; finite kinematics only",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
@@ -86,8 +87,14 @@ MEANINGS: dict[str, dict[str, str]] = {
         "value": "vector, a number or an expression for each axis [force/length^2]",
     },
     "ForceTable": {
-        "kind": "total force, spread evenly over a surface",
+        "kind": "total force, spread evenly over a surface, or at the reference of a rigid body or coupling",
+        "on": "name of the surface, rigid body or coupling",
         "value": "vector; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
+    },
+    "MomentTable": {
+        "kind": "moment on a rigid body or coupling, about axes that keep their direction",
+        "on": "name of the rigid body or coupling",
+        "value": "three components, in 2D one: [500]; plane models: per unit thickness [force*length]",
     },
     "GravityTable": {
         "kind": "acceleration that acts on the density",
@@ -128,6 +135,24 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rx": "rotation about x, small; with kinematics finite a component of the rotation vector; left out: free [radian]",
         "ry": "the same about y; left out: free [radian]",
         "rz": "the same about z (in 2D the only one); left out: free [radian]",
+        "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
+    },
+    "CouplingTable": {
+        "name": "a name of your choice, for loads on it and its results",
+        "on": "name of the surface or node set whose points are coupled",
+        "kind": "kinematic: the points follow the reference as a rigid body; distributing: the reference has their mean "
+        "motion, and its force and moment are spread over them, which stiffens nothing",
+        "reference": "point that translations, forces and moments refer to; left out: the mean of the points [length]",
+        "follow": "kinematic: displacements in which the points follow; left out: all. In some only, kinematics finite "
+        "needs rotations that are prescribed as 0",
+        "weights": "distributing on a node set: weight of each point, in the order of their numbers; left out: all the "
+        "same. On a surface the area counts",
+        "x": "translation of the reference point along x; left out: free [length]",
+        "y": "translation of the reference point along y; left out: free [length]",
+        "z": "translation of the reference point along z; left out: free [length]",
+        "rx": "rotation about x; left out: free [radian]",
+        "ry": "rotation about y; left out: free [radian]",
+        "rz": "rotation about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
     "ContactTable": {

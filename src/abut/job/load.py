@@ -21,11 +21,13 @@ from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
+    Coupling,
     Equation,
     Force,
     Gravity,
     Load,
     Model,
+    Moment,
     NodalForce,
     Pressure,
     Probe,
@@ -50,8 +52,8 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 }
 
 LOADS: Mapping[str, Callable[..., Load]] = {
-    "pressure": Pressure, "traction": Traction, "force": Force, "nodal-force": NodalForce, "temperature": Temperature,
-    "gravity": Gravity,
+    "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
+    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity,
 }  # fmt: skip
 
 
@@ -147,6 +149,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
         rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
         rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
+        couplings=[Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved

@@ -14,6 +14,8 @@ from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
 from abut.materials.hyperelastic import VOLUMETRIC
 from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.coupling import KINDS as COUPLINGS
+from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.types import Json
@@ -164,6 +166,25 @@ class RigidTable(Table):
     amplitudes: dict[str, Points] = {}
 
 
+class CouplingTable(Table):
+    """points that move with a reference point; what is left out of x to rz is free"""
+
+    name: str
+    on: str
+    kind: Annotated[str, OneOf(COUPLINGS)] = Coupling.kind
+    reference: list[Number] | None = None
+    follow: list[Literal["x", "y", "z"]] | None = None
+    weights: list[Number] | None = None
+    x: Number | None = None
+    y: Number | None = None
+    z: Number | None = None
+    rx: Number | None = None
+    ry: Number | None = None
+    rz: Number | None = None
+    amplitude: Points | None = None
+    amplitudes: dict[str, Points] = {}
+
+
 class RotationTable(Table):
     """rotation about an axis, exactly on arcs"""
 
@@ -207,6 +228,10 @@ class ForceTable(VectorTable):
     kind: Literal["force"]
 
 
+class MomentTable(VectorTable):
+    kind: Literal["moment"]
+
+
 class NodalForceTable(VectorTable):
     """force at each node of the set"""
 
@@ -228,7 +253,7 @@ class GravityTable(Table):
 
 
 LoadTable = Annotated[
-    PressureTable | TractionTable | ForceTable | NodalForceTable | TemperatureTable | GravityTable,
+    PressureTable | TractionTable | ForceTable | MomentTable | NodalForceTable | TemperatureTable | GravityTable,
     Field(discriminator="kind"),
 ]
 
@@ -298,6 +323,7 @@ class JobFile(Table):
     equations: list[EquationTable] = []
     rigid: list[RigidTable] = []
     rotations: list[RotationTable] = []
+    couplings: list[CouplingTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()

@@ -8,6 +8,7 @@ from abut.model.conditions import (
     Gravity,
     History,
     Load,
+    Moment,
     NodalForce,
     Pressure,
     Rigid,
@@ -17,6 +18,7 @@ from abut.model.conditions import (
     Traction,
 )
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.coupling import Coupling
 from abut.model.model import PLANES, Model
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation
@@ -24,7 +26,7 @@ from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Equation", "Force", "Gravity",
-    "History", "Integration", "Load", "Model", "NodalForce", "Pressure", "Probe", "Rigid", "Rotation", "Solid",
-    "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Coupling", "Equation", "Force",
+    "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe", "Rigid", "Rotation",
+    "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

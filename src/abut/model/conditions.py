@@ -165,6 +165,21 @@ class Equation:
         _amplitude(self.amplitude, "equation")
 
 
+def check_motion(body: Any, where: str) -> None:
+    """Raise InputError, beginning with ``where``, for a motion of a rigid body or coupling that is none."""
+    for name, amplitude in body.amplitudes.items():
+        if name not in (*COMPONENTS, *TURNS) or getattr(body, name) is None:
+            known = ", ".join(key for key in (*COMPONENTS, *TURNS) if getattr(body, key) is not None)
+            raise InputError(f"{where}: amplitudes: {name!r} is none of the components that are given: {known}")
+        _amplitude(amplitude, f"{where}: amplitudes.{name}")
+    for name in (*COMPONENTS, *TURNS):
+        if getattr(body, name) is not None:
+            checks.finite(getattr(body, name), f"{where}: {name}")
+    if body.reference is not None:
+        object.__setattr__(body, "reference", _vector(body.reference, f"{where}: reference"))
+    _amplitude(body.amplitude, where)
+
+
 @dataclass(frozen=True)
 class Rigid:
     """A body that moves as a whole, by small rotations, or any with ``kinematics="finite"``: translation x, y, z of the
@@ -188,18 +203,12 @@ class Rigid:
     amplitudes: Mapping[str, Amplitude] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        where = f"rigid '{self.body}'"
-        for name, amplitude in self.amplitudes.items():
-            if name not in (*COMPONENTS, *TURNS) or getattr(self, name) is None:
-                known = ", ".join(key for key in (*COMPONENTS, *TURNS) if getattr(self, key) is not None)
-                raise InputError(f"{where}: amplitudes: {name!r} is none of the components that are given: {known}")
-            _amplitude(amplitude, f"{where}: amplitudes.{name}")
-        for name in (*COMPONENTS, *TURNS):
-            if getattr(self, name) is not None:
-                checks.finite(getattr(self, name), f"{where}: {name}")
-        if self.reference is not None:
-            object.__setattr__(self, "reference", _vector(self.reference, f"{where}: reference"))
-        _amplitude(self.amplitude, where)
+        check_motion(self, f"rigid '{self.body}'")
+
+    @property
+    def name(self) -> str:
+        """That of the body."""
+        return self.body
 
     def history(self, name: str) -> History:
         """Of the component ``name``."""
@@ -267,7 +276,7 @@ class Traction:
 
 @dataclass(frozen=True)
 class Force:
-    """Total force (2D: per unit thickness), spread evenly over a surface.
+    """Total force (2D: per unit thickness), spread evenly over a surface, or at the reference of a rigid body or coupling.
 
     >>> import abut
     >>> abut.Force("lug.end", [1000, 0, 0]).value
@@ -281,6 +290,30 @@ class Force:
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
         _amplitude(self.amplitude, f"force on '{self.on}'")
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Moment on a rigid body or coupling, force times length: three components about axes fixed in space, in the plane one
+    (per unit thickness). It keeps its direction however far the body turns, theory (D15).
+
+    >>> import abut
+    >>> abut.Moment("flange", 500).value
+    (500.0,)
+    """
+
+    on: str
+    value: tuple[float, ...]
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        where = f"moment on '{self.on}': value"
+        given: Any = self.value
+        numbers = tuple(checks.finite(value, where) for value in (given if np.ndim(given) else [given]))
+        if len(numbers) not in (1, 3):
+            raise InputError(f"{where}: expected 3 numbers, in the plane 1, got {len(numbers)}")
+        object.__setattr__(self, "value", numbers)
+        _amplitude(self.amplitude, f"moment on '{self.on}'")
 
 
 @dataclass(frozen=True)
@@ -340,4 +373,4 @@ class BodyForce:
         _amplitude(self.amplitude, "body force")
 
 
-Load = Pressure | Traction | Force | NodalForce | Temperature | Gravity | BodyForce
+Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | BodyForce

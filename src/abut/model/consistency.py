@@ -17,6 +17,7 @@ from abut.model.conditions import (
     Force,
     Gravity,
     Load,
+    Moment,
     NodalForce,
     Pressure,
     Rigid,
@@ -37,16 +38,23 @@ def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
             raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
 
 
-def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str]) -> None:
+def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], couplings: Collection[str]) -> None:
     """Raise InputError for places that do not exist, vectors of another dimension, and what rigid bodies cannot carry.
 
-    rigid: their names."""
+    rigid, couplings: their names."""
     for i, load in enumerate(loads):
         if isinstance(load, (Gravity, BodyForce)):
             if load.on is not None:
                 checks.known(load.on, mesh.bodies, f"loads[{i}].on", "body")
             if isinstance(load, Gravity) and load.on in rigid:
                 raise InputError(f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force")
+        elif isinstance(load, Moment):
+            checks.known(load.on, [*rigid, *couplings], f"loads[{i}].on", "rigid body or coupling")
+            _check_moment(mesh, load, f"loads[{i}]")
+            continue
+        elif isinstance(load, Force):
+            known = [*mesh.surfaces, *rigid, *couplings]
+            checks.known(load.on, known, f"loads[{i}].on", "surface, rigid body or coupling")
         else:
             _check_place(mesh, load, f"loads[{i}].on")
             if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
@@ -57,7 +65,15 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str]) -> No
             raise InputError(f"loads[{i}].value: expected {mesh.dim} components, got {len(load.value)}")
 
 
-def _check_place(mesh: Mesh, load: Pressure | Traction | Force | NodalForce | Temperature, where: str) -> None:
+def _check_moment(mesh: Mesh, load: Moment, where: str) -> None:
+    if mesh.axisymmetric:
+        raise InputError(f"{where}: nothing turns in an axisymmetric model; take the moment out")
+    wanted = 3 if mesh.dim == 3 else 1
+    if len(load.value) != wanted:
+        raise InputError(f"{where}.value: expected {wanted} component{'s' * (wanted > 1)}, got {len(load.value)}")
+
+
+def _check_place(mesh: Mesh, load: Pressure | Traction | NodalForce | Temperature, where: str) -> None:
     if isinstance(load, NodalForce):
         checks.known(load.on, [*mesh.surfaces, *mesh.node_sets], where, "surface or node set")
     elif isinstance(load, Temperature):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
+from collections.abc import Mapping, Sequence
 
 from abut import checks
 from abut.errors import InputError
 from abut.materials.hyperelastic import NeoHooke, law
 from abut.mesh.mesh import Mesh
-from abut.model.conditions import Equation, Rigid, Support
+from abut.model.conditions import Equation, Support
 from abut.model.contact import METHODS, Contact
 from abut.model.solid import Solid
 
@@ -45,10 +43,10 @@ def check_finite(
     mesh: Mesh,
     contacts: Sequence[Contact],
     equations: Sequence[Equation],
-    rigid: Sequence[Rigid],
+    moving: Mapping[int, str],
     supports: Sequence[Support],
 ) -> None:
-    """Raise InputError for what finite deformation does not go with."""
+    """Raise InputError for what finite deformation does not go with; moving: as from ``coupling.moving_points``."""
     for contact in contacts:
         _check_contact(contact)
     for i, support in enumerate(supports):
@@ -57,16 +55,17 @@ def check_finite(
                 f"supports[{i}].normal: a motion along normals has no meaning once they turn; give x, y, z, or normal = 0 "
                 "for a symmetry plane"
             )
-    bodies = {int(n) for body in rigid for _, cells, _ in mesh.cells_of(body.body) for n in np.unique(cells)}
     for i, support in enumerate(supports):
-        if bodies & set(mesh.nodes_of(support.on).tolist()):
+        held = next((moving[n] for n in mesh.nodes_of(support.on).tolist() if n in moving), None) if moving else None
+        if held is not None:
             raise InputError(
-                f"supports[{i}].on: '{support.on}' lies on a rigid body; prescribe the motion of that body"
+                f"supports[{i}].on: '{support.on}' has points of {held}, which move as a whole; take them out of it, and "
+                f"prescribe the motion of {held}"
             )
     for i, equation in enumerate(equations):
         for term in equation.terms:
             nodes = mesh.node_sets[term.on].tolist() if isinstance(term.on, str) else [term.on]
-            if bodies & set(nodes):
+            if nodes[0] in moving:
                 raise InputError(
-                    f"equations[{i}]: {term.on!r} lies on a rigid body, which may turn; take the equation out"
+                    f"equations[{i}]: {term.on!r} is a point of {moving[nodes[0]]}, which may turn; take the equation out"
                 )

@@ -18,6 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
 from abut.model.contact import Contact
+from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
@@ -67,20 +68,33 @@ class Model:
     probes: Sequence[Probe] = ()
     kinematics: str = "small"
     rotations: Sequence[Rotation] = ()
+    couplings: Sequence[Coupling] = ()
 
     def __post_init__(self) -> None:
-        for name in ("solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations"):
+        for name in (
+            "solids",
+            "supports",
+            "loads",
+            "contacts",
+            "equations",
+            "rigid",
+            "probes",
+            "rotations",
+            "couplings",
+        ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         self._check_plane()
         check_rigid(self.mesh, self.rigid)
+        check_couplings(self.mesh, self.couplings, self.rigid, self.finite)
         self._check_solids()
         check_supports(self.mesh, self.supports)
-        check_loads(self.mesh, self.loads, {body.body for body in self.rigid})
+        check_loads(self.mesh, self.loads, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         self._check_contacts()
         check_kinematics(self.kinematics, self.solids)
-        check_rotations(self.mesh, self.rotations, self.supports, self.rigid, self.kinematics)
+        moving = moving_points(self.mesh, self.rigid, self.couplings)
+        check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
         if self.finite:
-            check_finite(self.mesh, self.contacts, self.equations, self.rigid, self.supports)
+            check_finite(self.mesh, self.contacts, self.equations, moving, self.supports)
         check_equations(self.mesh, self.equations)
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
@@ -106,12 +120,18 @@ class Model:
         return int(self.mesh.points.shape[1])
 
     @property
+    def referenced(self) -> tuple[Rigid | Coupling, ...]:
+        """What has a reference point: rigid bodies, then couplings."""
+        return (*self.rigid, *self.couplings)
+
+    @property
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
+        amplitudes = [item.amplitude for item in given] + [coupling.amplitude for coupling in self.couplings]
         friction = (contact.friction_amplitude for contact in self.contacts)
-        of_rigid = (history for body in self.rigid for history in body.amplitudes.values())
-        return tuple(dict.fromkeys([None, *(item.amplitude for item in given), *friction, *of_rigid]))
+        of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
+        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid]))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -131,7 +151,7 @@ class Model:
     def _moved(self) -> float:
         """The largest displacement that is prescribed as a number."""
         supports = [(getattr(s, name), s.amplitude) for s in self.supports for name in (*COMPONENTS, "normal")]
-        rigid = [(getattr(body, name), body.history(name)) for body in self.rigid for name in COMPONENTS]
+        rigid = [(getattr(body, name), body.history(name)) for body in self.referenced for name in COMPONENTS]
         values = [(v, 1.0 if history is None else history.largest) for v, history in (*supports, *rigid)]
         return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
-from abut.model.conditions import Amplitude, History, Rigid, Support
+from abut.model.conditions import Amplitude, History, Support
 
 
 @dataclass(frozen=True)
@@ -57,15 +57,14 @@ class Rotation:
 
 
 def check_rotations(
-    mesh: Mesh, rotations: Sequence[Rotation], supports: Sequence[Support], rigid: Sequence[Rigid], kinematics: str
+    mesh: Mesh, rotations: Sequence[Rotation], supports: Sequence[Support], moving: Mapping[int, str], kinematics: str
 ) -> None:
-    """Raise InputError for places that do not exist, axes of another dimension, and points that something else moves."""
+    """Raise InputError for places that do not exist, axes of another dimension, and points that something else moves;
+    moving: as from ``coupling.moving_points``."""
     taken: dict[int, str] = {}
     for support in supports if rotations else ():
         taken |= dict.fromkeys(mesh.nodes_of(support.on).tolist(), f"a support on '{support.on}'")
-    for body in rigid if rotations else ():
-        of_body = [cells.ravel() for _, cells, _ in mesh.cells_of(body.body)]
-        taken |= dict.fromkeys(np.concatenate(of_body).tolist(), f"rigid body '{body.body}'")
+    taken |= moving
     for i, rotation in enumerate(rotations):
         where = f"rotations[{i}]"
         checks.known(

@@ -183,7 +183,7 @@ def _history(solution: Solution) -> str:
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "xyz" if dim == 3 else "z"
     head = ["step", "factor", "converged", "contact", *(f"force_{a}" for a in axes), *OF_CONTACT]
-    if solution.model.rigid:
+    if solution.model.referenced:
         head += ["rigid", *(f"displacement_{a}" for a in axes)]
         head += [f"{name}_{a}" for name in ("rotation", "moment") for a in turns]
     head += [name for name in probes.history_columns(solution.steps) if name not in head]

@@ -78,7 +78,11 @@ def assemble(
         bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
-        terms=(bodies, DeadLoads(loaded, model.histories), *([FollowerLoads(model)] if followers(model) else [])),
+        terms=(
+            bodies,
+            DeadLoads(loaded, model.histories),
+            *([FollowerLoads(model, constraints.bodies)] if followers(model) else []),
+        ),
         constraints=constraints,
         pairs=every,
         operator=stacked(every, n_free),

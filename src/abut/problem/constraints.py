@@ -16,6 +16,7 @@ from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
+from abut.problem.body_rows import body_rows
 from abut.problem.elimination import eliminate
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
 from abut.problem.turns import Turn, Turns, about
@@ -68,6 +69,11 @@ class Constraints:
         """Of all points, (dim n_points,), by the free displacements and the factors of the histories."""
         linear = np.asarray(self.free @ free + self.prescribed @ factors)
         return linear if self.turns is None else linear + self.turns.displacement(free, factors)
+
+    def turn_of(self, nodes: NDArray[np.int64]) -> Turn | None:
+        """The finite turn of points (n,), those of a rigid body or coupling; None without."""
+        turns = () if self.turns is None else self.turns.turns
+        return next((turn for turn in turns if np.array_equal(turn.nodes, nodes)), None)
 
     def near(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> Constraints:
         """The same as a linear change of variables near a state: its columns are the derivatives there."""
@@ -147,12 +153,14 @@ def supports(model: Model) -> Constraints:
     """Collect all supports, equations and rigid bodies. Raises SingularModelError where they contradict each other,
     InputError for functions that do not return a finite number for each node."""
     conditions, bodies = _conditions(model), rigid_bodies(model)
-    on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in bodies)]))
-    free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), bodies)
+    whole = [body for body in bodies if body.whole]
+    on_bodies = np.isin(conditions[0], np.concatenate([np.empty(0, np.int64), *(body.nodes for body in whole)]))
+    free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), whole)
     orthonormal, coupled, links, turning = True, False, None, list[Turn]()
-    if bodies or model.equations:
+    holding = [body for body in bodies if body.holds]
+    if holding or model.equations:
         free, prescribed, links, turning = _together(
-            model, free, prescribed, tuple(part[on_bodies] for part in conditions), bodies
+            model, free, prescribed, tuple(part[on_bodies] for part in conditions), holding
         )
         gram = free.T @ free
         orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
@@ -179,18 +187,14 @@ def _together(
     are those of rigid bodies."""
     n_dofs, n_own = free.shape
     free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
-    histories = model.histories
     rows, values, names = [], [], []
     first = n_own
     for body in bodies:
-        given, value = body.prescribed(histories)
-        given_rows = sp.csr_matrix(given)
-        shift = sp.csr_matrix((np.ones(given.shape[1]), (np.arange(given.shape[1]), first + np.arange(given.shape[1]))),
-                              shape=(given.shape[1], free.shape[1]))  # fmt: skip
-        rows.append(given_rows @ shift)
-        values.append(value)
-        names += [f"rigid body '{body.rigid.body}'"] * len(value)
-        first += given.shape[1]
+        columns = np.arange(first, first := first + body.unknowns)
+        held = body_rows(body, model.histories, free, prescribed, columns)
+        rows.append(held.matrix)
+        values.append(held.values)
+        names += [body.words] * len(held.values)
     node, direction, value, origin = conditions
     dim = model.dim
     entries = (np.repeat(np.arange(len(node)), dim), (dim * node[:, None] + np.arange(dim)).ravel())
@@ -207,10 +211,10 @@ def _together(
     links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])
     turning, first = list[Turn](), n_own
     for body in bodies:
-        count = len(body.components)
+        count = body.unknowns
         given_rows = slice(first + model.dim, first + count)
         first += count
-        if count > 1:
+        if count > 1 and body.whole:
             by_free, given = done.free[given_rows] * (1.0 / body.size), done.prescribed[given_rows] / body.size
             turning.append(about(body.nodes, body.points, body.centre, by_free, given, small=True))
     return (free @ done.free).tocsr(), prescribed + free @ done.prescribed, links, turning

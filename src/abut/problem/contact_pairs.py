@@ -200,7 +200,7 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
             each if keep is None else _in_space(model, each, reduce(each.space, each.coupling, keep), constraints)
             for each, keep in zip(result, kept)
         ]
-    tied_together = bool(model.equations or model.rigid)
+    tied_together = bool(model.equations or model.rigid or model.couplings)
     return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 

@@ -11,8 +11,9 @@ from abut.bodies.assemble import thermal_load
 from abut.bodies.loads import body_load, force_load, pressure_load, traction_load
 from abut.bodies.solids import TemperatureChange
 from abut.fields import evaluate
-from abut.model import BodyForce, Force, Gravity, Load, Model, NodalForce, Pressure, Temperature, Traction
+from abut.model import BodyForce, Force, Gravity, Load, Model, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.conditions import weights
+from abut.problem.rigid_bodies import RigidBody, rigid_bodies
 
 
 @dataclass(frozen=True)
@@ -41,13 +42,23 @@ def loads(model: Model) -> Loads:
     return Loads(applied + strained, resultant, temperature, applied_load(model, True) if followers(model) else None)
 
 
-def followers(model: Model) -> list[Pressure]:
-    """The loads of a model that follow the deformation."""
-    return [load for load in model.loads if isinstance(load, Pressure) and _follows(model, load)]
+def followers(model: Model) -> list[Load]:
+    """The loads of a model that follow the deformation: pressures, and those at references."""
+    return [load for load in model.loads if _follows(model, load)]
 
 
 def _follows(model: Model, load: Load) -> bool:
-    return model.finite and isinstance(load, Pressure) and load.follows
+    return model.finite and (at_reference(model, load) or (isinstance(load, Pressure) and load.follows))
+
+
+def at_reference(model: Model, load: Load) -> bool:
+    """Whether a load acts at the reference of a rigid body or coupling."""
+    return isinstance(load, Moment) or (isinstance(load, Force) and load.on not in model.mesh.surfaces)
+
+
+def reference_body(model: Model, name: str) -> RigidBody:
+    """The rigid body or coupling of a name."""
+    return next(body for body in rigid_bodies(model) if body.name == name)
 
 
 def applied_load(model: Model, following: bool = False) -> NDArray[np.float64]:
@@ -84,8 +95,26 @@ def strain_load(model: Model, temperature: NDArray[np.float64]) -> NDArray[np.fl
     )
 
 
-def _forces(model: Model, load: Pressure | Traction | Force | NodalForce | Gravity | BodyForce) -> NDArray[np.float64]:
+def _at_points(model: Model, load: Load) -> NDArray[np.float64]:
+    """Of a load at a reference, on undeformed bodies."""
+    body, forces = reference_body(model, load.on or ""), np.zeros(model.mesh.points.shape)
+    forces[body.nodes] = body.spread(*force_and_moment(model, load))
+    return forces.ravel()
+
+
+def force_and_moment(model: Model, load: Load) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Force (dim,) and moment (1,) or (3,) of a load at a reference."""
+    turns = 3 if model.dim == 3 else 1
+    if isinstance(load, Moment):
+        return np.zeros(model.dim), np.array(load.value)
+    assert isinstance(load, Force)
+    return np.array(load.value), np.zeros(turns)
+
+
+def _forces(model: Model, load: Load) -> NDArray[np.float64]:
     mesh = model.mesh
+    if at_reference(model, load):
+        return _at_points(model, load)
     if isinstance(load, Pressure):
         return pressure_load(mesh.surface(load.on), load.value, f"pressure on '{load.on}': value")
     if isinstance(load, Traction):
@@ -99,4 +128,5 @@ def _forces(model: Model, load: Pressure | Traction | Force | NodalForce | Gravi
     if isinstance(load, Gravity):
         weights = {s.body: s.material.density * np.array(load.value) for s in model.solids}
         return body_load(mesh, weights if load.on is None else {load.on: weights[load.on]})
+    assert isinstance(load, BodyForce)
     return body_load(mesh, dict.fromkeys(mesh.bodies if load.on is None else [load.on], load.value))

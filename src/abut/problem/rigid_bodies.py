@@ -1,33 +1,72 @@
-"""Rigid bodies: all points follow a few unknowns, translation and small rotations about the centre; theory (F12)."""
+"""Rigid bodies and couplings: points that follow a few unknowns, translation and small rotations about the centre, or whose
+mean motion these are; theory (F12), (F13)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.errors import InputError
 from abut.mesh.mesh import Mesh
-from abut.model import Model
+from abut.model import Coupling, Model
 from abut.model.conditions import History, Rigid
+from abut.problem.mean_turn import mean_turn
 from abut.problem.rigid_modes import motions
 from abut.types import Sparse
+
+LOOSE = 1e-12  # square of what a unit unknown moves points by, over the largest, that counts as nothing
+SLIGHT = 1e-6  # of loads: what rounding may lose
 
 
 @dataclass(frozen=True)
 class RigidBody:
-    """nodes: (n,) of the body; reference, centre: (dim,); size: largest distance of a node from the centre. The unknowns q
+    """nodes: (n,) of the body or coupling; reference, centre: (dim,); size: largest distance of a node from the centre;
+    weights: (n,) of the nodes in their mean, sum 1; follow: (dim,) components in which they follow. The unknowns q
     are translations of the centre and turns times ``size``, so that none moves a point by more than its value."""
 
-    rigid: Rigid
+    rigid: Rigid | Coupling
     nodes: NDArray[np.int64]
     points: NDArray[np.float64]
     reference: NDArray[np.float64]
     centre: NDArray[np.float64]
     size: float
     axisymmetric: bool
+    weights: NDArray[np.float64]
+    follow: NDArray[np.bool_]
+
+    @property
+    def name(self) -> str:
+        """Of the body or coupling."""
+        return self.rigid.name
+
+    @property
+    def words(self) -> str:
+        """What it is and its name."""
+        return f"{'coupling' if isinstance(self.rigid, Coupling) else 'rigid body'} '{self.name}'"
+
+    @property
+    def mean(self) -> bool:
+        """Whether the points move freely, and the unknowns are their mean motion."""
+        return isinstance(self.rigid, Coupling) and self.rigid.distributing
+
+    @property
+    def whole(self) -> bool:
+        """Whether the points follow in all displacements."""
+        return not self.mean and bool(self.follow.all())
+
+    @property
+    def holds(self) -> bool:
+        """Whether forces hold the points together."""
+        return not self.mean or any(getattr(self.rigid, name) is not None for name in self.components)
+
+    @property
+    def unknowns(self) -> int:
+        """How many unknowns there are: none where the mean motion follows from the points."""
+        return 0 if self.mean else len(self.components)
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -41,7 +80,10 @@ class RigidBody:
         return motions((points - self.centre) / self.size, self.axisymmetric)
 
     def columns(self, n_dofs: int) -> Sparse:
-        """Displacement of all points of the mesh by the unknowns, (dim n_points, n_unknowns) sparse."""
+        """Displacement of all points of the mesh by the unknowns, (dim n_points, n_unknowns) sparse; none where points
+        follow by equations."""
+        if not self.whole:
+            return sp.csr_matrix((n_dofs, self.unknowns))
         values = self.moved(self.points)
         dim, count = values.shape[1:]
         rows = np.repeat(dim * self.nodes[:, None] + np.arange(dim), count)
@@ -69,29 +111,78 @@ class RigidBody:
         given[np.arange(len(values)), columns] = values
         return np.concatenate(rows), given
 
-    def motion(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim)."""
-        matrix = self.moved(self.points).reshape(-1, len(self.components))
-        q = np.linalg.lstsq(matrix, displacement[self.nodes].ravel(), rcond=None)[0]
+    def loose(self, given: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Combinations (k, n_unknowns) of the unknowns that move no point and that rows ``given`` (m, n_unknowns) leave
+        free: turns about the line that all points lie on, say."""
+        moved = self.moved(self.points)[:, self.follow].reshape(-1, len(self.components))
+        gram = moved.T @ moved / max(len(self.points), 1) + given.T @ given
+        sizes, basis = np.linalg.eigh(gram)
+        return np.asarray(basis[:, sizes <= LOOSE * sizes[-1]].T)
+
+    def spreading(self, among: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns, or of the
+        combinations ``among`` (n_unknowns, k) of them only: theory (F14); transposed, the mean motion by the displacements
+        of the points."""
+        moved = self.moved(self.points) * self.follow[:, None]
+        weighted = (self.weights[:, None, None] * moved).reshape(-1, len(self.components))
+        basis = np.eye(len(self.components)) if among is None else among
+        inertia = basis.T @ (weighted.T @ moved.reshape(weighted.shape)) @ basis
+        return np.asarray(weighted @ basis @ np.linalg.pinv(inertia, rcond=LOOSE, hermitian=True) @ basis.T)
+
+    def spread(self, force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Forces at the points, (n, dim), that are equivalent to a force (dim,) at the reference and a moment (1,) or (3,);
+        where the points do not follow all motions, equivalent in those that are not prescribed.
+
+        Raises InputError where they do work on a motion that moves no point."""
+        work = self.moved(self.reference[None])[0].T @ force
+        work[len(force) :] += moment[: len(work) - len(force)] / self.size
+        moved = (self.moved(self.points) * self.follow[:, None]).reshape(-1, len(work))
+        for among in (None, self._open()):
+            at_points = self.spreading(among) @ work
+            lost = moved.T @ at_points - work if among is None else among.T @ (moved.T @ at_points - work)
+            if np.abs(lost).max(initial=0.0) <= SLIGHT * np.abs(work).max(initial=0.0):
+                return at_points.reshape(self.points.shape)
+        raise InputError(
+            f"loads on {self.words}: they act on a motion of the reference that moves none of its points; prescribe that "
+            "motion, move the reference, or couple more points"
+        )
+
+    def _open(self) -> NDArray[np.float64]:
+        """Combinations (n_unknowns, k) of the unknowns that are not prescribed."""
+        given = self.prescribed([self.rigid.history(name) for name in self.components])[0]
+        _, sizes, basis = np.linalg.svd(given)
+        return np.asarray(basis[int((sizes > SLIGHT).sum()) :].T)
+
+    def motion(
+        self, displacement: NDArray[np.float64], given: NDArray[np.float64] | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Translation of the reference (dim,) and turns (1,) or (3,) from the displacement of all points (n_points, dim),
+        and from the prescribed components, given (m,) as ``prescribed`` has them, where the points do not say all."""
+        moved = displacement[self.nodes].ravel()
+        if self.whole:
+            q = np.linalg.lstsq(self.moved(self.points).reshape(len(moved), -1), moved, rcond=None)[0]
+        elif self.mean or given is None:
+            q = self.spreading().T @ moved
+        else:
+            rows = self.prescribed([self.rigid.history(name) for name in self.components])[0]
+            known, among = np.linalg.pinv(rows) @ given, self._open()
+            q = known + self.spreading(among).T @ (moved - self.moved(self.points).reshape(len(moved), -1) @ known)
         turns = q[self.points.shape[1] :] / self.size if len(q) > 1 else np.zeros(1)
         return np.asarray(self.moved(self.reference[None])[0] @ q), np.asarray(turns)
 
     def turned(self, displacement: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """As ``motion`` by a finite turn, whose rotation vector is at most half a turn long."""
+        """As ``motion`` by a finite turn, of which the positions say at most half a turn."""
         if self.axisymmetric:
             return self.motion(displacement)
         from scipy.spatial.transform import Rotation  # slow to import
 
         dim = self.points.shape[1]
-        before, moved = np.zeros((2, len(self.nodes), 3))
-        before[:, :dim] = self.points - self.points.mean(axis=0)
-        moved[:, :dim] = self.points + displacement[self.nodes]
-        middle = moved.mean(axis=0)
-        turn = Rotation.align_vectors(moved - middle, before)[0]
+        middle = self.weights @ self.points
+        turn = mean_turn(self.points - middle, self.points + displacement[self.nodes], self.weights)
         arm = np.zeros(3)
-        arm[:dim] = self.reference - self.points.mean(axis=0)
-        vector = turn.as_rotvec()
-        there = (middle + turn.apply(arm))[:dim] - self.reference
+        arm[:dim] = self.reference - middle
+        vector = Rotation.from_matrix(turn).as_rotvec()
+        there = self.weights @ displacement[self.nodes] + (turn @ arm - arm)[:dim]
         return there, np.asarray(vector if dim == 3 else vector[2:])
 
     def resultant(
@@ -110,8 +201,8 @@ class RigidBody:
 
 
 def rigid_bodies(model: Model) -> list[RigidBody]:
-    """All rigid bodies of a model."""
-    return [_body(model, rigid) for rigid in model.rigid]
+    """All rigid bodies and couplings of a model."""
+    return [_body(model, rigid) for rigid in model.referenced]
 
 
 def nodes_of_body(mesh: Mesh, body: str) -> NDArray[np.int64]:
@@ -119,18 +210,29 @@ def nodes_of_body(mesh: Mesh, body: str) -> NDArray[np.int64]:
     return np.unique(np.concatenate([nodes.ravel() for _, nodes, _ in mesh.cells_of(body)])).astype(np.int64)
 
 
-def _body(model: Model, rigid: Rigid) -> RigidBody:
-    nodes = nodes_of_body(model.mesh, rigid.body)
-    points = model.mesh.points[nodes]
-    centre = points.mean(axis=0)
-    if model.finite and rigid.reference is not None:
-        centre = np.array(rigid.reference)  # so that translations do not depend on finite turns
-    return RigidBody(
+def _body(model: Model, rigid: Rigid | Coupling) -> RigidBody:
+    mesh, follow = model.mesh, np.ones(model.dim, bool)
+    if isinstance(rigid, Coupling):
+        nodes, weights = mesh.nodes_of(rigid.on).astype(np.int64), rigid.shares(mesh)
+        if rigid.follow is not None:
+            follow = np.array([axis in rigid.follow for axis in "xyz"[: model.dim]])
+    else:
+        nodes = nodes_of_body(mesh, rigid.body)
+        weights = np.full(len(nodes), 1.0 / len(nodes))
+    points = mesh.points[nodes]
+    centre = weights @ points if isinstance(rigid, Coupling) else points.mean(axis=0)
+    reference = centre if rigid.reference is None else np.array(rigid.reference)
+    body = RigidBody(
         rigid=rigid,
         nodes=nodes,
         points=points,
-        reference=centre if rigid.reference is None else np.array(rigid.reference),
+        reference=reference,
         centre=centre,
-        size=float(np.linalg.norm(points - centre, axis=1).max()),
-        axisymmetric=model.mesh.axisymmetric,
+        size=float(np.linalg.norm(points - centre, axis=1).max()) or 1.0,
+        axisymmetric=mesh.axisymmetric,
+        weights=weights,
+        follow=follow,
     )
+    if model.finite and not body.mean:  # so that translations do not depend on finite turns
+        return replace(body, centre=reference)
+    return body

@@ -18,6 +18,7 @@ _GROUPS = (
     ("Supports", "supports"),
     ("Loads", "loads"),
     ("Rigid bodies", "rigid"),
+    ("Couplings", "couplings"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),
 )

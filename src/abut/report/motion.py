@@ -40,19 +40,19 @@ def _supports(solution: Solution) -> Iterator[Curve]:
 
 def _rigid(solution: Solution) -> Iterator[Curve]:
     dim = solution.model.dim
-    for body in solution.model.rigid:
+    for body in solution.model.referenced:
         for name in (*"xyz"[:dim], *(TURNS if dim == 3 else TURNS[2:])):
             if not getattr(body, name):
                 continue
             turns = name in TURNS
             i = "xyz".index(name[-1]) if dim == 3 or not turns else 0
-            results = [step.rigid[body.body] for step in solution.steps]
+            results = [step.rigid[body.name] for step in solution.steps]
             x = np.array([0.0, *((r.rotation if turns else r.displacement)[i] for r in results)])
             y = np.array([0.0, *((r.moment if turns else r.force)[i] for r in results)])
             times = np.array([0.0, *(step.factor for step in solution.steps)])
             what = f"moment about {name[-1]} over rotation" if turns else f"force along {name} over displacement"
             label = f"prescribed rotation {name} [radians]" if turns else f"prescribed displacement {name}"
-            yield from _moved(f"{body.body}: {what}", label, times, x, y)
+            yield from _moved(f"{body.name}: {what}", label, times, x, y)
 
 
 def _moved(title: str, label: str, times: Vector, x: Vector, y: Vector) -> Iterator[Curve]:

@@ -213,7 +213,7 @@ def _rigid(solution: Solution) -> str:
         [name, *(vector(v) for v in (r.displacement, r.rotation, r.force, r.moment))]
         for name, r in solution.steps[-1].rigid.items()
     ]
-    head = ["rigid body", "displacement", "rotation", "force on it", "moment about its reference"]
+    head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
     return _table(head, rows) if rows else ""
 
 

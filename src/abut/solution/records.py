@@ -252,7 +252,7 @@ class Solution:
 
 def _driven(model: Model) -> bool:
     """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
-    given = (*model.supports, *model.loads, *model.equations, *model.rigid)
+    given = (*model.supports, *model.loads, *model.equations, *model.rigid, *model.couplings)
     hot = any(solid.temperature for solid in model.solids)
     return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
 

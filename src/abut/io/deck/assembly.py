@@ -17,8 +17,9 @@ from abut.io.deck.supported import READ
 Matrix = NDArray[np.float64]
 Change = Callable[[str], str]  # of the text of a field
 ENDS = {"PART": "ENDPART", "INSTANCE": "ENDINSTANCE", "ASSEMBLY": "ENDASSEMBLY"}
-NAMES = ("NSET", "ELSET", "NAME")  # parameters with names that belong to the part
-INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "RIGIDBODY")
+NAMES = ("NSET", "ELSET", "NAME", "SURFACE")  # parameters with names that belong to the part
+INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "RIGIDBODY",
+          "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING")  # fmt: skip
 _READ = {key(name) for name in READ}
 
 
@@ -155,7 +156,11 @@ def _line(card: Card, line: Line, instance: _Instance) -> Line:
         return _changed(line, instance.number)
     if card.key in ("NSET", "ELSET"):
         return _changed(line, instance.member, 2 if card.has("GENERATE") else None)
-    return _changed(line, instance.member, 1) if card.key == "SURFACE" else line
+    return (
+        _changed(line, instance.member, 1)
+        if card.key in ("SURFACE", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING")
+        else line
+    )
 
 
 def _changed(line: Line, change: Change, count: int | None = None) -> Line:

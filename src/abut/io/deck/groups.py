@@ -80,6 +80,7 @@ class Groups:
         self._groups: dict[str, dict[str, Numbers]] = {}
         self._sets: dict[bytes, str] = {}
         self._faces: dict[bytes, str] = {}
+        self._others: set[str] = set()
         self._free: FreeFaces | None = None
         self._rows: dict[str, Rows] = {}
         self._named_sets = {np.intersect1d(n, self.used).tobytes(): name for name, n in deck.node_sets.items()}
@@ -125,9 +126,18 @@ class Groups:
     def new_node_set(self, nodes: Numbers, name: str) -> str:
         return self._add(name, {"point": nodes[:, None]}, "nodes")
 
+    def free_name(self, name: str) -> str:
+        """A name that no group has, for something else."""
+        free, count = name, 1
+        while free in self._groups or free in self._others:
+            count += 1
+            free = f"{name}-{count}"
+        self._others.add(free)
+        return free
+
     def _add(self, name: str, parts: dict[str, Numbers], ending: str = "body") -> str:
         free, count = name, 1
-        while free in self._groups:
+        while free in self._groups or free in self._others:
             free = f"{name}-{ending}" + (f"-{count}" if count > 1 else "")
             count += 1
         self._groups[free] = parts

@@ -204,8 +204,8 @@ def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tu
                 elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
             else:
                 raise card.error("give the body's nodes (NSET) or elements (ELSET)")
-            reference = _node(card, "REF NODE", mesh)
-            turning = _node(card, "ROT NODE", mesh) if card.has("ROT NODE") else 0
+            reference = one_node(card, "REF NODE", mesh)
+            turning = one_node(card, "ROT NODE", mesh) if card.has("ROT NODE") else 0
             result.append(RigidBody(nodes, elements, reference, turning, card.place))
     return tuple(result)
 
@@ -217,7 +217,7 @@ def _named(card: Card, parameter: str, sets: Mapping[str, Numbers], what: str) -
     return sets[name.upper()]
 
 
-def _node(card: Card, parameter: str, mesh: MeshCards) -> int:
+def one_node(card: Card, parameter: str, mesh: MeshCards) -> int:
     """The node that a parameter names, by its number or a set of it alone."""
     text = card.need(parameter)
     number = as_integer(text)
@@ -296,5 +296,5 @@ def _pretension(card: Card, mesh: MeshCards) -> PreTension:
         normal = (line.number(0, "normal", 0.0), line.number(1, "normal", 0.0), line.number(2, "normal", 0.0))
         if normal == (0.0, 0.0, 0.0):
             raise line.error("the normal is zero; leave the line out for the surface's own")
-    node = _node(card, "NODE", mesh)
+    node = one_node(card, "NODE", mesh)
     return PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place)

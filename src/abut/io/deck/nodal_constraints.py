@@ -43,14 +43,26 @@ class Bonds:
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
     used = set(groups.used.tolist())
-    apart = {r.reference for r in deck.rigid} | {r.turning for r in deck.rigid}
+    apart = deck.references
+    _check_equations(deck)
     axes = 2 if plane else 3
     given = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if n not in apart}
     for point, course in given.items():
         if point[1] >= 3 and not zero(course):
-            raise _nothing(deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies do")
+            raise _nothing(
+                deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies and couplings do"
+            )
     supported = {point: course for point, course in given.items() if point[1] < 3}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
+    for point, course in pushed.items():
+        if point[1] >= 3 and not zero(course):
+            raise _nothing(
+                deck,
+                "force",
+                point,
+                f"carries no moment (direction {point[1] + 1}); only rigid bodies and couplings do",
+            )
+    pushed = {point: course for point, course in pushed.items() if point[1] < 3}
     named = {n for n, _ in (*supported, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
     local = _local_axes(deck, named)
     supports, oblique = _supports(deck, {p: c for p, c in supported.items() if p[0] in used}, local, axes)
@@ -77,6 +89,18 @@ class _Virtual:
 
     supported: Mapping[Point, Course]
     pushed: Mapping[Point, Course]
+
+
+def _check_equations(deck: Deck) -> None:
+    """Raise InputError for an equation of a reference node, which is no displacement of any point."""
+    for equation in deck.equations:
+        for node, *_ in equation.terms:
+            if node in deck.references:
+                raise DeckError(
+                    equation.place,
+                    f"node {node} is the reference of a rigid body or coupling, and equations are for nodes of elements; "
+                    "give its displacement with *BOUNDARY, or write the equation for one of its points",
+                )
 
 
 def _on_axis(deck: Deck, groups: Groups) -> list[int]:
@@ -270,7 +294,7 @@ def _nothing(deck: Deck, kind: str, point: Point, why: str) -> DeckError:
     card = "*CLOAD" if kind == "force" else "*BOUNDARY"
     return DeckError(
         _place(deck, kind, point, moving=True),
-        f"{card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *EQUATION)",
+        f"{card}: node {point[0]} {why}; take the line out, or bind the node (*RIGID BODY, *COUPLING, *EQUATION)",
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from abut.io.deck.assembly import without_parts
 from abut.io.deck.cards import Card, read_cards
 from abut.io.deck.contact_cards import general_contact, pairs
+from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.model_cards import (
@@ -71,6 +72,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         quiet=sifted.quiet,
         small_sliding=any(card.key == "CONTACTPAIR" and card.has("SMALL SLIDING") for card in cards),
         ignored=sifted.ignored,
+        couplings=couplings(cards, mesh, reasons),
     )
     reasons.tell()
     return deck

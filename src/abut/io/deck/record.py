@@ -125,6 +125,23 @@ class RigidBody:
 
 
 @dataclass(frozen=True)
+class Coupling:
+    """Nodes, or those of a surface ("": none), that move with a reference node: as a rigid body in ``directions`` 1..6, or
+    freely with its motion as their mean (distributing), by weights (n,) of the nodes or, None, by area; more: others of the
+    same reference."""
+
+    name: str
+    distributing: bool
+    reference: int
+    surface: str
+    nodes: Numbers
+    directions: frozenset[int]
+    weights: NDArray[np.float64] | None
+    place: Place
+    more: tuple[Coupling, ...] = ()
+
+
+@dataclass(frozen=True)
 class Transform:
     """Axes of their own for boundary conditions and forces at nodes: kind "R" (a on x', b near y') or "C" (a, b on the
     axis)."""
@@ -230,3 +247,10 @@ class Deck:
     quiet: tuple[str, ...]
     ignored: tuple[str, ...]
     small_sliding: bool = False
+    couplings: tuple[Coupling, ...] = ()
+
+    @property
+    def references(self) -> frozenset[int]:
+        """Reference and turning nodes of rigid bodies and couplings."""
+        bodies = [node for body in self.rigid for node in (body.reference, body.turning)]
+        return frozenset([*bodies, *(coupling.reference for coupling in self.couplings)])

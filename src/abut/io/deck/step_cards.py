@@ -160,10 +160,8 @@ def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
 
 def _force(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     direction = line.integer(1, "direction")
-    if direction > 3:
-        raise line.error(
-            f"direction {direction}: only forces (1, 2, 3) are supported, not moments; use a pair of forces"
-        )
+    if direction > 6:
+        raise line.error(f"direction {direction}: expected 1 to 3 (forces) or 4 to 6 (moments)")
     nodes = mesh.existing(line, 0)
     return [Prescribed("force", nodes, (direction,), line.number(2, "force"), amplitude, line.place)]
 

@@ -45,6 +45,11 @@ READ: dict[str, tuple[str, ...]] = {
     "EQUATION": (),
     "MPC": (),
     "RIGID BODY": ("NSET", "ELSET", "REF NODE", "ROT NODE"),
+    "COUPLING": ("CONSTRAINT NAME", "REF NODE", "SURFACE", "ORIENTATION"),
+    "KINEMATIC": (),
+    "DISTRIBUTING": ("COUPLING", "WEIGHTING METHOD"),
+    "KINEMATIC COUPLING": ("REF NODE", "ORIENTATION"),
+    "DISTRIBUTING COUPLING": ("ELSET",),
     "TRANSFORM": ("NSET", "TYPE"),
     "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER", "NLGEOM"),
     "STATIC": ("SOLVER", "DIRECT", "TIME RESET", "TOTAL TIME AT START"),
@@ -93,21 +98,18 @@ REFUSED: dict[str, str] = {
     "COHESIVE BEHAVIOR": "cohesive contact is not supported",
     "CONSTRAINT": "constraint functions belong to optimisation",
     "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",
-    "COUPLING": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
     "CREEP": f"creep is not supported{_MATERIAL}",
     "CYCLIC HARDENING": f"plasticity is not supported{_MATERIAL}",
     "DAMPING MODEL": "damping belongs to dynamics",
     "DASHPOT": "dashpots are not supported; take them out",
     "DEFORMATION PLASTICITY": f"plasticity is not supported{_MATERIAL}",
     "DFLUX": "heat flux belongs to heat transfer, which abut does not solve",
-    "DISTRIBUTING COUPLING": "distributing couplings are not read; spread the force over a surface with *CLOAD",
     "DISTRIBUTION": "distributions are not read; give numbers",
     "ELGEN": f"generated elements are not read{_WRITE}",
     "ELCOPY": f"generated elements are not read{_WRITE}",
     "FILM": "heat films belong to heat transfer, which abut does not solve",
     "GAP": "gap elements are not supported; use *CONTACT PAIR",
     "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
-    "KINEMATIC": "couplings are not read; make the part a *RIGID BODY, or write *EQUATION",
     "MASS": "point masses belong to dynamics",
     "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
     "MODAL DAMPING": "damping belongs to dynamics",
@@ -139,6 +141,7 @@ _PARAMETERS = {  # reasons for parameters that are refused
         "FIXED",
     ): "supports frozen in the last state are not supported; give the displacement, or keep the force",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
+    ("COUPLING", "INFLUENCERADIUS"): "a radius is not read; give a surface of the nodes that it holds",
     ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
     ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
     ("FRICTION", "ANISOTROPIC"): "friction that depends on the direction is not supported; give one coefficient",
@@ -155,8 +158,10 @@ NEEDED = {  # leaving these out would leave no deck
     *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
 }
 
+POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING
 MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
-LEFT_OUT = {"FRICTION", "CHANGEFRICTION"}  # cards that are read, and may be left out all the same
+COUPLINGS = {"COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING"}
+LEFT_OUT = {"FRICTION", "CHANGEFRICTION", *COUPLINGS}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
@@ -188,6 +193,7 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
     Raises InputError for names in ``ignore`` that are no card or must be read."""
     asked = {key(name.lstrip("*")) for name in ignore}
     asked |= {"CHANGEFRICTION"} if "FRICTION" in asked else set()
+    asked |= {"KINEMATIC", "DISTRIBUTING"} if "COUPLING" in asked else set()
     left = _without_steps(tuple(cards), asked)
     _check_asked(ignore, left)
     static = any(card.key == "STATIC" for card in left if isinstance(card, Card))
@@ -209,6 +215,9 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
         elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
             _parameters(card, asked, ignored, found)
             code = key(card.get("TYPE") or "")
+            if card.key == "ELEMENT" and code in POINT_ELEMENTS:  # their node is all they have
+                kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
+                continue
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
                 found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
                 continue

@@ -1,0 +1,214 @@
+"""Couplings of a deck, and what is prescribed at the reference nodes of couplings and rigid bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from abut.io.deck.faces import connectivity
+from abut.io.deck.groups import Groups
+from abut.io.deck.nodal_constraints import coordinates
+from abut.io.deck.reasons import DeckError, Place
+from abut.io.deck.record import Coupling as Bound
+from abut.io.deck.record import Deck, Numbers
+from abut.io.deck.time_histories import Course, courses, scaled, zero
+from abut.model import Amplitude, Coupling, Force, Load, Moment
+from abut.model.conditions import COMPONENTS, TURNS
+
+MOTIONS = (*COMPONENTS, *TURNS)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Prescribed components of a reference: values by name, one amplitude or one for each."""
+
+    values: dict[str, float]
+    amplitude: Amplitude | None
+    amplitudes: dict[str, Amplitude]
+
+
+def couplings(deck: Deck, groups: Groups, plane: str | None) -> list[Coupling]:
+    """The couplings of a deck with what is prescribed at their reference nodes. Raises InputError for nodes that belong to
+    nothing or to too much."""
+    given = courses(deck, "boundary") if deck.couplings else {}
+    result = []
+    for bound in merged(deck.couplings):
+        _check(deck, groups, bound)
+        known = components(plane)
+        motion = motion_of(
+            {
+                MOTIONS[int(d) - 1]: c
+                for (node, d), c in given.items()
+                if node == bound.reference and (d <= 3 or not bound.distributing or d in bound.directions)
+            },
+            known,
+        )
+        follow = None
+        axes = 2 if plane else 3
+        if not bound.distributing and not set(range(1, axes + 1)) <= bound.directions:
+            follow = tuple(COMPONENTS[d - 1] for d in sorted(bound.directions) if d <= axes)
+            if not follow:
+                raise DeckError(
+                    bound.place, "*KINEMATIC: no displacement (1, 2, 3) is coupled; solids have no rotations"
+                )
+        on, weights = _points(groups, bound)
+        at = tuple(coordinates(deck, np.array([bound.reference]))[0][:axes].tolist())
+        name = groups.free_name(bound.name)
+        kind = "distributing" if bound.distributing else "kinematic"
+        result.append(
+            Coupling(
+                name,
+                on,
+                kind,
+                at,
+                follow,
+                weights,
+                **motion.values,
+                amplitude=motion.amplitude,
+                amplitudes=motion.amplitudes,
+            )
+        )
+    return result
+
+
+def components(plane: str | None) -> tuple[str, ...]:
+    """Those that exist of the motion of a reference."""
+    return {None: MOTIONS, "axisymmetric": ("y",)}.get(plane, ("x", "y", "rz"))
+
+
+def motion_of(given: Mapping[str, Course], known: Sequence[str]) -> Motion:
+    """What is prescribed, by the names of components; of those ``known``."""
+    given = {name: course for name, course in given.items() if name in known}
+    values = {name: scaled(course)[0] for name, course in given.items()}
+    units = {name: scaled(course)[1] for name, course in given.items() if not zero(course)}
+    own = {name: Amplitude(unit) for name, unit in units.items() if unit is not None}
+    alike = len(own) == len(units) and len(set(own.values())) == 1
+    return Motion(values, next(iter(own.values())) if alike else None, {} if alike else own)
+
+
+def reference_nodes(deck: Deck) -> list[tuple[int, int]]:
+    """Reference and turning node (0: none) of each rigid body, then of each coupling."""
+    return [
+        *((body.reference, body.turning) for body in deck.rigid),
+        *((bound.reference, 0) for bound in merged(deck.couplings)),
+    ]
+
+
+def reference_loads(
+    deck: Deck, names: Mapping[str, tuple[int, int]], plane: str | None, thickness: float
+) -> Iterator[Load]:
+    """Forces and moments at reference nodes. names: of a rigid body or coupling -> its reference and turning node (0: none).
+
+    Raises InputError for moments that plane models do not have."""
+    pushed = courses(deck, "force") if names else {}
+    for name, (reference, turning) in names.items():
+        alike: dict[Course | None, dict[int, float]] = {}
+        for (node, direction), course in pushed.items():
+            along = int(direction) - 1 if node == reference else int(direction) + 2 if node == turning else -1
+            if along >= 0 and not zero(course):
+                _check_plane(deck, int(node), along, plane)
+                size, unit = scaled(course)
+                alike.setdefault(unit, {})[along] = size / thickness
+        for unit, values in alike.items():
+            amplitude = None if unit is None else Amplitude(unit)
+            force = tuple(values.get(k, 0.0) for k in range(2 if plane else 3))
+            moment = tuple(values.get(k, 0.0) for k in range(5 if plane else 3, 6))
+            if any(force):
+                yield Force(name, force, amplitude)
+            if any(moment):
+                yield Moment(name, moment, amplitude)
+
+
+def _check_plane(deck: Deck, node: int, along: int, plane: str | None) -> None:
+    if plane is not None and (along in (3, 4) or (along == 5 and plane == "axisymmetric")):
+        what = (
+            "nothing turns in axisymmetric models" if plane == "axisymmetric" else "plane models turn about z only (6)"
+        )
+        raise DeckError(
+            place_of(deck, "force", node), f"*CLOAD: moment {along + 1} on node {node}: {what}; take it out"
+        )
+
+
+def place_of(deck: Deck, kind: str, node: int) -> Place:
+    """Of the first line that gives a node a value."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    return next(value.place for value in every if value.kind == kind and node in value.numbers)
+
+
+def merged(every: Sequence[Bound]) -> list[Bound]:
+    """Kinematic couplings of one reference node in the same directions made one, of nodes. Raises InputError for others
+    that share one."""
+    result: list[Bound] = []
+    for bound in every:
+        same = next((i for i, other in enumerate(result) if other.reference == bound.reference), None)
+        if same is None:
+            result.append(bound)
+            continue
+        first = result[same]
+        if first.distributing or bound.distributing or first.directions != bound.directions:
+            raise DeckError(
+                bound.place,
+                f"*COUPLING: node {bound.reference} is the reference of another coupling ({first.place}); only kinematic "
+                "ones in the same directions can share it: give this one a node of its own",
+            )
+        result[same] = replace(first, more=(*first.more, bound))
+    return result
+
+
+def _check(deck: Deck, groups: Groups, bound: Bound) -> None:
+    reference = bound.reference
+    if reference not in deck.nodes:
+        raise DeckError(bound.place, f"*COUPLING: REF NODE {reference} does not exist; give it in *NODE")
+    for transform in deck.transforms:
+        if reference in transform.nodes:
+            raise DeckError(
+                transform.place,
+                f"*TRANSFORM: node {reference} is the reference of a coupling; give its forces and displacements along the "
+                "global axes",
+            )
+    if any(reference in (body.reference, body.turning) for body in deck.rigid):
+        raise DeckError(
+            bound.place, f"*COUPLING: node {reference} is that of a *RIGID BODY too; give the coupling one of its own"
+        )
+    if bound.distributing and reference in groups.used:
+        raise DeckError(
+            bound.place,
+            f"*DISTRIBUTING: reference node {reference} belongs to an element; give the coupling one of its own",
+        )
+    nodes = set(nodes_of(deck, groups, bound).tolist())
+    for other in deck.couplings:
+        if other.reference != reference and other.reference in nodes:
+            raise DeckError(
+                bound.place,
+                f"*COUPLING: node {other.reference} is the reference of another coupling ({other.place}); couple the nodes "
+                "of both to one reference",
+            )
+
+
+def _points(groups: Groups, bound: Bound) -> tuple[str, tuple[float, ...] | None]:
+    """Surface or node set in the mesh, and weights of its points where they are given."""
+    if bound.distributing and bound.surface and groups.deck.surfaces[bound.surface].nodes is None:
+        return groups.surface(bound.surface), None
+    nodes = np.intersect1d(nodes_of(groups.deck, groups, bound), groups.used)
+    if not len(nodes):
+        raise DeckError(bound.place, "*COUPLING: none of its nodes belongs to an element; couple nodes of the body")
+    name = groups.node_set(nodes, f"{bound.name} nodes")
+    if bound.weights is None or len(set(bound.weights.tolist())) == 1:
+        return name, None
+    return name, tuple(bound.weights[np.searchsorted(bound.nodes, nodes)].tolist())
+
+
+def nodes_of(deck: Deck, groups: Groups, bound: Bound) -> Numbers:
+    """Of a coupling and those merged with it; the reference among them where it is a node of an element."""
+    found = [bound.nodes, *(nodes_of(deck, groups, other) for other in bound.more)]
+    if bound.surface:
+        surface = deck.surfaces[bound.surface]
+        found.append(_face_nodes(deck, groups, bound.surface) if surface.nodes is None else surface.nodes)
+    own = np.intersect1d([bound.reference], groups.used) if not bound.distributing else bound.nodes[:0]
+    return np.unique(np.concatenate([*found, own]))
+
+
+def _face_nodes(deck: Deck, groups: Groups, surface: str) -> Numbers:
+    return np.concatenate([nodes.ravel() for nodes in connectivity(deck, groups.rows(surface)).values()])

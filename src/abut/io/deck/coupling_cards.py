@@ -1,0 +1,124 @@
+"""*COUPLING with *KINEMATIC or *DISTRIBUTING, *KINEMATIC COUPLING and *DISTRIBUTING COUPLING of a deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from abut.errors import nearest
+from abut.io.deck.cards import Card, key, of
+from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.model_cards import one_node
+from abut.io.deck.reasons import Reasons
+from abut.io.deck.record import Coupling, Numbers
+
+NONE = np.empty(0, np.int64)
+KINDS = ("KINEMATIC", "DISTRIBUTING")
+ALL = frozenset(range(1, 7))
+
+
+def couplings(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Coupling, ...]:
+    """All couplings; ``reasons`` gets what is wrong with them."""
+    result: list[Coupling] = []
+    for i, card in enumerate(cards):
+        with reasons.gathered():
+            if card.key == "COUPLING":
+                result.append(_coupling(card, cards[i + 1] if i + 1 < len(cards) else None, mesh))
+            elif card.key == "KINEMATICCOUPLING":
+                result += _by_lines(card, mesh)
+            elif card.key == "DISTRIBUTINGCOUPLING":
+                result.append(_weighted(card, cards, mesh))
+            elif card.key in KINDS and (i == 0 or cards[i - 1].key != "COUPLING"):
+                raise card.error("it must follow its *COUPLING card; move it there")
+    return tuple(result)
+
+
+def _coupling(card: Card, following: Card | None, mesh: MeshCards) -> Coupling:
+    reference, name = one_node(card, "REF NODE", mesh), card.need("SURFACE")
+    if name.upper() not in mesh.surfaces:
+        raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
+    surface = mesh.surfaces[name.upper()]
+    if surface.empty:
+        raise card.unknown(f"surface '{name}' is empty")
+    if following is None or following.key not in KINDS:
+        raise card.error("the kind is missing; write *KINEMATIC or *DISTRIBUTING in the next line")
+    directions = _directions(following)
+    distributing = following.key == "DISTRIBUTING"
+    if key(following.get("WEIGHTING METHOD", "UNIFORM") or "") != "UNIFORM":
+        raise following.error(
+            "WEIGHTINGMETHOD: weights over the distance are not read; take UNIFORM, or write *DISTRIBUTING COUPLING"
+        )
+    if key(following.get("COUPLING", "CONTINUUM") or "") != "CONTINUUM":
+        raise following.error("COUPLING=STRUCTURAL: solids have displacements only; take CONTINUUM")
+    if distributing and not {1, 2, 3} <= directions:
+        raise following.error("displacements 1 to 3 are always coupled; list 1, 6 or nothing")
+    if card.has("ORIENTATION") and (distributing or not {1, 2, 3} <= directions):
+        raise card.error("ORIENTATION: axes of its own are not read; couple all directions, or along the global axes")
+    label = card.get("CONSTRAINT NAME") or f"coupling of {surface.name}"
+    return Coupling(label, distributing, reference, surface.name, NONE, directions, None, card.place)
+
+
+def _directions(card: Card) -> frozenset[int]:
+    """First and last direction, line by line; without any, all."""
+    result: set[int] = set()
+    for line in card.lines:
+        if line.text(0):
+            first = line.integer(0, "first direction")
+            last = line.integer(1, "last direction", first)
+            if not first <= last <= 6:
+                raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
+            result |= set(range(first, last + 1))
+    return frozenset(result) or ALL
+
+
+def _by_lines(card: Card, mesh: MeshCards) -> Iterator[Coupling]:
+    """*KINEMATIC COUPLING: nodes and directions, line by line."""
+    reference = one_node(card, "REF NODE", mesh)
+    alike: dict[frozenset[int], list[Numbers]] = {}
+    card.first("nodes and directions")
+    for line in card.lines:
+        directions = ALL
+        if line.text(1):
+            first = line.integer(1, "first direction")
+            last = line.integer(2, "last direction", first)
+            if not first <= last <= 6:
+                raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
+            directions = frozenset(range(first, last + 1))
+        alike.setdefault(directions, []).append(mesh.existing(line, 0))
+    if card.has("ORIENTATION") and any(not {1, 2, 3} <= directions for directions in alike):
+        raise card.error("ORIENTATION: axes of its own are not read; couple all directions, or along the global axes")
+    for directions, nodes in alike.items():
+        yield Coupling(
+            f"coupling to {reference}",
+            False,
+            reference,
+            "",
+            np.unique(np.concatenate(nodes)),
+            directions,
+            None,
+            card.place,
+        )
+
+
+def _weighted(card: Card, cards: Sequence[Card], mesh: MeshCards) -> Coupling:
+    """*DISTRIBUTING COUPLING: nodes with weights; its reference node is that of an element DCOUP3D or DCOUP2D."""
+    name = card.need("ELSET")
+    elements = [e for e in of(cards, "DCOUP") if (e.get("ELSET") or "").upper() == name.upper() and e.lines]
+    if len(elements) != 1 or len(elements[0].lines) != 1:
+        raise card.error(f"ELSET={name}: expected one element DCOUP3D or DCOUP2D, with the reference node")
+    line = elements[0].lines[0]
+    reference = line.integer(1, "reference node")
+    if reference not in mesh.numbers:
+        raise line.unknown(f"node {reference} does not exist; give it in *NODE")
+    weights: dict[int, float] = {}
+    card.first("nodes and weights")
+    for line in card.lines:
+        weight = line.number(1, "weight", 1.0)
+        if not weight > 0.0:
+            raise line.error(f"weight: expected a number > 0, got {weight:g}")
+        weights |= dict.fromkeys(mesh.existing(line, 0).tolist(), weight)
+    nodes = np.array(sorted(weights), np.int64)
+    return Coupling(
+        f"coupling to {reference}", True, reference, "", nodes, ALL, np.array([weights[n] for n in nodes]), card.place
+    )
