@@ -52,13 +52,13 @@ def files(case: Case, level: int, folder: Path) -> None:
     }  # fmt: skip
     processes["contact_process_list"][0]["Parameters"] |= case.contact
     processes["constraints_process_list"] = [
-        row for i, support in enumerate(model.supports) for row in _prescribed(f"support_{i}", support)
+        row for i, support in enumerate(model.supports) for row in prescribed(f"support_{i}", support)
     ]
     for name, content in (("materials", materials), ("parameters", parameters)):
         (folder / f"{name}.json").write_text(json.dumps(content, indent=1), encoding="ascii")
 
 
-def _prescribed(part: str, support: abut.Support) -> Iterator[dict[str, Any]]:
+def prescribed(part: str, support: abut.Support) -> Iterator[dict[str, Any]]:
     """One process for each straight part of the support's history."""
     history = support.amplitude.points if support.amplitude is not None else ((0.0, 1.0), (1.0, 1.0))
     for (start, first), (end, last) in pairwise(history):

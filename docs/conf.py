@@ -17,6 +17,9 @@ version = release = abut.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "equations", "reference"]
 exclude_patterns = ["make", "site"]
 source_suffix = {".md": "markdown"}
+suppress_warnings = [
+    "ref.python"
+]  # names in signatures stand as in the code: Coupling is of a model, and of two surfaces
 nitpicky = False  # annotations name NumPy's types, which have no pages here
 
 myst_enable_extensions = ["dollarmath", "deflist", "fieldlist"]

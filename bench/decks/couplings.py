@@ -96,7 +96,8 @@ def conjugate(model: abut.Model, solution: abut.Solution) -> abut.Model:
 
 def compare(code: str, coupling: str, loads: str, large: bool, change: Callable = as_it_is) -> float:
     """Largest difference over the largest displacement."""
-    text = bar(code) + coupling + f"*STEP{', NLGEOM' * large}\n*STATIC\n0.25, 1.\n{loads}*NODE FILE, FREQUENCY=1000\nU\n*END STEP\n"
+    step = f"*STEP{', NLGEOM' * large}\n*STATIC\n0.25, 1.\n{loads}*NODE FILE, FREQUENCY=1000\nU\n*END STEP\n"
+    text = bar(code) + coupling + step
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "deck.inp"
         deck.write_text(text)

@@ -21,6 +21,7 @@ from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pair
 from abut.solution import Check, Solution, Step
 from abut.solution.contacts import worst
+from abut.solution.energy import Energy
 from abut.solution.state import State
 from models.convergence import quadratic_falls
 from models.corners import pin_in_cradle
@@ -85,6 +86,18 @@ def test_a_pin_that_rocks_within_the_tolerance_passes() -> None:
         step, _ = stepped(model, there, solution, -1, acted)
         assert step.energy is not None
         assert (step.energy.error <= step.energy.limit) is passes
+
+
+def test_a_step_before_the_first_touch_is_judged_beside_the_run() -> None:
+    """A race that only moves towards its rollers does no work but what equilibrium leaves open, which may be half of all
+    that is done there. What goes beyond that fails, however little it is."""
+    solution = abut.solve(light_pin())
+    size = solution.steps[0].energy.size if solution.steps[0].energy else 0.0
+    idle = Energy(1e-10 * size, 0.0, 0.0, 0.0, 0.0, 0.0, size=2e-10 * size, left=1e-9 * size, elastic=0.0)
+    for left, passes in ((idle.left, True), (1e-11 * size, False)):
+        first = replace(solution.steps[0], energy=replace(idle, left=left))
+        assert ("energy balance" not in failed(replace(solution, steps=(first, *solution.steps)))) is passes
+    assert "energy balance" in failed(replace(solution, steps=(replace(solution.steps[0], energy=idle),)))
 
 
 def light_pin() -> abut.Model:

@@ -15,7 +15,7 @@ from abut.benchmarks.finite_contact import ironing
 @pytest.mark.parametrize(
     "name",
     [
-        "shallow-ironing", "crushed-ring", "crushed-ring-friction", "gears", "die-drawn-hex8",
+        "shallow-ironing", "crushed-ring", "crushed-ring-friction", "crushed-ring-isochoric", "gears", "die-drawn-hex8",
         *(pytest.param(name, marks=pytest.mark.long) for name in ("die-drawn-hex20", "wires")),
         pytest.param("die-drawn-tet10", marks=pytest.mark.exhaustive),
     ],

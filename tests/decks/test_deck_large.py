@@ -192,3 +192,12 @@ def test_a_step_that_cannot_begin_says_why(tmp_path: Path, monkeypatch: pytest.M
         abut.errors.ConvergenceError, match="step 1 cannot be begun, however short: the direct solver failed"
     ):
         abut.solve(load(tmp_path, LARGE).model)
+
+
+@pytest.mark.parametrize(("deck", "says"), [(LARGE, "a drag of its own"), (DECK, "no effect without NLGEOM")])
+def test_stabilize(tmp_path: Path, deck: str, says: str) -> None:
+    """Is left out, with a note: solutions are those of the deck without it."""
+    told = deck.replace("*STATIC", "*STATIC, STABILIZE=2.E-4, ALLSDTOL=0.05")
+    job = load(tmp_path, told)
+    assert job.model.solve == load(tmp_path, deck).model.solve
+    assert any(says in note for note in job.notes)

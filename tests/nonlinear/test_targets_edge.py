@@ -115,3 +115,16 @@ def test_pressures_are_handed_over() -> None:
     assert (led.multipliers == 0.0).any()
     assert (back.multipliers != 0.0).all()
     assert force(back) == pytest.approx(force(led), abs=1e-12 * np.abs(force(led)).max())
+
+
+@pytest.mark.parametrize("cell", ["quad4", "quad8"])
+def test_what_is_apart_at_the_outset_is_open(cell: str) -> None:
+    """A gap of 0.005 of a facet is no contact, however little of a function's support the target covers; 0.0005 is one."""
+    model = pressed(cell, 0.1, "finite", "auto", 1e-7)
+    size, touching = finite(model).pairs[0].size, []
+    for gap in (0.005, 0.0005):
+        from_the_start = replace(
+            model.contacts[0], offset=gap * size, amplitude=abut.Amplitude(((0.0, 1.0), (1.0, 1.0)))
+        )
+        touching.append(finite(replace(model, contacts=[from_the_start])).start().closed.any())
+    assert touching == [False, True]

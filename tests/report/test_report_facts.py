@@ -39,3 +39,23 @@ def test_the_largest_pressure_of_all_steps() -> None:
     assert f"<b>{last:.6g}</b><span>largest pressure at the end</span>" in text
     on = abut.solve(replace(_pressed((1.0, 1.0)), solve=abut.SolveOptions(steps=2)))
     assert "of all steps</span>" not in page(on, Origin("on"))
+
+
+def test_ties_are_no_contact() -> None:
+    """What is glued on has an area of its own, which is no contact area."""
+    model = _pressed((1.0, 1.0))
+    base, lower, upper = (
+        make.rectangle(x, y, cells=[n, 2])
+        for x, y, n in (([0, 2], [-1, 0], 4), ([0, 2], [0, 1], 4), ([0, 1], [1, 2], 3))
+    )
+    tied = replace(
+        model,
+        mesh=make.join({"base": base, "lower": lower, "upper": upper}),
+        solids=[*model.solids, abut.Solid("base", STEEL)],
+        supports=[abut.Support("base.bottom", x=0, y=0), *model.supports[1:]],
+        contacts=[*model.contacts, abut.Contact("lower.bottom", "base.top", kind="tied")],
+    )
+    solution = abut.solve(tied)
+    touching, tie = solution.contacts
+    assert tie.area > 1.5 * touching.area
+    assert f"<b>{touching.area:.6g}</b><span>contact area</span>" in page(solution, Origin("tied"))

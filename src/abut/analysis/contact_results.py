@@ -159,7 +159,9 @@ def contact_result(
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
         friction=None
         if at is None
-        else friction_result(pair, at, state.multipliers, state.status, state.slips, state.limit, before),
+        else friction_result(
+            pair, at, state.multipliers, state.status, state.slips, state.limit, before, around.reference
+        ),
     )
 
 

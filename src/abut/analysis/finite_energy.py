@@ -21,7 +21,7 @@ class FiniteActing:
     """A converged state with the forces in it, each (dim n_points,). displacement; internal: of stresses; loads; reaction:
     of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy;
     free: (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest
-    force left on these."""
+    force left on these; drag: (n_free,) that of a step which it leads, None without."""
 
     displacement: Vector
     internal: Vector
@@ -33,6 +33,7 @@ class FiniteActing:
     free: Vector
     follows: Sparse
     residual: float = 0.0
+    drag: Vector | None = None
 
     @classmethod
     def none(cls, follows: Sparse) -> FiniteActing:
@@ -53,6 +54,7 @@ def finite_energy(
 
     supports = sum(0.5 * float(side.reaction @ (moved - side.follows @ step)) for side in (before, now))
     stored, friction = now.stored - before.stored, sum(c.friction.work for c in contacts if c.friction is not None)
+    dragged = sum(0.5 * float(side.drag @ step) for side in (before, now) if side.drag is not None)
     internal, way = work("internal"), np.abs(step)
     rounding = np.finfo(float).eps * (np.abs(stiffness) * np.abs(now.free)) @ way
     size = 0.5 * float(np.abs(before.internal + now.internal) @ np.abs(moved))
@@ -67,4 +69,5 @@ def finite_energy(
         left=float(rounding + max(before.residual, now.residual) * way.sum()),
         earlier=earlier,
         elastic=now.stored,
+        stabilisation=dragged,
     )

@@ -20,7 +20,7 @@ STUCK = 1e-6  # slip that sticking points may have left, as a pressure over the 
 NEW = 0.02  # share of the friction that a step has left out
 FAINT = 1e-3  # traction over the largest pressure from which down its work is not looked at by itself
 WORK = 1e-6  # friction that gives work back, over the largest of one multiplier
-PRESSED = 1e-6  # bound over the largest below which no share of it is told
+PRESSED = 1e-6  # bound over the largest, or pressure over that of the run, below which no share of the bound is told
 Vector = NDArray[np.float64]
 
 
@@ -37,9 +37,10 @@ def friction_result(
     slips: Vector,
     limit: FrictionBound | None,
     earlier: FrictionResult | None = None,
+    reference: float = 0.0,
 ) -> FrictionResult | None:
     """multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit: at the end of the step; earlier:
-    of the step before, None in the first; None without friction."""
+    of the step before, None in the first; reference: the largest pressure of the steps before; None without friction."""
     if limit is None:
         return None
     weight, states = pair.space.weight, status[pair.normal]
@@ -66,7 +67,7 @@ def friction_result(
         force=_on_contactor(pair, tangential_forces(pair, multipliers), _on_target(pair, multipliers)).sum(axis=0),
         force_by_area=float(weight @ size),
         force_limit=float(weight @ bound),
-        largest_share=_largest_share(size, bound),
+        largest_share=_largest_share(size, np.where(multipliers[pair.normal] > PRESSED * reference, bound, 0.0)),
     )
 
 

@@ -31,6 +31,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
@@ -183,6 +184,7 @@ def _finite_energy(
         end.displacement, end.internal, end.loads, end.reaction, pressed,
         end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
+        drag_of(state) if is_dragged(state) else None,
     )  # fmt: skip
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)

@@ -21,12 +21,14 @@ from abut.model.conditions import weights
 from abut.nonlinear.large_steps import march_finite
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import pace_of
+from abut.nonlinear.stabilised import STRIDES
 from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.finite import FiniteProblem
 from abut.problem.restraint import require_balance
+from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import landed_in
 from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
@@ -140,7 +142,8 @@ class Run:
         if isinstance(problem, FiniteProblem):
             pace = pace_of(solve.steps, solve.times, self.model.histories)
             for saved in done:
-                pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share)
+                strides = STRIDES if is_dragged(saved.state) else ()
+                pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)
             states = [problem.start(), *(saved.state for saved in done)]
             attempts = march_finite(problem, states, pace, self.solver, control)
         else:
@@ -198,7 +201,13 @@ class Run:
         """Keep the step that the parts so far make, and tell of it."""
         attempts = [attempt for attempt, _ in self.parts]
         self.steps.append(self._taken())
-        if len(attempts) > 1:
+        taken = self.steps[-1].energy
+        if is_dragged(attempts[-1].state) and taken is not None:
+            self.told.note(
+                f"step {attempts[-1].number} was led to time {attempts[-1].time:.6g} by a drag on all motion, in "
+                f"{len(attempts)} parts: it took {taken.stabilisation:.3g} of energy, and is gone at the end"
+            )
+        elif len(attempts) > 1:
             times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
             self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
         self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))

@@ -71,7 +71,7 @@ def _verify(arguments: argparse.Namespace) -> int:
             raise InputError(f"verify: no benchmark named {name!r}{cure}")
     chosen = [BENCHMARKS[name] for name in arguments.names or BENCHMARKS]
     if arguments.list:
-        longest = max(len(benchmark.name) for benchmark in chosen)
+        longest = max(len(name) for name in BENCHMARKS)
         for benchmark in chosen:
             print(f"{benchmark.name:{longest}s}  {benchmark.title}")
         return DONE

@@ -12,6 +12,10 @@ from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
 SAME = 1e-9  # times that differ by less are the same
+DRAG = (
+    "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
+)
+NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
 KINDS = ("boundary", "force", "pressure", "gravity")
 
 
@@ -22,9 +26,11 @@ def is_finite(deck: Deck) -> bool:
 
 def finite_notes(deck: Deck) -> list[str]:
     """What is solved otherwise than the deck says where displacements are large."""
-    if not is_finite(deck):
-        return []
     notes = []
+    if any(step.increments.stabilized for step in deck.steps):
+        notes.append("*STATIC, STABILIZE: " + (DRAG if is_finite(deck) else NO_DRAG))
+    if not is_finite(deck):
+        return notes
     small = [step for step in deck.steps if not step.finite]
     if small:
         numbers = ", ".join(str(step.number) for step in small)

@@ -47,6 +47,8 @@ MODEL = {
     "energy balance": 'solve again with solve.linear = "direct"; if it stays, raise solve.max_iterations',
     "load steps": "what friction does depends on the load steps by about this share: give more of them (solve.steps = 40), "
     "until the result stays",
+    "stabilisation": "bodies jumped to another equilibrium, which a note dates: forces there are right, what happens "
+    "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "

@@ -19,6 +19,7 @@ FLIGHT = 10.0  # sizes of the model by which nothing moves in a step
 ROUNDS = 3  # a nearly singular system may carry a body so far that rounding of it is more than a facet
 FAR = 1.0  # facet sizes by which the sides of a contact may come apart within a step
 NEAR = 0.1  # facet sizes by which an iteration may move bodies along motions that nothing resists
+WEAK = 1e-3  # resistance to a rigid motion over the strongest below which contact hardly holds a body
 SLIGHT = 1e-12  # resistance over the largest entry of the stiffness: beyond rounding, below what pressures resist
 
 
@@ -57,6 +58,14 @@ def resisting(problem: ContactProblem, system: Linearised, state: State) -> Line
     resistance = max(float(forces.max()) / (NEAR * _facet(problem)), least)
     more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
     return replace(system, stiffness=(system.stiffness + more).tocsr())
+
+
+def loosely_held(problem: ContactProblem, system: Linearised, state: State) -> bool:
+    """Whether supports, ties, closed gaps and what sticks hardly resist some rigid motion: a ball on one node may spin."""
+    if system.restraint.by_supports:
+        return False
+    rigid, supports = _now(problem, system)
+    return bool(free_motions([supports, *_closed(system, rigid, state)], WEAK).shape[1])
 
 
 def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State) -> State:

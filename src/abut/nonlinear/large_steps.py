@@ -10,12 +10,13 @@ import numpy as np
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted
-from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
-from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.nonlinear.stabilised import led_on, stabilised
 from abut.nonlinear.stepping import Control
 from abut.problem.finite import FiniteProblem
+from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import landed_in
 from abut.solution.state import State
 
@@ -41,34 +42,46 @@ def march_finite(
         if cuts == 0 and stands_in is None:
             control.begins(number, time)
         tried = cuts > (AGAIN if problem.restraint.by_supports else 0)
-        begins = tried or pace.turned or earlier is None or let_go(problem, earlier, before)
+        begins = tried or pace.turned or earlier is None or is_dragged(before) or let_go(problem, earlier, before)
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
-        increment = Increment(number, before.largest)
-        begin = problem.with_functions(before, before)
-        following = problem.following(begin, guess or before)
-        begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
-        if guess is not None:
-            begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
-        step = Step(problem, begin, stands_in or solver, increment, limit, control.observe, careful=cuts >= CAREFUL)
+        setting = Setting(problem, stands_in or solver, number, limit, control.observe)
         try:
-            attempt = _ended(*_settled(step, solve_finite(step, guess, time), time), time)
+            attempts = _attempts(setting, before, guess, time, careful=cuts >= CAREFUL)
+            if gave_up := not attempts[-1].converged and pace.last:
+                attempts = _led(setting, before, pace, attempts[-1])
         except NotConverged as reason:
             stands_in = control.fallback(number, reason)
             continue
-        if attempt.converged:
+        if attempts[-1].converged:
             stands_in = None
-            pace.take(len(attempt.iterations), landed_in(attempt.state).share)
-            yield attempt
-            earlier, before, number, cuts = before, attempt.state, number + 1, 0
+            pace.take(sum(len(part.iterations) for part in attempts), landed_in(attempts[-1].state).share)
+            yield from attempts
+            earlier, before, number, cuts = before, attempts[-1].state, number + 1, 0
             continue
+        if gave_up:
+            yield attempts[-1]
+            return
         cuts += 1
         pace.halve()
-        if pace.stuck:
-            where = hanging(problem, before, attempt.cycling)
-            away = lifted(problem.ahead(before, time), before)
-            yield replace(attempt, reason="; ".join(filter(None, (attempt.reason, where, away))))
-            return
-        control.halves(attempt, pace.end or time)
+        control.halves(attempts[-1], pace.end or time)
+
+
+def _attempts(setting: Setting, before: State, guess: State | None, time: float, careful: bool) -> Sequence[Attempt]:
+    """One at the step to ``time``; after a step that ended under a drag its parts under a drag as well."""
+    if not drag_of(before).any():
+        return [setting.attempted(before, guess, time, careful=careful)]
+    return stabilised(setting, before, time).attempts
+
+
+def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequence[Attempt]:
+    """The parts of a step under a drag, where all others have ``failed``; that with the reasons if there are none."""
+    time = failed.time
+    led = led_on(setting, before, pace)
+    if led.converged:
+        return led.attempts
+    where = hanging(setting.problem, before, failed.cycling)
+    away = lifted(setting.problem.ahead(before, time), before)
+    return [replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, led.attempts[-1].reason))))]
 
 
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
@@ -92,32 +105,4 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
     ahead = np.where(before.closed, ahead, before.multipliers)
     return replace(
         before, time=time, multipliers=ahead, unknowns=before.unknowns + ratio * (before.unknowns - earlier.unknowns)
-    )
-
-
-def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions, gaps and points of slip that belong to the end of the step; as it was if that fails."""
-    if not found.converged:
-        return step, found
-    problem, closed = step.problem, found.state.closed
-    end = replace(found.state, time=time)
-    here = problem.displacement(end)
-    before = problem.with_late_points(problem.with_functions(step.before, end), here, closed)
-    following = problem.following(before, end, settled=True)
-    if before is step.before and not following:
-        return step, found
-    before, guess = (step.problem.led(each, following) for each in (before, found.state))
-    again = replace(step, before=before, limit=step.limit + len(step.done))
-    inside = solve_finite(again, guess, time)
-    return (again, inside) if inside.converged else (step, found)
-
-
-def _ended(step: Step, found: Found, time: float) -> Attempt:
-    none = np.zeros(len(found.state.status), dtype=bool)
-    state = replace(found.state, time=time)
-    if found.converged:
-        system = step.problem.linearise(step.before, state)
-        state = step.problem.accepted(step.before, replace(state, largest=largest_of(system, state, step.increment)))
-    return Attempt(
-        step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed
     )

@@ -57,11 +57,21 @@ class Pace:
         """Whether steps have become too short."""
         return self._length < SMALLEST * self._leg
 
+    @property
+    def last(self) -> bool:
+        """Whether steps are too short when the next one fails."""
+        end = self.end
+        return end is None or 0.5 * (end - self.time) < SMALLEST * self._leg
+
     def halve(self) -> None:
         """After a step that failed."""
         end = self.end
         assert end is not None
         self._length = 0.5 * (end - self.time)
+
+    def stride(self, share: float) -> None:
+        """Go on with a step of a share of the way to the next goal, whatever failed."""
+        self._length = min(share * self._leg, self._longest)
 
     def take(self, iterations: int, landed: float = 0.0) -> None:
         """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck."""
@@ -76,8 +86,14 @@ class Pace:
             factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
         self._length = min(factor * self._length, self._longest)
 
-    def repeat(self, time: float, iterations: int, landed: float = 0.0) -> None:
-        """Take a step of an earlier run that ended at ``time``."""
+    def repeat(self, time: float, iterations: int, landed: float = 0.0, strides: Sequence[float] = ()) -> None:
+        """Take a step of an earlier run that ended at ``time``, perhaps one of ``strides``."""
+        length = self._length
+        for share in strides:
+            self.stride(share)
+            if self.end is not None and abs(self.end - time) < SAME:
+                break
+            self._length = length
         while self.end is not None and self.end > time + SAME and not self.stuck:
             self.halve()
         self.take(iterations, landed)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import FINE, forcing
@@ -65,7 +66,8 @@ class Balance:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; asked:
+    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; drag: that
+    it is led by, None without; asked:
     which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
     ended without a solution."""
 
@@ -77,6 +79,7 @@ class Step:
     observe: Callable[[Iteration], None]
     careful: bool = False
     asked: Asked = field(default_factory=Asked)
+    drag: Drag | None = None
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
@@ -157,7 +160,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
         if step.failed:
             break
         step.asked = replace(step.asked, by_pressure=False)
-        there = _balance(step, following)
+        there = _tried(step, here, following)
         closings += there.state.closed & ~here.state.closed
         if (step.careful and not swapped) or not np.isfinite(there.size):
             there = _shortened(step, here, there)
@@ -205,8 +208,12 @@ def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy:
     return there, False
 
 
-def _iterated(step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
+def _iterated(
+    step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float, begins: bool = False
+) -> State:
     """One iteration on, in which no body is thrown out of its contact."""
+    if begins and step.drag is None:
+        system = resisting(step.problem, system, state)
     there = step.advanced(system, state, laws, accuracy)
     stuck = sticking(step.problem, system, state, there)
     if stuck is not state:
@@ -223,13 +230,16 @@ def _balanced(here: Balance, before: float) -> bool:
 def _carried(step: Step, time: float) -> State:
     """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes
     as far as it takes to hold every body."""
-    system = step.problem.ahead(step.before, time)
+    system = dragged(step.problem.ahead(step.before, time), step.drag)
     state = replace(step.before, time=time)
-    closed = system.restraint.complete(system.forces, state.closed, system.gap(state)) & ~barely_covered(system)
+    closed = state.closed
+    if step.drag is None:
+        closed = system.restraint.complete(system.forces, state.closed, system.gap(state))
+    closed = closed & ~barely_covered(system)
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
         laws = laws_of(system, state, step.asked)
-        there = _iterated(step, resisting(step.problem, system, state), state, laws, FINE)
+        there = _iterated(step, system, state, laws, FINE, begins=True)
         fewer = without_pulling(system, state, there, step.increment)
         if fewer is None:
             return there
@@ -238,7 +248,7 @@ def _carried(step: Step, time: float) -> State:
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     """The problem near a state, with the status that the laws ask for there."""
-    system = step.problem.linearise(step.before, state)
+    system = dragged(step.problem.linearise(step.before, state), step.drag)
     before = state.status
     state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))
     laws = laws_of(system, state, step.asked)
@@ -255,6 +265,17 @@ def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     )  # fmt: skip
 
 
+def _tried(step: Step, here: Balance, state: State) -> Balance:
+    """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
+    tried."""
+    try:
+        return _balance(step, state)
+    except Unsound:
+        if step.drag is None:
+            raise
+        return replace(here, state=state, size=np.inf)
+
+
 def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
     """Force and pressure, now or in a step before."""
     pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
@@ -268,7 +289,7 @@ def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
         if best.size <= (1.0 - LESS * share) * here.size:
             return best
         share *= 0.5
-        best = _balance(step, part_of(here.state, full.state, share))
+        best = _tried(step, here, part_of(here.state, full.state, share))
     return best if np.isfinite(best.size) else full
 
 

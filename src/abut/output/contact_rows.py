@@ -63,13 +63,15 @@ def energy_summary(step: Step) -> Json:
     energy = step.energy
     if energy is None:
         return {}
-    elastic = {} if energy.elastic is None else {"elastic": number(energy.elastic)}
+    elastic = (
+        {} if energy.elastic is None else {name: number(getattr(energy, name)) for name in ("stabilisation", "elastic")}
+    )
     return {"energy": {name: number(getattr(energy, name)) for name in (*ENERGIES, "error")} | elastic}
 
 
 def energy_columns(finite: bool) -> list[str]:
     """Their names in history.csv."""
-    return [f"energy_{name}" for name in (*ENERGIES, *(["elastic"] if finite else []))]
+    return [f"energy_{name}" for name in (*ENERGIES, *(["stabilisation", "elastic"] if finite else []))]
 
 
 def energy_row(step: Step) -> dict[str, float]:

@@ -84,7 +84,10 @@ class FiniteProblem(ContactProblem):
         rest = self._marked(at_rest(self.n_free, int(self.operator.shape[0])))
         rest, closed = self.with_functions(rest, rest), []
         for pair, now in zip(self.pairs, self._contacts(rest, rest, self.displacement(rest), rest)):
-            touching = (now.gap <= TOUCHING * pair.size * pair.weight)[pair.normal] & ~bare(now.pair)
+            weight = (
+                pair.weight[pair.normal] if pair.smooth else now.pair.space.weight
+            )  # of what the gap is integrated over
+            touching = (now.gap[pair.normal] <= TOUCHING * pair.size * weight) & ~bare(now.pair)
             closed.append(np.ones(len(pair), bool) if pair.tied else pair.of_functions(touching))
         return self._marked(rest.with_closed(np.concatenate([np.zeros(0, bool), *closed])))
 

@@ -100,16 +100,19 @@ def _head(solution: Solution, origin: Origin) -> str:
         good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass{but}."
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]
     if solution.contacts:
-        top = max(solution.contacts, key=lambda c: c.max_pressure)
-        most = max(solution.contacts, key=lambda c: float(np.linalg.norm(c.force)))
+        ties = {contact.name for contact in solution.model.contacts if contact.kind == "tied"}
+        touching = [c for c in solution.contacts if c.name not in ties] or solution.contacts
+        top = max(touching, key=lambda c: c.max_pressure)
+        most = max(touching, key=lambda c: float(np.linalg.norm(c.force)))
         end = " at the end" if len(solution.steps) > 1 else ""
         facts = [
             ("largest pressure" + end, number(top.max_pressure)),
             ("contact force" + end, number(float(np.linalg.norm(most.force)))),
-            ("contact area" + end, number(sum(c.area for c in solution.contacts))),
+            ("contact area" + end, number(sum(c.area for c in touching))),
             *facts,
         ]
-        before = max(c.max_pressure for step in solution.steps for c in step.contacts)
+        shown = {c.name for c in touching}
+        before = max(c.max_pressure for step in solution.steps for c in step.contacts if c.name in shown)
         if before > top.max_pressure:
             facts.insert(0, ("largest pressure of all steps", number(before)))
     facts.append(("seconds", f"{sum(solution.timings.values()):.3g}"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 ENERGY = 1e-8  # limit of the error of the balance
 ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and where far motions leave no more digits
@@ -11,7 +11,8 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 @dataclass(frozen=True)
 class Energy:
     """Where the energy of one load step comes from and where it goes, theory (R10), (G13): loads + supports + contact =
-    stored + friction + stepping. Force times length; in 2D per unit thickness, in axisymmetric models of the whole turn.
+    stored + friction + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric models of
+    the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
     the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;
@@ -21,7 +22,8 @@ class Energy:
     kinematics also what the mean stresses of the step do beyond what is stored.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
     displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
-    with finite kinematics only; earlier: with them, the largest size of the steps before.
+    with finite kinematics only; earlier: with them, the largest size of the steps before;
+    stabilisation: what a drag takes on the way of a step that it leads, theory (G24).
     """
 
     loads: float
@@ -34,11 +36,13 @@ class Energy:
     left: float
     elastic: float | None = None
     earlier: float = 0.0
+    stabilisation: float = 0.0
 
     @property
     def error(self) -> float:
         """What is missing in the balance, over the size."""
         missing = self.loads + self.supports + self.contact - self.stored - self.friction - self.stepping
+        missing -= self.stabilisation
         return abs(missing) / self.size
 
     @property
@@ -47,3 +51,8 @@ class Energy:
         more, at most a share of that. A body that contact alone holds rocks within the tolerance of forces, which is much
         beside a step in which hardly anything else moves."""
         return max(ENERGY, min(self.left / self.size, max(ROUNDED, ENERGY * self.earlier / self.size)))
+
+    def limit_beside(self, most: float) -> float:
+        """The same where other steps of the run, before or after, have a size of up to ``most``: before the first touch
+        what equilibrium leaves open is much beside the work of a step, but nothing beside the run."""
+        return self.limit if self.elastic is None else replace(self, earlier=max(self.earlier, most)).limit

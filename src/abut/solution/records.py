@@ -21,6 +21,7 @@ BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 RESPONSE = 0.5  # nothing between 0 and 1
+STABILISED = 0.05  # of the work done that drags may take
 LANDED = 0.05  # what results depend on load steps by, about
 REGULARISATION = 1e-9  # limit of the force that constrains free rigid-body modes: zero but for rounding
 
@@ -199,6 +200,7 @@ class Solution:
         lines: dict[tuple[str, str], list[Check]] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
+        most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
             balance = Check(
                 "",
@@ -213,13 +215,13 @@ class Solution:
                 model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
-                model.append(Check("", "energy balance", step.energy.error, step.energy.limit,
+                model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
                                    "work of loads and supports less what is stored and what friction takes, over the "
                                    "work of all nodal forces by size"))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
-        return tuple(checks if (steps := self._load_steps) is None else [*checks, steps])
+        return (*checks, *(check for check in (self._load_steps, self._stabilisation) if check is not None))
 
     @property
     def _load_steps(self) -> Check | None:
@@ -231,6 +233,18 @@ class Solution:
         return Check("", "load steps", unsure / max(limit, 1e-300), LANDED,
                      "friction of points that touched and stuck in one step, where they did is known roughly, over all that "
                      "friction carries at most")  # fmt: skip
+
+    @property
+    def _stabilisation(self) -> Check | None:
+        """What drags have taken, of all work that was done; None where none led a step."""
+        energies = [step.energy for step in self.steps if step.energy is not None]
+        taken = sum(abs(energy.stabilisation) for energy in energies)
+        if taken == 0.0:
+            return None
+        work = sum(abs(energy.loads + energy.supports + energy.contact) for energy in energies)
+        return Check("", "stabilisation", taken / max(work, 1e-300), STABILISED,
+                     "energy that a drag took, where bodies jumped or hardly anything held them, over the work "
+                     "done on them")  # fmt: skip
 
     @property
     def displacement(self) -> NDArray[np.float64]:

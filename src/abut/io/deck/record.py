@@ -192,11 +192,13 @@ class Prescribed:
 
 @dataclass(frozen=True)
 class Increments:
-    """Of a *STATIC step, times: the first one, the longest one; fixed: all are as the first (DIRECT)."""
+    """Of a *STATIC step, times: the first one, the longest one; fixed: all are as the first (DIRECT); stabilized:
+    STABILIZE."""
 
     first: float
     longest: float
     fixed: bool
+    stabilized: bool = False
 
 
 @dataclass(frozen=True)

@@ -116,8 +116,9 @@ def _times(group: Sequence[Card]) -> tuple[float, Increments]:
     procedure = next((card for card in group if card.key in STEP_PROCEDURES), None)
     if procedure is None:
         raise group[0].error("the step has no procedure; abut solves *STATIC steps")
+    fixed, stabilized = procedure.has("DIRECT"), procedure.has("STABILIZE")
     if not procedure.lines:
-        return 1.0, Increments(1.0, math.inf, procedure.has("DIRECT"))
+        return 1.0, Increments(1.0, math.inf, fixed, stabilized)
     line, values = procedure.lines[0], []
     for i, what in enumerate(("first increment", "period", "smallest increment", "largest increment")):
         value = line.number(i, what, 0.0)
@@ -126,7 +127,7 @@ def _times(group: Sequence[Card]) -> tuple[float, Increments]:
         values.append(value)
     first, period, _, longest = values
     period = period or 1.0
-    return period, Increments(min(first or period, period), longest or math.inf, procedure.has("DIRECT"))
+    return period, Increments(min(first or period, period), longest or math.inf, fixed, stabilized)
 
 
 def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> list[Prescribed]:

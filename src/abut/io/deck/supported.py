@@ -52,7 +52,16 @@ READ: dict[str, tuple[str, ...]] = {
     "DISTRIBUTING COUPLING": ("ELSET",),
     "TRANSFORM": ("NSET", "TYPE"),
     "STEP": ("INC", "NAME", "AMPLITUDE", "UNSYMM", "SOLVER", "NLGEOM"),
-    "STATIC": ("SOLVER", "DIRECT", "TIME RESET", "TOTAL TIME AT START"),
+    "STATIC": (
+        "SOLVER",
+        "DIRECT",
+        "TIME RESET",
+        "TOTAL TIME AT START",
+        "STABILIZE",
+        "ALLSDTOL",
+        "FACTOR",
+        "CONTINUE",
+    ),
     "END STEP": (),
 }
 
@@ -135,7 +144,6 @@ REFUSED: dict[str, str] = {
 _PARAMETERS = {  # reasons for parameters that are refused
     ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
     ("STATIC", "RIKS"): "arc-length steps are not supported",
-    ("STATIC", "STABILIZE"): "artificial damping is not supported; constrain every body by supports",
     (
         "BOUNDARY",
         "FIXED",

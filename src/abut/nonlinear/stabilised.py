@@ -1,0 +1,125 @@
+"""A load step that Newton's method cannot follow, led by a drag on all motion until all is at rest again: bodies that jump
+to another equilibrium, or that hardly anything holds; theory (G23)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from abut.nonlinear.drag import Drag, scale
+from abut.nonlinear.holding import loosely_held
+from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.one_step import Setting
+from abut.nonlinear.pace import Pace
+from abut.nonlinear.semismooth import BALANCED
+from abut.problem.finite import FiniteProblem
+from abut.problem.stabilising import drag_of, with_drag
+from abut.solution import Iteration
+from abut.solution.state import State
+
+FIRST, AGAIN = (
+    1e-3,
+    1e-5,
+)  # drag over the stiffness of each displacement to begin with, and after a step that ended under one
+GREATEST, LEAST = 1e2, 1e-9  # the same at most and at least
+MORE, LESS = 5.0, 10.0  # by which it grows where a part fails, and falls at most where one is easy
+EASY, VERY_EASY = 6, 3  # iterations up to which a part is, after one that failed and before any has
+MOST = 12  # iterations in a part
+PARTS = 60  # of a step, tried
+SLOW = 1e-3  # drag's largest force over the largest of all up to which a part may be the last but one,
+PAST = 1e-2  # and over the largest drag so far: at the outset bodies are slow, too
+GONE = 2.0  # sizes of the model by which bodies that move on are gone
+STRIDES = (1.0 / 64.0, 1.0 / 512.0)  # of the way to the next goal, that are tried
+
+
+@dataclass
+class Strength:
+    """Of a drag from part to part. share: of the stiffness; fall: by which it falls next, 1 after a part that failed and
+    twice as much after each easy one; failed: whether one has."""
+
+    share: float
+    fall: float = LESS
+    failed: bool = False
+
+    def grow(self) -> bool:
+        """After a part that failed; whether it may."""
+        self.share, self.fall, self.failed = self.share * MORE, 1.0, True
+        return self.share <= GREATEST
+
+    def ease(self, iterations: int) -> None:
+        """After one that took so many."""
+        if iterations <= (EASY if self.failed else VERY_EASY):
+            self.share = max(self.share / self.fall, LEAST)
+            self.fall = min(2.0 * self.fall, LESS)
+
+
+@dataclass(frozen=True)
+class Led:
+    """Attempts at a step: its parts, the last of them at rest; or the one that failed and that nothing follows."""
+
+    attempts: tuple[Attempt, ...]
+    began: bool = True  # whether any part has converged
+
+    @property
+    def converged(self) -> bool:
+        """Whether they are its parts."""
+        return self.attempts[-1].converged
+
+
+def led_on(setting: Setting, before: State, pace: Pace) -> Led:
+    """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
+    length."""
+    for share in STRIDES:
+        pace.stride(share)
+        assert pace.end is not None
+        led = stabilised(setting, before, pace.end)
+        if led.converged or led.began:
+            break
+    return led
+
+
+def stabilised(setting: Setting, before: State, time: float) -> Led:
+    """The step from the converged state ``before`` to ``time`` in parts, each with a drag on the way since the one before:
+    backward Euler steps of a motion without inertia."""
+    problem, setting = setting.problem, replace(setting, limit=min(MOST, setting.limit))
+    size, most = scale(problem.linearise(before, before)), 0.0
+    strength = Strength(AGAIN if drag_of(before).any() else FIRST)
+    here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
+    part, why = None, "bodies do not come to rest"
+    for _ in range(PARTS):
+        drag = Drag(strength.share * size, here.unknowns)
+        part = setting.attempted(here, here if parts else None, time, drag=drag)
+        spent += part.iterations
+        if not part.converged:
+            if strength.grow():
+                continue
+            why = part.reason
+            break
+        force = drag.force(part.state.unknowns)
+        here = with_drag(part.state, force)
+        parts.append(replace(part, state=here, iterations=spent, whole=False))
+        spent = ()
+        if is_gone(problem, before, here):
+            why = "bodies move on and on: the loads are more than what they act on can carry"
+            break
+        left = float(np.abs(force).max(initial=0.0)) / here.largest.force
+        most = max(most, left)
+        loose = loosely_held(problem, problem.linearise(here, here), here)
+        if loose and left <= BALANCED:
+            return Led((*parts[:-1], replace(parts[-1], whole=True)))
+        if not loose and left < SLOW and (left < PAST * most or strength.share <= LEAST):
+            last = setting.attempted(here, here, time)
+            spent += last.iterations
+            if last.converged:
+                return Led((*parts, replace(last, state=with_drag(last.state, 0.0 * force), iterations=spent)))
+        strength.ease(len(part.iterations))
+    assert part is not None
+    why = f"under a drag on all motion {why}"
+    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
+
+
+def is_gone(problem: FiniteProblem, before: State, here: State) -> bool:
+    """Whether something has moved beyond all that loads of a model may mean."""
+    way = problem.displacement(here) - problem.displacement(before)
+    return bool(np.abs(way).max() > GONE * np.ptp(problem.model.mesh.points, axis=0).max())
