@@ -238,16 +238,19 @@ class Current:
 
     def following(self, displacement: Array, closed: NDArray[np.bool_], offset: float) -> Following:
         """Which functions follow others where the pair is now, with multipliers (n,) closed; those that overlap there count
-        as closed, too. offset: what is added to all gaps."""
+        as closed, too, but not of a surface that may touch itself: it sees its back through thin parts. offset: what is added
+        to all gaps."""
         contactor, target = self.surfaces(displacement)
         sharp = bool(at_corners(self.pair.space).any())
         options = replace(self._options(), keep_points=sharp)
         covered = couple(contactor, target, self.pair.coupling.degree, options, across=self._across)
         beside = edge_on(self.pair.space, target, covered, self._facet)
-        gap, weight = (self.pair.space.plain.T @ each for each in (covered.gap, covered.weight))
-        added = offset if self.adjusted is None else offset + self.adjusted
-        meets = gap + added * weight < -OVERLAP * self._facet * self.pair.weight[self.pair.normal]
-        return Following.of(self.pair.space, contactor, covered, closed[self.pair.normal] | meets, beside)
+        here = closed[self.pair.normal]
+        if contactor.kin is None:
+            gap, weight = (self.pair.space.plain.T @ each for each in (covered.gap, covered.weight))
+            added = offset if self.adjusted is None else offset + self.adjusted
+            here = here | (gap + added * weight < -OVERLAP * self._facet * self.pair.weight[self.pair.normal])
+        return Following.of(self.pair.space, contactor, covered, here, beside)
 
     def _mixture(self, contactor: Surface, target: Surface, inner: Array | None) -> Mixture | None:
         """None where no function is a dual one. How far a target may be away to count as one does not depend on the step."""
