@@ -141,6 +141,11 @@ LOOSE = {  # nothing holds the block against a pressure from the side
 }  # fmt: skip
 
 
+def inside_out(notes: list[str]) -> list[str]:
+    """Notes of steps that failed so, without how far: iterations that diverge enlarge rounding."""
+    return [re.sub(r"det F = \S+ at", "", note) for note in notes if "inside out" in note]
+
+
 @pytest.mark.parametrize(("changes", "status"), [(FLAT, 3), (LOOSE, 4)])
 def test_a_run_that_fails(
     mpirun: Run, changes: dict[str, str], status: int, tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -155,8 +160,8 @@ def test_a_run_that_fails(
     said = [line for line in result.stderr.splitlines() if line.startswith("abut: ")]
     assert said == [line for line in alone.splitlines() if line.startswith("abut: ")]
     if status == 3:
-        inside_out = [note for note in notes if "inside out" in note]
-        assert inside_out == [note for note in summary(tmp_path)["notes"] if "inside out" in note]
+        assert inside_out(notes)
+        assert inside_out(notes) == inside_out(summary(tmp_path)["notes"])
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")

@@ -32,7 +32,7 @@ def dragged(system: Linearised, drag: Drag | None) -> Linearised:
         return system
     assert system.about is not None
     about = replace(system.about, unbalanced=system.about.unbalanced + drag.force(system.about.at))
-    return replace(system, stiffness=(system.stiffness + sp.diags(drag.resistance)).tocsr(), about=about)
+    return replace(system, stiffness=system.stiffness + sp.diags(drag.resistance, format="csr"), about=about)
 
 
 def scale(system: Linearised) -> Vector:

@@ -238,8 +238,8 @@ class Current:
 
     def following(self, displacement: Array, closed: NDArray[np.bool_], offset: float) -> Following:
         """Which functions follow others where the pair is now, with multipliers (n,) closed; those that overlap there count
-        as closed, too, but not of a surface that may touch itself: it sees its back through thin parts. offset: what is added
-        to all gaps."""
+        as closed, too, but not of a surface that may touch itself: it sees its back through thin parts. offset: what is
+        added to all gaps."""
         contactor, target = self.surfaces(displacement)
         sharp = bool(at_corners(self.pair.space).any())
         options = replace(self._options(), keep_points=sharp)
