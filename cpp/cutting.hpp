@@ -18,20 +18,10 @@ inline Box box_of(const Hull &hull, int dim) {
   return box;
 }
 
-// How far the outline of a target facet in the plane may lie beside its true image: it goes through the images of
-// corners and middles, along which normals that turn carry it; over the sizes of both facets. See theory (S8).
-constexpr double BESIDE = 0.125;
-
-// All that lies within reach of a contactor facet along its normals, and whose outline may meet it; widest: diagonal of
-// the largest target facet's box.
-inline Box swept_box(const Facet &c, double reach, double widest) {
+// All that lies within reach of a contactor facet along its normals.
+inline Box swept_box(const Facet &c, double reach) {
   const Hull hull(c, c.x), normals(c, c.normals);
   Box box = box_of(hull, c.dim);
-  const double size = box.diagonal(c.dim);
-  bool turns = false;
-  for (int i = 1; i < normals.size && !turns; ++i)
-    for (int a = 0; a < c.dim; ++a)
-      turns = turns || std::abs(normals.x[i][a] - normals.x[0][a]) > 1e-13;
   for (int i = 0; i < hull.size; ++i)
     for (int side = -1; side <= 1; side += 2) {
       double far[3];
@@ -39,7 +29,7 @@ inline Box swept_box(const Facet &c, double reach, double widest) {
         far[a] = hull.x[i][a] + side * reach * normals.x[i][a];
       box.add(far, c.dim);
     }
-  box.inflate(1e-9 * box.diagonal(c.dim) + (turns && c.dim == 3 ? BESIDE * (size + widest) : 0.0), c.dim);
+  box.inflate(1e-9 * box.diagonal(c.dim), c.dim);
   return box;
 }
 
@@ -212,8 +202,7 @@ inline void cut_facet(const Over &over, const Facet &t, const Asked &asked, Reac
     }
 }
 
-// What all threads share: both surfaces, the target's facets, their hulls, the tree of their boxes and the widest one's
-// diagonal.
+// What all threads share: both surfaces, the target's facets, their hulls and the tree of their boxes.
 struct Interface {
   const Planned &contactor, &target;
   const RuleTable &rules;
@@ -221,7 +210,6 @@ struct Interface {
   std::vector<Facet> targets;
   std::vector<Hull> hulls;
   Tree tree;
-  double widest;
 };
 
 inline Interface interface(const Planned &contactor, const Planned &target, const RuleTable &rules,
@@ -230,14 +218,12 @@ inline Interface interface(const Planned &contactor, const Planned &target, cons
   std::vector<Facet> targets(surface.facets);
   std::vector<Hull> hulls(surface.facets);
   std::vector<Box> boxes(surface.facets);
-  double widest = 0;
   for (std::size_t t = 0; t < surface.facets; ++t) {
     targets[t] = surface.facet(t);
     hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
-    widest = std::max(widest, boxes[t].diagonal(surface.dim));
   }
   Tree tree(std::move(boxes), surface.dim);
-  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree), widest};
+  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree)};
 }
 
 // Cuts contactor facets, one after another; one for each thread.
@@ -269,7 +255,7 @@ private:
   void find(std::size_t f, const Facet &c) {
     const double reach = both_.options.reach;
     const Horizon horizon(c, reach);
-    both_.tree.query(swept_box(c, reach, both_.widest), found_, [&](const Box &box) { return horizon.may_see(box); });
+    both_.tree.query(swept_box(c, reach), found_, [&](const Box &box) { return horizon.may_see(box); });
     std::erase_if(found_, [&](int t) {
       return !horizon.may_see(both_.hulls[t]) ||
              !may_touch(both_.contactor.surface, f, both_.target.surface, std::size_t(t));

@@ -77,7 +77,7 @@ def test_a_pin_that_rocks_within_the_tolerance_passes() -> None:
     second = solution.steps[1].energy
     assert second is not None
     rocking = replace(second, loads=second.loads + 3e-5 * second.size)
-    assert max(second.error, 1e-5) < rocking.error < rocking.limit < 0.1
+    assert max(second.error, 1e-5) < rocking.error < rocking.limit < 0.5
     assert replace(rocking, earlier=0.0).error > replace(rocking, earlier=0.0).limit
     _, acted = stepped(model, states[-2], solution, -2)
     sunk = states[-1].unknowns - states[-2].unknowns

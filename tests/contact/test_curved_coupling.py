@@ -13,7 +13,7 @@ from abut.contact.coupling import CouplingOptions, couple, surface_degree
 from abut.contact.geometry import full_moments, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance
 from abut.mesh.surface import Surface
-from models.surfaces import FACETS_3D, PAIRS, grid, pack, planar
+from models.surfaces import FACETS_3D, PAIRS, grid, planar
 
 Array = NDArray[np.float64]
 MANY = 14  # points per direction: further ones change nothing above 1e-13
@@ -101,34 +101,3 @@ def test_no_target_within_sight_is_left_out(kc: str, kt: str) -> None:
     own = couple(tops, plane, surface_degree(tops), CouplingOptions(reach=2.0))
     area = full_moments(tops, 0)[:, 0]
     assert own.covered / area == pytest.approx(1.0, abs=1e-5)  # (Q6)
-
-
-def on_cylinder(facets: list[list[tuple[float, float]]]) -> Surface:
-    """Quadratic triangles on a cylinder of radius 3 about z, by their corners: angle in degrees, and z."""
-    places = [
-        [*corners, *(np.mean([corners[i], corners[(i + 1) % 3]], axis=0) for i in range(3))] for corners in facets
-    ]
-    every, nodes = np.unique(np.array(places).reshape(-1, 2), axis=0, return_inverse=True)
-    angle, z = np.radians(every[:, 0]), every[:, 1]
-    return pack(np.column_stack([3.0 * np.sin(angle), -3.0 * np.cos(angle), z]), "tri6", nodes.reshape(-1, 6))
-
-
-@pytest.mark.parametrize("reach", [0.5, 5.0])
-def test_a_hollow_facet_is_tiled_whatever_the_reach(reach: float) -> None:
-    """Outlines pass through the images of corners and middles, (S6), so that one bends into a facet of a bore that the
-    pin's facet itself does not reach; what its neighbour takes beyond that has to be given back. With reach 0.5 1.1 % of the
-    facet were covered twice."""
-    bore = on_cylinder([[(0.8, 4.0), (-21.9, 2.0), (-44.7, 4.0)]])
-    pin = on_cylinder(
-        [
-            [(-22.6, -0.01), (-4.7, 1.99), (-44.7, 1.99)],
-            [(-44.7, 1.99), (-23.0, 4.02), (-67.3, 4.02)],
-            [(22.5, 4.02), (-23.0, 4.02), (-4.7, 1.99)],
-            [(-23.0, 4.02), (-44.7, 1.99), (-4.7, 1.99)],
-            [(-23.0, 4.02), (-45.0, 6.0), (-67.3, 4.02)],
-            [(-23.0, 4.02), (0.0, 6.0), (-45.0, 6.0)],
-            [(0.0, 6.0), (-23.0, 4.02), (22.5, 4.02)],
-        ]
-    )
-    own = couple(bore, pin, 2, CouplingOptions(reach=reach))
-    assert own.covered[0] == pytest.approx(full_moments(bore, 0)[0, 0], rel=1e-8)  # (Q6)
