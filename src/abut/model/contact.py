@@ -47,9 +47,10 @@ class Contact:
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
     that of friction by its square root);
-    ``geometry``: "curved" adds to the gap by how far the smooth surface bulges out over flat facets (theory (S14)), "faceted"
-    takes the facets as they are; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, an expression of x, y and z
+    ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
+    "faceted" does not; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only.
+    ``law``: "complementarity", "constraint-function" or a law of your own (``abut.contact.laws.Law``). ``friction``:
+    Coulomb's coefficient, an expression of x, y and z
     ("0.1 + 0.2*x") or a function of position, points (n, dim) -> (n,), both taken in the undeformed mesh, pairs of pressure
     and coefficient, linear between and constant outside, or "rough" for surfaces that never slip while they touch; times
     ``friction_amplitude``, constant where that is left out. With friction the result depends on the order of the loads, and
