@@ -85,6 +85,10 @@ def above_saddle(x: Array) -> Array:
     return np.asarray(height / np.sqrt(1.0 + slope))
 
 
+def irregular(kind: str, n: int, place: Callable[[Array, Array], list[Array]], noise: float) -> Surface:
+    return sheet(kind, n, lambda s, t: place(moved(s, n, noise, 3), moved(t, n, noise, 4)))
+
+
 SHAPES: dict[str, tuple[Callable[[Array, Array], list[Array]], Height]] = {
     "dome": (dome, lambda x: 1.5 - np.linalg.norm(x, axis=1)),
     "tube": (tube, lambda x: 1.0 - np.hypot(x[:, 0], x[:, 2])),
@@ -101,7 +105,7 @@ def test_curved_sheets(shape: str, kind: str, noise: float) -> None:
     place, inside = SHAPES[shape]
     errors = []
     for n in (5, 10):
-        surface = sheet(kind, n, lambda s, t: place(moved(s, n, noise, 3), moved(t, n, noise, 4)))
+        surface = irregular(kind, n, place, noise)
         height, middle = edges(with_bulge(surface))
         right = inside(middle)
         errors.append(np.abs(height - right).max() / np.abs(right).max())
@@ -141,8 +145,7 @@ def test_a_flat_beside_a_fillet_stays_flat() -> None:
 def test_middle_nodes_on_the_chord(kinds: tuple[str, str]) -> None:
     """Facets of second order with straight edges on a curved body bulge as those of first order; those with curved edges do
     not."""
-    linear, quadratic = kinds
-    if linear == "line2":
+    if kinds[0] == "line2":
         plain, curved = (arc(9, 1.2, kind=kind) for kind in kinds)
     else:
         plain, curved = (sheet(kind, 4, dome) for kind in kinds)
