@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import abut
 import numpy as np
+from exact import Layer, interface_pressures
+
+import abut
 from abut.mesh import make
 from abut.mesh.cell_block import CellBlock
 from abut.mesh.mesh import Mesh
-from exact import Layer, interface_pressures
 
 
 def rings(cell: str, layers: Sequence[Layer], facets: Sequence[int]) -> Mesh:
