@@ -35,11 +35,30 @@ struct Columns {
   }
 };
 
+// Where int H_k g and int H_k of all facets are added up; facets of one thread are no others'.
+struct Moments {
+  double *gap, *weight;
+};
+
 // An integration point: places on both facets and area, with rows of the changes of xi and of the area.
 struct MovingPoint {
   const double *xi, *eta;
   double weight;
   const double *rate[2], *weight_rate;
 };
+
+// Adds share times a row and, by the slopes of the share, force times the rows of reference coordinates.
+template <int D>
+inline void add_share(std::size_t size, double share, const double *row, double force, const double *slope,
+                      const double *const *rate, double *to) {
+  const double first = force * slope[0], second = D == 3 ? force * slope[1] : 0;
+  const double *xi = rate[0], *eta = rate[1];
+  if constexpr (D == 2)
+    for (std::size_t s = 0; s < size; ++s)
+      to[s] += share * row[s] + first * xi[s];
+  else
+    for (std::size_t s = 0; s < size; ++s)
+      to[s] += share * row[s] + first * xi[s] + second * eta[s];
+}
 
 } // namespace abut

@@ -8,11 +8,6 @@
 
 namespace abut {
 
-// Where int H_k g and int H_k of all facets are added up; facets of one thread are no others'.
-struct Moments {
-  double *gap, *weight;
-};
-
 // Derivatives of a contactor facet's rows with one target facet after another.
 template <int D> class MovingSums {
 public:
@@ -146,27 +141,14 @@ private:
 
   // Takes the bulges of both facets off the gap; forces act on the facets themselves: theory (T8).
   void bulge(const MovingPoint &at) {
-    double n[MAX_FACET_NODES], dn[MAX_FACET_NODES][3];
-    auto each = [&](const Facet &facet, const double *xi, auto add) {
-      if (!facet.bulge)
-        return;
-      const int kind = QUADRATIC[facet.kind];
-      shape(kind, xi, n, dn);
-      for (int i = CORNERS[kind]; i < NODES[kind]; ++i)
-        add(facet.bulge[i], i);
-    };
+    double own[2], other[2];
     Number &gap = value_[GAP];
-    each(*c_, at.xi, [&](double height, int i) {
-      gap.v -= height * n[i];
-      for (int b = 0; b < D - 1; ++b)
-        gap.d[XI + b] -= height * dn[i][b];
-    });
-    each(*facet_, at.eta, [&](double height, int i) {
-      gap.v -= height * n[i];
-      for (int b = 0; b < D - 1; ++b)
-        for (int s = 0; s < SEEDS; ++s)
-          gap.d[s] -= height * dn[i][b] * value_[ETA + b].d[s];
-    });
+    gap.v -= c_->bulge_at(at.xi, own) + facet_->bulge_at(at.eta, other);
+    for (int b = 0; b < D - 1; ++b) {
+      gap.d[XI + b] -= own[b];
+      for (int s = 0; s < SEEDS; ++s)
+        gap.d[s] -= other[b] * value_[ETA + b].d[s];
+    }
   }
 
   // Of the matrix whose columns are the target's slopes and the normal.
@@ -254,12 +236,12 @@ private:
       const double *row = row_[FORCE + a].data();
       for (int i = 0; i < c_->nodes; ++i) {
         own_load_[D * i + a] += nc_[i] * force;
-        add_share(size, nc_[i], row, force, dnc_[i], at.rate, &block_[(D * i + a) * size]);
+        add_share<D>(size, nc_[i], row, force, dnc_[i], at.rate, &block_[(D * i + a) * size]);
       }
       const double *rate[2] = {row_[ETA].data(), row_[D == 3 ? ETA + 1 : ETA].data()};
       for (int j = 0; j < facet_->nodes; ++j) {
         other_load_[D * j + a] -= nt_[j] * force;
-        add_share(size, -nt_[j], row, -force, dnt_[j], rate, &block_[(rows(0) + D * j + a) * size]);
+        add_share<D>(size, -nt_[j], row, -force, dnt_[j], rate, &block_[(rows(0) + D * j + a) * size]);
       }
     }
   }
@@ -272,18 +254,6 @@ private:
     }
     if (couples_)
       lever_.spread(1, load, own_load_);
-  }
-
-  static void add_share(std::size_t size, double share, const double *row, double force, const double *slope,
-                        const double *const *rate, double *to) {
-    const double first = force * slope[0], second = D == 3 ? force * slope[1] : 0;
-    const double *xi = rate[0], *eta = rate[1];
-    if constexpr (D == 2)
-      for (std::size_t s = 0; s < size; ++s)
-        to[s] += share * row[s] + first * xi[s];
-    else
-      for (std::size_t s = 0; s < size; ++s)
-        to[s] += share * row[s] + first * xi[s] + second * eta[s];
   }
 
   // int H_k g and int H_k.

@@ -58,6 +58,20 @@ struct Facet {
       sum += bulge[i] * n[i];
     return sum;
   }
+  // The same with its derivatives.
+  double bulge_at(const double *xi, double *slope) const {
+    slope[0] = slope[1] = 0;
+    if (!bulge)
+      return 0;
+    double n[MAX_FACET_NODES], d[MAX_FACET_NODES][3], sum = 0;
+    shape(QUADRATIC[kind], xi, n, d);
+    for (int i = CORNERS[kind]; i < NODES[QUADRATIC[kind]]; ++i) {
+      sum += bulge[i] * n[i];
+      for (int b = 0; b < dim - 1; ++b)
+        slope[b] += bulge[i] * d[i][b];
+    }
+    return sum;
+  }
 
   bool triangle() const { return kind == TRI3 || kind == TRI6; }
   // Reference coordinates of the middle.
