@@ -75,7 +75,7 @@ def assemble(
     if model.finite:
         bodies = FiniteBodies(model, loaded, backend)
     else:
-        bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
+        bodies = LinearBodies(backend, loaded, model.histories, model.temperatures) if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
         terms=(

@@ -1,0 +1,262 @@
+// Superconvergent patch recovery: polynomials fitted to the stresses at the sampling points of the cells around a
+// point, and to linear equations of the stress at its surface; theory (R2), (R3).
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace abut {
+
+// A stress xx yy zz xy (yz zx) or the coefficients of an equation for it, mirrored by a plane with a normal n (dim).
+// shear: 1 for stresses, 2 for coefficients, which are doubled there.
+template <int dim> void reflect(const double *n, double shear, double *s) {
+  constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  double full[3][3] = {{0}}, mirror[3][3], half[3][3], sum;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      if (dim == 3 || (a < 2 && b < 2) || a == b)
+        full[a][b] = s[at[a][b]] / (a == b ? 1 : shear);
+      mirror[a][b] = (a == b) - (a < dim && b < dim ? 2 * n[a] * n[b] : 0);
+    }
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      sum = 0;
+      for (int c = 0; c < 3; ++c)
+        sum += mirror[a][c] * full[c][b];
+      half[a][b] = sum;
+    }
+  for (int a = 0; a < 3; ++a)
+    for (int b = a; b < 3; ++b) {
+      if (dim == 2 && b == 2 && a != b)
+        continue;
+      sum = 0;
+      for (int c = 0; c < 3; ++c)
+        sum += half[a][c] * mirror[c][b];
+      s[at[a][b]] = sum * (a == b ? 1 : shear);
+    }
+}
+
+// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]. patches: centre (count, dim), cells and
+// equations as ranges of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over
+// the components of coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
+struct Patches {
+  const double *x, *stress;
+  const std::int64_t *first;
+  std::size_t count;
+  const double *centre;
+  const std::int64_t *cells_of, *cells, *rows_of, *rows;
+  const std::int32_t *degree, *planes;
+  const double *normals;
+  const double *row_x, *row_coefficients, *row_values;
+  double heavy, close;
+};
+
+template <int dim> class PatchFit {
+public:
+  static constexpr int C = dim == 2 ? 4 : 6, T = (dim + 1) * (dim + 2) / 2, UNKNOWNS = C * T;
+  // Share of a term that those before it must leave: less is what the samples cannot tell from them.
+  static constexpr double TOLD = 1e-3;
+
+  explicit PatchFit(const Patches &patches)
+      : in(patches), single(T * T), rhs(T * C), coupled(UNKNOWNS * UNKNOWNS), coupled_rhs(UNKNOWNS) {}
+
+  static int terms(int degree) { return degree == 2 ? T : degree == 1 ? 1 + dim : 1; }
+
+  // 1, xi, products of xi.
+  static void basis(const double *xi, double *p) {
+    int k = 0;
+    p[k++] = 1;
+    for (int a = 0; a < dim; ++a)
+      p[k++] = xi[a];
+    for (int a = 0; a < dim; ++a)
+      for (int b = a; b < dim; ++b)
+        p[k++] = xi[a] * xi[b];
+  }
+
+  // Coefficients (T, C) and the length that positions are divided by.
+  void fit(std::size_t k, double *coefficients, double &size) {
+    const double *centre = in.centre + k * dim;
+    find_images(k);
+    double far = 0, extent = 0;
+    each_sample(k, [&](const double *x, const double *) {
+      extent = 0;
+      for (int a = 0; a < dim; ++a)
+        extent += (x[a] - centre[a]) * (x[a] - centre[a]);
+      far = std::max(far, extent);
+    });
+    size = far > 0 ? std::sqrt(far) : 1;
+    n = terms(in.degree[k]);
+    std::fill(single.begin(), single.end(), 0.0);
+    std::fill(rhs.begin(), rhs.end(), 0.0);
+    std::fill(coefficients, coefficients + T * C, 0.0);
+    add_samples(k, size);
+    if (in.rows_of[k] == in.rows_of[k + 1])
+      solve(single.data(), T, n, rhs.data(), C, coefficients);
+    else {
+      couple();
+      add_rows(k, size);
+      solve(coupled.data(), UNKNOWNS, n * C, coupled_rhs.data(), 1, coefficients);
+    }
+  }
+
+private:
+  using Image = std::array<std::int32_t, 3>; // planes, one after the other
+
+  void find_images(std::size_t k) {
+    images.assign(1, {-1, -1, -1});
+    for (int a = 0; a < 3; ++a) {
+      const std::int32_t plane = in.planes[k * 3 + a];
+      if (plane < 0)
+        continue;
+      const std::size_t before = images.size();
+      for (std::size_t i = 0; i < before; ++i) {
+        Image image = images[i];
+        bool square = true; // else the images of images are others
+        int free = 0;
+        for (; free < 3 && image[free] >= 0; ++free)
+          square = square && std::abs(product(image[free], plane)) < 1e-6;
+        if (square) {
+          image[free] = plane;
+          images.push_back(image);
+        }
+      }
+    }
+  }
+
+  double product(std::int32_t a, std::int32_t b) const {
+    double sum = 0;
+    for (int c = 0; c < dim; ++c)
+      sum += in.normals[a * dim + c] * in.normals[b * dim + c];
+    return sum;
+  }
+
+  // x and what belongs to it (C), mirrored by planes through the centre.
+  void mirror(const Image &image, const double *centre, double shear, double *x, double *s) const {
+    for (int i = 0; i < 3 && image[i] >= 0; ++i) {
+      const double *normal = in.normals + image[i] * dim;
+      double away = 0;
+      for (int a = 0; a < dim; ++a)
+        away += (x[a] - centre[a]) * normal[a];
+      for (int a = 0; a < dim; ++a)
+        x[a] -= 2 * away * normal[a];
+      reflect<dim>(normal, shear, s);
+    }
+  }
+
+  template <class Call> void each_sample(std::size_t k, Call call) const {
+    double x[dim], s[C];
+    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i)
+      for (std::int64_t j = in.first[in.cells[i]]; j < in.first[in.cells[i] + 1]; ++j)
+        for (const Image &image : images) {
+          std::copy(in.x + j * dim, in.x + (j + 1) * dim, x);
+          std::copy(in.stress + j * C, in.stress + (j + 1) * C, s);
+          mirror(image, in.centre + k * dim, 1, x, s);
+          call(x, s);
+        }
+  }
+
+  void add_samples(std::size_t k, double size) {
+    const double *centre = in.centre + k * dim;
+    double xi[dim], p[T];
+    each_sample(k, [&](const double *x, const double *s) {
+      double away = 0;
+      for (int a = 0; a < dim; ++a) {
+        xi[a] = (x[a] - centre[a]) / size;
+        away += xi[a] * xi[a];
+      }
+      const double w = 1 / (1e-2 + std::pow(away, in.close));
+      basis(xi, p);
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j)
+          single[i * T + j] += w * p[i] * p[j];
+        for (int c = 0; c < C; ++c)
+          rhs[i * C + c] += w * p[i] * s[c];
+      }
+    });
+  }
+
+  // The same fits as one system, term by term.
+  void couple() {
+    std::fill(coupled.begin(), coupled.end(), 0.0);
+    std::fill(coupled_rhs.begin(), coupled_rhs.end(), 0.0);
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < C; ++c) {
+        for (int j = 0; j <= i; ++j)
+          coupled[(i * C + c) * UNKNOWNS + j * C + c] = single[i * T + j];
+        coupled_rhs[i * C + c] = rhs[i * C + c];
+      }
+  }
+
+  void add_rows(std::size_t k, double size) {
+    const double *centre = in.centre + k * dim;
+    double x[dim], s[C], p[T], row[UNKNOWNS];
+    const double weight = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
+    for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
+      for (const Image &image : images) {
+        const std::int64_t j = in.rows[r];
+        std::copy(in.row_x + j * dim, in.row_x + (j + 1) * dim, x);
+        std::copy(in.row_coefficients + j * C, in.row_coefficients + (j + 1) * C, s);
+        mirror(image, centre, 2, x, s);
+        double away = 0;
+        for (int a = 0; a < dim; ++a) {
+          x[a] = (x[a] - centre[a]) / size;
+          away += x[a] * x[a];
+        }
+        const double w = weight / (1e-2 + std::pow(away, in.close));
+        basis(x, p);
+        for (int i = 0; i < n; ++i)
+          for (int c = 0; c < C; ++c)
+            row[i * C + c] = p[i] * s[c];
+        for (int i = 0; i < n * C; ++i) {
+          for (int l = 0; l <= i; ++l)
+            coupled[i * UNKNOWNS + l] += w * row[i] * row[l];
+          coupled_rhs[i] += w * row[i] * in.row_values[j];
+        }
+      }
+  }
+
+  // Cholesky's factors of the lower half in place, without the unknowns that those before them determine; these stay 0.
+  static void solve(double *m, int stride, int size, double *b, int columns, double *result) {
+    std::array<bool, UNKNOWNS> left{};
+    for (int j = 0; j < size; ++j) {
+      double *own = m + j * stride;
+      const double before = own[j];
+      for (int l = 0; l < j; ++l) {
+        if (left[l]) {
+          own[l] = 0;
+          continue;
+        }
+        const double *other = m + l * stride;
+        double sum = own[l];
+        for (int i = 0; i < l; ++i)
+          sum -= own[i] * other[i];
+        own[l] = sum / other[l];
+        own[j] -= own[l] * own[l];
+      }
+      left[j] = !(own[j] > TOLD * before);
+      own[j] = left[j] ? 1 : std::sqrt(own[j]);
+      for (int c = 0; c < columns; ++c) {
+        double sum = b[j * columns + c];
+        for (int l = 0; l < j; ++l)
+          sum -= own[l] * result[l * columns + c];
+        result[j * columns + c] = left[j] ? 0 : sum / own[j];
+      }
+    }
+    for (int j = size - 1; j >= 0; --j)
+      for (int c = 0; c < columns; ++c) {
+        double sum = result[j * columns + c];
+        for (int l = j + 1; l < size; ++l)
+          sum -= left[l] ? 0 : m[l * stride + j] * result[l * columns + c];
+        result[j * columns + c] = left[j] ? 0 : sum / m[j * stride + j];
+      }
+  }
+
+  const Patches &in;
+  int n = 1;
+  std::vector<Image> images;
+  std::vector<double> single, rhs, coupled, coupled_rhs;
+};
+
+} // namespace abut
