@@ -70,7 +70,8 @@ class _Skin:
 def known_stress(
     model: Model, points: Vector, time: float, pairs: Sequence[Pair], contacts: Sequence[ContactResult]
 ) -> Equations:
-    """Equations for the stress at the end of a step. points: (n_points, dim) where they are now."""
+    """Equations for the stress at the end of a step. points: (n_points, dim) where they are now; contacts: results of the
+    pairs."""
     skin = _Skin.of(model, points)
     factors = dict(zip(model.histories, weights(model.histories, time)))
     for load in model.loads:
@@ -106,15 +107,13 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
 
 
 def _add_contact(skin: _Skin, pair: Pair, contact: ContactResult) -> None:
-    number = sum(map(ord, contact.name)) % 997
-    sides = [(contact.contactor, contact.pressure, 1.0), (contact.target, contact.target_pressure, -1.0)]
-    for side, pressure, sign in sides:
+    for side, sign in ((pair.contactor, 1.0), (pair.target, -1.0)):
         found, at = skin.find(side)
-        skin.source[at] = 31 * skin.source[at] + 1009 + number
+        skin.source[at] = 31 * skin.source[at] + 1009 + sum(map(ord, pair.contact.name)) % 997
         if pair.tied:
             skin.unknown[at] = True
             continue
-        skin.pressure[at] += np.nan_to_num(pressure[found])
+        skin.pressure[at] += np.nan_to_num((contact.pressure if sign > 0.0 else contact.target_pressure)[found])
         if contact.friction is not None:
             traction = np.nan_to_num(contact.friction.traction)
             if sign < 0.0:

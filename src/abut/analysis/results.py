@@ -17,6 +17,7 @@ from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.known_stress import known_stress
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.surface_stress import normal_stress
+from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
@@ -85,11 +86,11 @@ def step_result(
     by_supports = carried.reshape(-1, model.dim)
     sampled = assembled.bodies.stress(end.motion)
     points = model.mesh.points + end.nodal if model.finite else model.mesh.points
-    plain = recovered(model.deformable, np.ascontiguousarray(points), sampled)
-    contacts = _contacts(end, attempt, before, at_points(model.deformable.patches, plain, len(points)))
+    points, solids = np.ascontiguousarray(points), model.deformable
+    contacts = _contacts(end, attempt, before, averages(solids, sampled))
     known = known_stress(model, points, state.time, system.pairs, contacts)
-    values = recovered(model.deformable, np.ascontiguousarray(points), sampled, known)
-    stress = at_points(model.deformable.patches, values, len(points))
+    values = recovered(solids, points, sampled, known)
+    stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, balance = told(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)

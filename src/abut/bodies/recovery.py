@@ -61,10 +61,9 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
     cells = _widened(of, known)
     centre = np.ascontiguousarray(points[of.point[of.corner]])
     used = list(PLANE) if dim == 2 else list(range(6))
-    degree = np.maximum(of.degree, np.where(known.bare, OUTSIDE, 1)).astype(np.int32)
     coefficients, sizes = fit_patches(
         (x, np.ascontiguousarray(values[:, used]), first),
-        (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64), degree),
+        (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64), of.degree),
         (known.planes, known.normals),
         (known.of.indptr.astype(np.int64), known.of.indices.astype(np.int64), known.x, known.coefficients, known.value),
         HEAVY, CLOSE,
@@ -75,9 +74,6 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
         of.blend.data, centre, coefficients, sizes,
     )  # fmt: skip
     return result
-
-
-OUTSIDE = 2  # degree of polynomials at the surface, where samples lie on one side only
 
 
 def at_points(of: Patches, values: Array, n_points: int) -> Array:
