@@ -191,13 +191,13 @@ private:
 
   void add_rows(std::size_t k, double size) {
     const double *centre = in.centre + k * dim;
-    double x[dim], s[C], p[T], row[UNKNOWNS];
+    double x[dim], s[C], p[T];
     const double weight = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
     for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
       for (const Image &image : images) {
-        const std::int64_t j = in.rows[r];
-        std::copy(in.row_x + j * dim, in.row_x + (j + 1) * dim, x);
-        std::copy(in.row_coefficients + j * C, in.row_coefficients + (j + 1) * C, s);
+        const std::int64_t e = in.rows[r];
+        std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
+        std::copy(in.row_coefficients + e * C, in.row_coefficients + (e + 1) * C, s);
         mirror(image, centre, 2, x, s);
         double away = 0;
         for (int a = 0; a < dim; ++a) {
@@ -206,14 +206,19 @@ private:
         }
         const double w = weight / (1e-2 + std::pow(away, in.close));
         basis(x, p);
+        int used[C], count = 0; // an equation has few components
+        for (int c = 0; c < C; ++c)
+          if (s[c] != 0)
+            used[count++] = c;
         for (int i = 0; i < n; ++i)
-          for (int c = 0; c < C; ++c)
-            row[i * C + c] = p[i] * s[c];
-        for (int i = 0; i < n * C; ++i) {
-          for (int l = 0; l <= i; ++l)
-            coupled[i * UNKNOWNS + l] += w * row[i] * row[l];
-          coupled_rhs[i] += w * row[i] * in.row_values[j];
-        }
+          for (int c = 0; c < count; ++c) {
+            const double own = w * p[i] * s[used[c]];
+            double *out = &coupled[(i * C + used[c]) * UNKNOWNS];
+            for (int j = 0; j <= i; ++j)
+              for (int l = 0; l < count; ++l)
+                out[j * C + used[l]] += own * p[j] * s[used[l]]; // what lies above the diagonal is not read
+            coupled_rhs[i * C + used[c]] += own * in.row_values[e];
+          }
       }
   }
 

@@ -177,7 +177,7 @@ def _monomials(kind: str, xi: Array) -> Array:
 
 def _widened(of: Patches, known: Equations) -> Sparse:
     """The cells of each patch: at the surface also those around the corners of these."""
-    bare = known.bare
-    more = of.around[bare] @ (of.around.T @ of.around)
-    selector = sp.csr_matrix((np.ones(int(bare.sum())), (np.flatnonzero(bare), np.arange(int(bare.sum())))), shape=(len(bare), int(bare.sum())))
-    return (of.around + selector @ more).tocsr()
+    bare = np.flatnonzero(known.bare)
+    wide = (of.around[bare] @ of.around.T) @ of.around
+    place = sp.csr_matrix((np.ones(len(bare)), (bare, np.arange(len(bare)))), shape=(len(of.corner), len(bare)))
+    return (of.around + place @ wide).tocsr()

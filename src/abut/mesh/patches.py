@@ -9,9 +9,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut._core import single_rows
+from abut._core import shape_functions, single_rows
 from abut.cells import CELLS
-from abut.mesh.exterior import Cells, facets_of
+from abut.mesh.exterior import Cells, exterior, facets_of
 from abut.mesh.mesh import Mesh
 from abut.mesh.reference import reference_nodes
 from abut.types import Sparse
@@ -50,29 +50,29 @@ class Patches:
 def patches(mesh: Mesh, body_of: NDArray[np.int32]) -> Patches:
     """Of the bodies of a mesh; body_of: (n_cells,) number of each cell's body, -1 for cells that are left out."""
     n_points, cells = len(mesh.points), _deforming(mesh, body_of)
-    keys = [body_of[numbers][:, None].astype(np.int64) * n_points + nodes for _, nodes, numbers in cells]
-    values, own = np.unique(np.concatenate([key.ravel() for key in keys]), return_inverse=True)
-    parts = np.split(own, np.cumsum([key.size for key in keys])[:-1])
-    renumbered = [
-        (kind, part.reshape(nodes.shape).astype(np.int32), numbers)
-        for (kind, nodes, numbers), part in zip(cells, parts)
-    ]
-    body, point = np.divmod(values, n_points)
-    is_corner = np.zeros(len(values), dtype=bool)
-    degree = np.ones(len(values), dtype=np.int32)
+    bodies = int(body_of.max(initial=-1)) + 1
+    used = np.zeros((bodies, n_points), dtype=bool)
+    for _, nodes, numbers in cells:
+        used[np.broadcast_to(body_of[numbers][:, None], nodes.shape), nodes] = True
+    body, point = np.nonzero(used)
+    values = np.full((bodies, n_points), -1, dtype=np.int32)
+    values[body, point] = np.arange(len(point))
+    renumbered = [(kind, values[body_of[numbers][:, None], nodes], numbers) for kind, nodes, numbers in cells]
+    is_corner = np.zeros(len(point), dtype=bool)
+    degree = np.ones(len(point), dtype=np.int32)
     for kind, nodes, _ in renumbered:
         is_corner[nodes[:, : CELLS[kind].corners]] = True
         if CELLS[kind].degree == 2:
             degree[nodes] = 2
     corner = np.flatnonzero(is_corner)
-    patch_of = np.full(len(values), -1)
+    patch_of = np.full(len(point), -1)
     patch_of[corner] = np.arange(len(corner))
-    rows, facet_corners, free = _outside(renumbered, mesh, len(values))
+    rows, facet_corners, free = _outside(renumbered, mesh, len(point), bool((np.bincount(point) > 1).any()))
     facet, k = np.nonzero(facet_corners >= 0)
     skin = _pattern(patch_of[facet_corners[facet, k]], facet, (len(corner), len(rows)))
     return Patches(
         point, body, _by_block(mesh, renumbered), corner, _around(renumbered, patch_of, (len(corner), mesh.n_cells)),
-        _blend(renumbered, patch_of, (len(values), len(corner))), degree[corner], rows, skin, free,
+        _blend(renumbered, patch_of, (len(point), len(corner))), degree[corner], rows, skin, free,
     )  # fmt: skip
 
 
@@ -94,15 +94,16 @@ def _by_block(mesh: Mesh, cells: Cells) -> tuple[NDArray[np.int32], ...]:
 
 
 def _outside(
-    cells: Cells, mesh: Mesh, n_values: int
+    cells: Cells, mesh: Mesh, n_values: int, shared: bool
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]:
     """Rows (cell, local facet) and corners (n, 4) of the facets that only one cell of its body has, and which of these no
     cell of another body has either."""
     corners, rows = facets_of(cells)
     single = single_rows(corners, n_values)
-    whole, all_rows = facets_of([(b.kind, b.nodes, s + np.arange(len(b.nodes))) for b, s in zip(mesh.blocks, mesh.starts)])
+    if not shared and sum(len(numbers) for _, _, numbers in cells) == mesh.n_cells:
+        return rows[single], corners[single], np.ones(len(single), dtype=bool)
     alone = np.zeros((mesh.n_cells, 6), dtype=bool)
-    there = all_rows[single_rows(whole, len(mesh.points))]
+    there = exterior(mesh)
     alone[there[:, 0], there[:, 1]] = True
     outside = rows[single]
     return outside, corners[single], alone[outside[:, 0], outside[:, 1]]
@@ -146,8 +147,6 @@ def _blend(cells: Cells, patch_of: NDArray[np.int64], shape: tuple[int, int]) ->
 
 def corner_weights(kind: str) -> NDArray[np.float64]:
     """The linear shape functions of a cell's corners at its nodes, (nodes, corners)."""
-    from abut._core import shape_functions
-
     linear = next(value for name, value in LINEAR.items() if kind.startswith(name))
     weights, _ = shape_functions(CELLS[linear].code, np.ascontiguousarray(reference_nodes(kind)))
     return np.where(np.abs(weights) < 1e-12, 0.0, weights)
