@@ -16,6 +16,7 @@ from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.known_stress import known_stress
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
@@ -123,6 +124,7 @@ def step_result(
         strained=strained,
         landed=_landed(state),
         energy=balance if strained else None,
+        stress_error=stress_error(solids, points, sampled, values, contacts) if strained else None,
     )
     return step, acting
 

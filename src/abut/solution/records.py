@@ -16,6 +16,7 @@ from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.progress import Iteration
 from abut.solution.state import State
+from abut.solution.stress_error import StressError
 
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
@@ -68,7 +69,7 @@ class Step:
     """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
     displacements applied, where no amplitude says otherwise.
 
-    displacement: (n_points, dim); stress: (n_points, 6) nodal averages xx yy zz xy yz zx;
+    displacement: (n_points, dim); stress: (n_points, 6) recovered at the points, xx yy zz xy yz zx;
     reaction: (dim,) resultant of all supports, equations and prescribed motions of rigid bodies; reactions: the same for
     each supported surface or node set without the share of equations (points that lie on several count for each of them,
     those of a rigid body for the whole body); load: (dim,) resultant of all
@@ -102,6 +103,7 @@ class Step:
     reason: str = ""  # why it did not converge, where more can be said
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
+    stress_error: StressError | None = None  # None where nothing gives way
 
     @property
     def balance_error(self) -> float:
