@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from abut.bodies.recovery import energies
 from abut.bodies.solids import Solids
 from abut.bodies.stress import PointStress
-from abut.cells import CELLS
 from abut.contact.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.solution import ContactResult
@@ -51,8 +50,7 @@ def _near(solids: Solids, contact: ContactResult, error: Array, energy: Array) -
             if facets.any():
                 cells = _around(solids, side, facets, number)
                 size, off = float(np.median(facet_sizes(side)[facets])), _ratio(error[cells], energy[cells])
-                degree = max(CELLS[block.kind].degree for block in solids.mesh.blocks)
-                yield ContactStressError(contact.name, body, off, size, size * min((AIM / max(off, AIM)) ** (1.0 / degree), 1.0))
+                yield ContactStressError(contact.name, body, off, size, size * AIM / max(off, AIM))
 
 
 def _around(solids: Solids, side: Surface, facets: NDArray[np.bool_], body: int) -> NDArray[np.int64]:

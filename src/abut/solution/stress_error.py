@@ -14,7 +14,8 @@ AIM = 0.05  # relative error in the energy norm that engineers ask for (Zienkiew
 @dataclass(frozen=True)
 class ContactStressError:
     """The estimate in the cells of a body near pressed facets, theory (R8). error: relative; size: length of these facets;
-    wanted: the length that would bring the error to ``AIM``."""
+    wanted: the length that would bring the error to ``AIM``: it falls like the length, with cells of second order too, since
+    the stress has a root at the edge of contact."""
 
     contact: str
     body: str
@@ -35,6 +36,11 @@ class StressError:
     whole: float
     energy: float
     near: Sequence[ContactStressError]
+
+    @property
+    def largest(self) -> float:
+        """Of the whole model and where bodies touch."""
+        return max([self.whole, *(e.error for e in self.near)])
 
     @property
     def coarse(self) -> Sequence[ContactStressError]:
