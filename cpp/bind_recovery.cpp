@@ -11,7 +11,7 @@ namespace abut {
 
 using Integers = Vector<std::int64_t>;
 using Numbers = Vector<std::int32_t>;
-using Samples = std::tuple<Matrix<double>, Matrix<double>, Integers>;         // positions, stresses, first of each cell
+using Samples = std::tuple<Matrix<double>, Matrix<double>, Integers, Tensor3<double>>; // positions, stresses, first, spread
 using Cover = std::tuple<Matrix<double>, Integers, Integers, Numbers>;        // centres, cells_of, cells, degree
 using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;             // planes of each patch, their normals
 using Equations = std::tuple<Integers, Integers, Matrix<double>, Matrix<double>, Vector<double>>;
@@ -24,19 +24,19 @@ static void require(bool agree) {
     throw nb::value_error("patches, samples and equations disagree");
 }
 
-template <int dim> void fit_all(const Patches &patches, double *coefficients, double *sizes) {
+template <int dim> void fit_all(const Patches &patches, double *coefficients, double *metrics) {
   const std::size_t parts = patches.count < FEW_PATCHES ? 1 : thread_count();
   run_parts(parts, [&](std::size_t part) {
     PatchFit<dim> fit(patches);
     constexpr int width = PatchFit<dim>::UNKNOWNS;
     for (std::size_t k = patches.count * part / parts; k < patches.count * (part + 1) / parts; ++k)
-      fit.fit(k, coefficients + k * width, sizes[k]);
+      fit.fit(k, coefficients + k * width, metrics + k * dim * dim);
   });
 }
 
 static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover &cover, const Mirrors &mirrors,
-                                            const Equations &equations, double heavy, double close) {
-  const auto &[x, stress, first] = samples;
+                                            const Equations &equations, double heavy) {
+  const auto &[x, stress, first, spread] = samples;
   const auto &[centre, cells_of, cells, degree] = cover;
   const auto &[planes, normals] = mirrors;
   const auto &[rows_of, rows, row_x, row_coefficients, row_values] = equations;
@@ -46,34 +46,33 @@ static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover 
           planes.shape(1) == 3 && normals.shape(1) == dim && rows_of.shape(0) == count + 1);
   require(row_x.shape(1) == dim && row_coefficients.shape(1) == c && row_x.shape(0) == row_values.shape(0) &&
           row_coefficients.shape(0) == row_values.shape(0));
-  const Patches patches{x.data(),          stress.data(),  first.data(),           count,
+  const Patches patches{x.data(),          stress.data(),  first.data(), spread.data(), count,
                         centre.data(),     cells_of.data(), cells.data(),          rows_of.data(),
                         rows.data(),       degree.data(),  planes.data(),          normals.data(),
-                        row_x.data(),      row_coefficients.data(), row_values.data(), heavy, close};
+                        row_x.data(),      row_coefficients.data(), row_values.data(), heavy};
   const std::size_t terms = (dim + 1) * (dim + 2) / 2;
-  std::vector<double> coefficients(count * terms * c), sizes(count);
+  std::vector<double> coefficients(count * terms * c), metrics(count * dim * dim);
   {
     nb::gil_scoped_release release;
     if (dim == 2)
-      fit_all<2>(patches, coefficients.data(), sizes.data());
+      fit_all<2>(patches, coefficients.data(), metrics.data());
     else
-      fit_all<3>(patches, coefficients.data(), sizes.data());
+      fit_all<3>(patches, coefficients.data(), metrics.data());
   }
-  return {to_numpy(std::move(coefficients), {count, terms, c}), to_numpy(std::move(sizes))};
+  return {to_numpy(std::move(coefficients), {count, terms, c}), to_numpy(std::move(metrics), {count, dim, dim})};
 }
 
 // Each point's value, the weighted sum of the polynomials of some patches there.
 template <int dim>
 void evaluate_all(const double *x, std::size_t count, const std::int64_t *patches_of, const std::int64_t *patches,
-                  const double *weights, const double *centre, const double *coefficients, const double *sizes,
+                  const double *weights, const double *centre, const double *coefficients, const double *metrics,
                   double *result) {
   constexpr int C = PatchFit<dim>::C, T = PatchFit<dim>::T;
   double xi[dim], p[T];
   for (std::size_t i = 0; i < count; ++i)
     for (std::int64_t k = patches_of[i]; k < patches_of[i + 1]; ++k) {
       const std::int64_t patch = patches[k];
-      for (int a = 0; a < dim; ++a)
-        xi[a] = (x[i * dim + a] - centre[patch * dim + a]) / sizes[patch];
+      PatchFit<dim>::own(metrics + patch * dim * dim, x + i * dim, centre + patch * dim, xi);
       PatchFit<dim>::basis(xi, p);
       for (int t = 0; t < T; ++t)
         for (int c = 0; c < C; ++c)
@@ -82,15 +81,16 @@ void evaluate_all(const double *x, std::size_t count, const std::int64_t *patche
 }
 
 static Table evaluate_patches(Matrix<double> x, Integers patches_of, Integers patches, Vector<double> weights,
-                              Matrix<double> centre, Tensor3<double> coefficients, Vector<double> sizes) {
+                              Matrix<double> centre, Tensor3<double> coefficients, Tensor3<double> metrics) {
   const std::size_t count = x.shape(0), dim = x.shape(1), c = dim == 2 ? 4 : 6;
   require((dim == 2 || dim == 3) && patches_of.shape(0) == count + 1 && patches.shape(0) == weights.shape(0) &&
           centre.shape(1) == dim && coefficients.shape(0) == centre.shape(0) && coefficients.shape(2) == c &&
-          coefficients.shape(1) == (dim + 1) * (dim + 2) / 2 && sizes.shape(0) == centre.shape(0));
+          coefficients.shape(1) == (dim + 1) * (dim + 2) / 2 && metrics.shape(0) == centre.shape(0) &&
+          metrics.shape(1) == dim && metrics.shape(2) == dim);
   std::vector<double> result(count * c);
   const auto evaluate = dim == 2 ? evaluate_all<2> : evaluate_all<3>;
   evaluate(x.data(), count, patches_of.data(), patches.data(), weights.data(), centre.data(), coefficients.data(),
-           sizes.data(), result.data());
+           metrics.data(), result.data());
   return to_numpy(std::move(result), {count, c});
 }
 
@@ -142,14 +142,14 @@ static Table stress_errors(Matrix<double> points, Matrix<std::int32_t> nodes,
 
 void bind_recovery(nb::module_ &m) {
   m.def("fit_patches", &fit_patches, nb::arg("samples"), nb::arg("cover"), nb::arg("mirrors"), nb::arg("equations"),
-        nb::arg("heavy"), nb::arg("close"),
-        "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,)) of the cells of "
+        nb::arg("heavy"),
+        "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,), mean and second moments of corners (cells, dim + 1, dim)) of the cells of "
         "patches (centres (k, dim), ranges (k + 1,) of cells, cells, degrees (k,)), which planes through the centre mirror "
         "(planes (k, 3), normals (p, dim)), and to equations (ranges (k + 1,), numbers, positions, coefficients, values): "
-        "coefficients (k, terms, 4 or 6) in positions divided by sizes (k,).");
+        "coefficients (k, terms, 4 or 6) in each patch's own coordinates, and their metrics (k, dim, dim).");
   m.def("evaluate_patches", &evaluate_patches, nb::arg("x").noconvert(), nb::arg("patches_of").noconvert(),
         nb::arg("patches").noconvert(), nb::arg("weights").noconvert(), nb::arg("centre").noconvert(),
-        nb::arg("coefficients").noconvert(), nb::arg("sizes").noconvert(),
+        nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
         "Values (n, 4 or 6) at positions x (n, dim): sums of the weights of some patches times their polynomials.");
   m.def("stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
         nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),

@@ -38,26 +38,29 @@ template <int dim> void reflect(const double *n, double shear, double *s) {
     }
 }
 
-// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]. patches: centre (count, dim), cells and
+// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]; spread (cells, dim + 1, dim): mean of
+// the cell's corners and their second moments about it. patches: centre (count, dim), cells and
 // equations as ranges of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over
 // the components of coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
 struct Patches {
   const double *x, *stress;
   const std::int64_t *first;
+  const double *spread;
   std::size_t count;
   const double *centre;
   const std::int64_t *cells_of, *cells, *rows_of, *rows;
   const std::int32_t *degree, *planes;
   const double *normals;
   const double *row_x, *row_coefficients, *row_values;
-  double heavy, close;
+  double heavy;
 };
 
 template <int dim> class PatchFit {
 public:
   static constexpr int C = dim == 2 ? 4 : 6, T = (dim + 1) * (dim + 2) / 2, UNKNOWNS = C * T;
-  // Share of a term that those before it must leave: less is what the samples cannot tell from them.
-  static constexpr double TOLD = 1e-3;
+  // Of the weight of all samples: what keeps second derivatives small that samples cannot tell, and slopes across samples
+  // that lie in a plane or on a line, of which their spread is less than a share of the cells'.
+  static constexpr double RIDGE = 1e-4, FLAT = 1e-2;
 
   explicit PatchFit(const Patches &patches)
       : in(patches), single(T * T), rhs(T * C), coupled(UNKNOWNS * UNKNOWNS), coupled_rhs(UNKNOWNS) {}
@@ -75,33 +78,39 @@ public:
         p[k++] = xi[a] * xi[b];
   }
 
-  // Coefficients (T, C) and the length that positions are divided by.
-  void fit(std::size_t k, double *coefficients, double &size) {
-    const double *centre = in.centre + k * dim;
+  // x - centre in the patch's own coordinates, in which its cells are as long as wide: by the inverse of the lower
+  // triangle ``metric``.
+  static void own(const double *metric, const double *x, const double *centre, double *xi) {
+    for (int a = 0; a < dim; ++a) {
+      double sum = x[a] - centre[a];
+      for (int b = 0; b < a; ++b)
+        sum -= metric[a * dim + b] * xi[b];
+      xi[a] = sum / metric[a * dim + a];
+    }
+  }
+
+  // Coefficients (T, C) in the patch's own coordinates, and their metric (dim, dim).
+  void fit(std::size_t k, double *coefficients, double *metric) {
     find_images(k);
-    double far = 0, extent = 0;
-    each_sample(k, [&](const double *x, const double *) {
-      extent = 0;
-      for (int a = 0; a < dim; ++a)
-        extent += (x[a] - centre[a]) * (x[a] - centre[a]);
-      far = std::max(far, extent);
-    });
-    size = far > 0 ? std::sqrt(far) : 1;
+    find_metric(k, metric);
     n = terms(in.degree[k]);
     std::fill(single.begin(), single.end(), 0.0);
     std::fill(rhs.begin(), rhs.end(), 0.0);
     std::fill(coefficients, coefficients + T * C, 0.0);
-    add_samples(k, size);
+    add_samples(k, metric);
+    add_ridges();
     if (in.rows_of[k] == in.rows_of[k + 1])
       solve(single.data(), T, n, rhs.data(), C, coefficients);
     else {
       couple();
-      add_rows(k, size);
+      add_rows(k, metric);
       solve(coupled.data(), UNKNOWNS, n * C, coupled_rhs.data(), 1, coefficients);
     }
   }
 
 private:
+  static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  static constexpr double NEAR = 1e-2; // a sample at the centre counts by 100, one as far as cells reach by about 1
   using Image = std::array<std::int32_t, 3>; // planes, one after the other
 
   void find_images(std::size_t k) {
@@ -157,16 +166,102 @@ private:
         }
   }
 
-  void add_samples(std::size_t k, double size) {
+  static double weight(const double *xi) {
+    double away = 0;
+    for (int a = 0; a < dim; ++a)
+      away += xi[a] * xi[a];
+    return 1 / (NEAR + away);
+  }
+
+  // Cholesky's factor of the second moments of the corners of all cells about the centre.
+  void find_metric(std::size_t k, double *metric) const {
+    const double *centre = in.centre + k * dim;
+    double moments[3][3] = {{0}};
+    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i) {
+      const double *mean = in.spread + in.cells[i] * (dim + 1) * dim;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          moments[a][b] += mean[(a + 1) * dim + b] + (mean[a] - centre[a]) * (mean[b] - centre[b]);
+    }
+    double sum[dim][dim] = {{0}}, scale = 0;
+    for (const Image &image : images) {
+      double x[dim], s[C] = {0};
+      std::copy(centre, centre + dim, x);
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b <= a; ++b)
+          s[AT[a][b]] = moments[a][b];
+      mirror(image, centre, 1, x, s);
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          sum[a][b] += s[AT[a][b]];
+    }
+    const double count = double(images.size()) * double(in.cells_of[k + 1] - in.cells_of[k]);
+    for (int a = 0; a < dim; ++a)
+      scale += sum[a][a];
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b <= a; ++b) {
+        double left = sum[a][b];
+        for (int c = 0; c < b; ++c)
+          left -= metric[a * dim + c] * metric[b * dim + c] * count;
+        metric[a * dim + b] =
+            a == b ? std::sqrt(std::max(left, 1e-14 * scale) / count) : left / count / metric[b * dim + b];
+      }
+  }
+
+  // So that the fit exists where samples cannot tell all terms: on second derivatives, by their squares; on slopes across
+  // the samples.
+  void add_ridges() {
+    const double all = single[0];
+    double moments[dim][dim], axes[dim][dim];
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        moments[a][b] = n > 1 ? single[(1 + std::max(a, b)) * T + 1 + std::min(a, b)] / all -
+                                    single[(1 + a) * T] * single[(1 + b) * T] / (all * all)
+                              : 1;
+    if (n > 1) {
+      eigenvectors(moments, axes);
+      for (int k = 0; k < dim; ++k)
+        if (moments[k][k] < FLAT)
+          for (int a = 0; a < dim; ++a)
+            for (int b = 0; b <= a; ++b)
+              single[(1 + a) * T + 1 + b] += FLAT * all * axes[a][k] * axes[b][k];
+    }
+    if (n == T)
+      for (int a = 0, k = 1 + dim; a < dim; ++a)
+        for (int b = a; b < dim; ++b, ++k)
+          single[k * T + k] += RIDGE * all * (a == b ? 4 : 2);
+  }
+
+  // Jacobi's rotations: the diagonal becomes the eigenvalues, columns of ``axes`` their vectors.
+  static void eigenvectors(double (&m)[dim][dim], double (&axes)[dim][dim]) {
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        axes[a][b] = a == b;
+    for (int sweep = 0; sweep < (dim == 2 ? 1 : 12); ++sweep)
+      for (int p = 0; p < dim; ++p)
+        for (int q = p + 1; q < dim; ++q) {
+          if (m[p][q] == 0)
+            continue;
+          const double angle = 0.5 * std::atan2(2 * m[p][q], m[q][q] - m[p][p]), c = std::cos(angle),
+                       s = std::sin(angle);
+          for (int i = 0; i < dim; ++i) {
+            const double x = m[i][p], y = m[i][q], u = axes[i][p], v = axes[i][q];
+            m[i][p] = c * x - s * y, m[i][q] = s * x + c * y;
+            axes[i][p] = c * u - s * v, axes[i][q] = s * u + c * v;
+          }
+          for (int i = 0; i < dim; ++i) {
+            const double x = m[p][i], y = m[q][i];
+            m[p][i] = c * x - s * y, m[q][i] = s * x + c * y;
+          }
+        }
+  }
+
+  void add_samples(std::size_t k, const double *metric) {
     const double *centre = in.centre + k * dim;
     double xi[dim], p[T];
     each_sample(k, [&](const double *x, const double *s) {
-      double away = 0;
-      for (int a = 0; a < dim; ++a) {
-        xi[a] = (x[a] - centre[a]) / size;
-        away += xi[a] * xi[a];
-      }
-      const double w = 1 / (1e-2 + std::pow(away, in.close));
+      own(metric, x, centre, xi);
+      const double w = weight(xi);
       basis(xi, p);
       for (int i = 0; i < n; ++i) {
         for (int j = 0; j <= i; ++j)
@@ -177,35 +272,31 @@ private:
     });
   }
 
-  // The same fits as one system, term by term.
+  // The same fits as one system, term by term; what is minimised does not depend on the axes: shears count twice.
   void couple() {
     std::fill(coupled.begin(), coupled.end(), 0.0);
     std::fill(coupled_rhs.begin(), coupled_rhs.end(), 0.0);
     for (int i = 0; i < n; ++i)
       for (int c = 0; c < C; ++c) {
         for (int j = 0; j <= i; ++j)
-          coupled[(i * C + c) * UNKNOWNS + j * C + c] = single[i * T + j];
-        coupled_rhs[i * C + c] = rhs[i * C + c];
+          coupled[(i * C + c) * UNKNOWNS + j * C + c] = (c < 3 ? 1 : 2) * single[i * T + j];
+        coupled_rhs[i * C + c] = (c < 3 ? 1 : 2) * rhs[i * C + c];
       }
   }
 
-  void add_rows(std::size_t k, double size) {
+  void add_rows(std::size_t k, const double *metric) {
     const double *centre = in.centre + k * dim;
-    double x[dim], s[C], p[T];
-    const double weight = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
+    double x[dim], xi[dim], s[C], p[T];
+    const double share = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
     for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
       for (const Image &image : images) {
         const std::int64_t e = in.rows[r];
         std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
         std::copy(in.row_coefficients + e * C, in.row_coefficients + (e + 1) * C, s);
         mirror(image, centre, 2, x, s);
-        double away = 0;
-        for (int a = 0; a < dim; ++a) {
-          x[a] = (x[a] - centre[a]) / size;
-          away += x[a] * x[a];
-        }
-        const double w = weight / (1e-2 + std::pow(away, in.close));
-        basis(x, p);
+        own(metric, x, centre, xi);
+        const double w = share * weight(xi);
+        basis(xi, p);
         int used[C], count = 0; // an equation has few components
         for (int c = 0; c < C; ++c)
           if (s[c] != 0)
@@ -222,7 +313,7 @@ private:
       }
   }
 
-  // Cholesky's factors of the lower half in place, without the unknowns that those before them determine; these stay 0.
+  // Cholesky's factors of the lower half in place. What rounding leaves without a pivot stays 0.
   static void solve(double *m, int stride, int size, double *b, int columns, double *result) {
     std::array<bool, UNKNOWNS> left{};
     for (int j = 0; j < size; ++j) {
@@ -240,7 +331,7 @@ private:
         own[l] = sum / other[l];
         own[j] -= own[l] * own[l];
       }
-      left[j] = !(own[j] > TOLD * before);
+      left[j] = !(own[j] > 1e-14 * before);
       own[j] = left[j] ? 1 : std::sqrt(own[j]);
       for (int c = 0; c < columns; ++c) {
         double sum = b[j * columns + c];

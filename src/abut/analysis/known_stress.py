@@ -91,19 +91,24 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
     surface = mesh.surface(load.on)
     found, at = skin.find(surface)
     skin.source[at] = 31 * skin.source[at] + 1 + model.loads.index(load)
-    if model.finite and not (isinstance(load, Pressure) and load.follows):
-        skin.unknown[at] = True  # by area of the undeformed surface
-        return
+    dead = model.finite and not (isinstance(load, Pressure) and load.follows)
+    before, now = area_vectors(surface)[found], area_vectors(replace(surface, points=skin.surface.points))[found]
+    sizes = [np.linalg.norm(area, axis=2) for area in (before, now)]
+    shrunk = sizes[0] / np.maximum(sizes[1], 1e-300) if dead else np.ones(sizes[0].shape)  # forces are by undeformed area
     x = mesh.points[np.maximum(surface.nodes[found], 0)]
     where = x.reshape(-1, model.dim)
     if isinstance(load, Pressure):
-        values = evaluate(load.value, where, f"pressure on '{load.on}': value")
-        skin.pressure[at] += factor * values.reshape(x.shape[:2])
+        values = factor * evaluate(load.value, where, f"pressure on '{load.on}': value").reshape(x.shape[:2])
+        if not dead:
+            skin.pressure[at] += values
+            return
+        traction = -values[..., None] * before / np.maximum(np.linalg.norm(before, axis=2, keepdims=True), 1e-300)
     elif isinstance(load, Force):
-        skin.traction[at] += factor * np.array(load.value) / full_moments(surface, 0).sum()
+        traction = np.broadcast_to(factor * np.array(load.value) / full_moments(surface, 0).sum(), x.shape)
     else:
         given = load.value(where) if callable(load.value) else np.broadcast_to(load.value, where.shape)
-        skin.traction[at] += factor * np.asarray(given, dtype=float).reshape(x.shape)
+        traction = factor * np.asarray(given, dtype=float).reshape(x.shape)
+    skin.traction[at] += traction * shrunk[..., None]
 
 
 def _add_contact(skin: _Skin, pair: Pair, contact: ContactResult) -> None:

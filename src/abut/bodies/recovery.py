@@ -22,7 +22,6 @@ from abut.mesh.quadrature import Rule, error_rule, superconvergent_rule
 from abut.types import Sparse
 
 HEAVY = 1.0  # weight of all equations at a patch's surface over that of its samples
-CLOSE = 1.0  # samples count by the inverse of their distance to this power, twice
 PLANE = (0, 1, 2, 3)  # components in 2D
 
 
@@ -61,17 +60,17 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
     cells = _widened(of, known)
     centre = np.ascontiguousarray(points[of.point[of.corner]])
     used = list(PLANE) if dim == 2 else list(range(6))
-    coefficients, sizes = fit_patches(
-        (x, np.ascontiguousarray(values[:, used]), first),
+    coefficients, metrics = fit_patches(
+        (x, np.ascontiguousarray(values[:, used]), first, _spread(solids, points)),
         (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64), of.degree),
         (known.planes, known.normals),
         (known.of.indptr.astype(np.int64), known.of.indices.astype(np.int64), known.x, known.coefficients, known.value),
-        HEAVY, CLOSE,
+        HEAVY,
     )  # fmt: skip
     result = np.zeros((len(of.point), 6))
     result[:, used] = evaluate_patches(
         np.ascontiguousarray(points[of.point]), of.blend.indptr.astype(np.int64), of.blend.indices.astype(np.int64),
-        of.blend.data, centre, coefficients, sizes,
+        of.blend.data, centre, coefficients, metrics,
     )  # fmt: skip
     return result
 
@@ -146,6 +145,20 @@ def _samples(solids: Solids, points: Array, stress: PointStress) -> tuple[Array,
         x[rows] = shapes @ points[group.nodes]
         values[rows] = carried(group.kind, group.rule, rule[0]) @ at
     return x, values, first
+
+
+def _spread(solids: Solids, points: Array) -> Array:
+    """Mean of the corners of each cell and their second moments about it, (n_cells, dim + 1, dim)."""
+    dim = points.shape[1]
+    result = np.zeros((solids.mesh.n_cells, dim + 1, dim))
+    for block, first in zip(solids.mesh.blocks, solids.mesh.starts.tolist()):
+        x = points[block.nodes[:, : CELLS[block.kind].corners]]
+        mean = x.mean(axis=1)
+        apart = x - mean[:, None]
+        rows = slice(first, first + len(x))
+        result[rows, 0] = mean
+        result[rows, 1:] = np.swapaxes(apart, 1, 2) @ apart / x.shape[1]
+    return result
 
 
 def carried(kind: str, rule: Rule, xi: Array) -> Array:
