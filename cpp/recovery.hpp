@@ -97,6 +97,8 @@ public:
     std::fill(single.begin(), single.end(), 0.0);
     std::fill(rhs.begin(), rhs.end(), 0.0);
     std::fill(coefficients, coefficients + T * C, 0.0);
+    const std::int64_t any = in.first[in.cells[in.cells_of[k]]];
+    std::copy(in.stress + any * C, in.stress + (any + 1) * C, level); // rounding is then that of differences
     add_samples(k, metric);
     add_ridges();
     if (in.rows_of[k] == in.rows_of[k + 1])
@@ -106,6 +108,8 @@ public:
       add_rows(k, metric);
       solve(coupled.data(), UNKNOWNS, n * C, coupled_rhs.data(), 1, coefficients);
     }
+    for (int c = 0; c < C; ++c)
+      coefficients[c] += level[c];
   }
 
 private:
@@ -267,7 +271,7 @@ private:
         for (int j = 0; j <= i; ++j)
           single[i * T + j] += w * p[i] * p[j];
         for (int c = 0; c < C; ++c)
-          rhs[i * C + c] += w * p[i] * s[c];
+          rhs[i * C + c] += w * p[i] * (s[c] - level[c]);
       }
     });
   }
@@ -298,9 +302,12 @@ private:
         const double w = share * weight(xi);
         basis(xi, p);
         int used[C], count = 0; // an equation has few components
-        for (int c = 0; c < C; ++c)
+        double value = in.row_values[e];
+        for (int c = 0; c < C; ++c) {
+          value -= s[c] * level[c];
           if (s[c] != 0)
             used[count++] = c;
+        }
         for (int i = 0; i < n; ++i)
           for (int c = 0; c < count; ++c) {
             const double own = w * p[i] * s[used[c]];
@@ -308,7 +315,7 @@ private:
             for (int j = 0; j <= i; ++j)
               for (int l = 0; l < count; ++l)
                 out[j * C + used[l]] += own * p[j] * s[used[l]]; // what lies above the diagonal is not read
-            coupled_rhs[i * C + used[c]] += own * in.row_values[e];
+            coupled_rhs[i * C + used[c]] += own * value;
           }
       }
   }
@@ -351,6 +358,7 @@ private:
 
   const Patches &in;
   int n = 1;
+  double level[C] = {0};
   std::vector<Image> images;
   std::vector<double> single, rhs, coupled, coupled_rhs;
 };
