@@ -124,7 +124,7 @@ def step_result(
         strained=strained,
         landed=_landed(state),
         energy=balance if strained else None,
-        stress_error=stress_error(solids, points, sampled, values, contacts) if strained else None,
+        stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
     )
     return step, acting
 

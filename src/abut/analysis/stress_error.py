@@ -16,19 +16,23 @@ from abut.solution import ContactResult
 from abut.solution.stress_error import AIM, ContactStressError, StressError
 
 PRESSED = 0.05  # pressure over the largest from which on a facet is near the middle of contact
+ROUNDED = 1e-13  # of displacements: a few hundred times what doubles hold
 TRIFLE = 1e-6  # energy of a body over that of all from which down its stresses matter to nobody
 
 Array = NDArray[np.float64]
 
 
 def stress_error(
-    solids: Solids, points: Array, stress: PointStress, values: Array, contacts: Sequence[ContactResult]
-) -> StressError:
-    """The estimate of Zienkiewicz and Zhu. points: (n_points, dim) where they are now; stress: at the integration points;
-    values: (n_values, 6) recovered."""
+    solids: Solids, displacement: Array, stress: PointStress, values: Array, contacts: Sequence[ContactResult]
+) -> StressError | None:
+    """The estimate of Zienkiewicz and Zhu; None where stresses are the rounding of displacements. displacement: (n_points,
+    dim); stress: at the integration points; values: (n_values, 6) recovered."""
+    points = np.ascontiguousarray(solids.points + displacement) if solids.kinematics == "finite" else solids.points
     table = energies(solids, points, stress, values)
     error, energy, volume = table.T
     total = float(energy.sum())
+    if total <= _rounding(solids, volume, displacement):
+        return None
     relative = np.zeros(len(error))
     for cells in solids.mesh.bodies.values():
         own = float(energy[cells].sum())
@@ -38,6 +42,15 @@ def stress_error(
     whole = float(np.sqrt(error.sum() / total)) if total > 0.0 else 0.0
     near = [e for contact in contacts for e in _near(solids, contact, error, energy)]
     return StressError(relative, whole, total, near)
+
+
+def _rounding(solids: Solids, volume: Array, displacement: Array) -> float:
+    """Energy of stresses that rounding of the displacements makes."""
+    used = np.flatnonzero((volume > 0.0) & (solids.body_of >= 0))
+    size = volume[used] ** (1.0 / displacement.shape[1])
+    modulus = np.array([material.modulus for material in solids.materials.values()])[solids.body_of[used]]
+    strain = ROUNDED * np.abs(displacement).max(initial=0.0) / size
+    return float((volume[used] * modulus * strain**2).sum())
 
 
 def _near(solids: Solids, contact: ContactResult, error: Array, energy: Array) -> Iterator[ContactStressError]:
