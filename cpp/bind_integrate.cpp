@@ -179,7 +179,8 @@ void bind_integrate(nb::module_ &m) {
       nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
       nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
       "Adds up, in place, what is asked for of cells with the moduli (cells, 2) lambda and mu: force (n_points, dim), "
-      "tangent (indptr, indices, values of a block pattern); stress (cells q, 6) at the integration points is written.");
+      "tangent (indptr, indices, values of a block pattern); stress (cells q, 6) at the integration points is "
+      "written.");
   m.def("integrate_given", &integrate_given, nb::arg("cells"), nb::arg("stresses").noconvert() = nb::none(),
         nb::arg("tangents").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(),
@@ -189,7 +190,8 @@ void bind_integrate(nb::module_ &m) {
         nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
         nb::arg("energy").noconvert() = nb::none(),
-        "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses, and energy (cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
+        "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses, and energy "
+        "(cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
         "incomplete.");
 }
 

@@ -11,9 +11,10 @@ namespace abut {
 
 using Integers = Vector<std::int64_t>;
 using Numbers = Vector<std::int32_t>;
-using Samples = std::tuple<Matrix<double>, Matrix<double>, Integers, Tensor3<double>>; // positions, stresses, first, spread
-using Cover = std::tuple<Matrix<double>, Integers, Integers, Numbers>;        // centres, cells_of, cells, degree
-using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;             // planes of each patch, their normals
+using Samples =
+    std::tuple<Matrix<double>, Matrix<double>, Integers, Tensor3<double>>; // positions, stresses, first, spread
+using Cover = std::tuple<Matrix<double>, Integers, Integers, Numbers>;     // centres, cells_of, cells, degree
+using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;          // planes of each patch, their normals
 using Equations = std::tuple<Integers, Integers, Matrix<double>, Matrix<double>, Vector<double>>;
 using Table = nb::ndarray<nb::numpy, double>;
 
@@ -46,10 +47,12 @@ static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover 
           planes.shape(1) == 3 && normals.shape(1) == dim && rows_of.shape(0) == count + 1);
   require(row_x.shape(1) == dim && row_coefficients.shape(1) == c && row_x.shape(0) == row_values.shape(0) &&
           row_coefficients.shape(0) == row_values.shape(0));
-  const Patches patches{x.data(),          stress.data(),  first.data(), spread.data(), count,
-                        centre.data(),     cells_of.data(), cells.data(),          rows_of.data(),
-                        rows.data(),       degree.data(),  planes.data(),          normals.data(),
-                        row_x.data(),      row_coefficients.data(), row_values.data(), heavy};
+  const Patches patches{x.data(),          stress.data(), first.data(),
+                        spread.data(),     count,         centre.data(),
+                        cells_of.data(),   cells.data(),  rows_of.data(),
+                        rows.data(),       degree.data(), planes.data(),
+                        normals.data(),    row_x.data(),  row_coefficients.data(),
+                        row_values.data(), heavy};
   const std::size_t terms = (dim + 1) * (dim + 2) / 2;
   std::vector<double> coefficients(count * terms * c), metrics(count * dim * dim);
   {
@@ -122,7 +125,8 @@ static Table stress_errors(Matrix<double> points, Matrix<std::int32_t> nodes,
     const double *own_compliance = compliances.data() + body.data()[cell] * 36;
     for (std::size_t k = 0; k < q; ++k) {
       const double *shape = shapes.data() + k * n, *d = derivatives.data() + k * n * dim;
-      double volume = weights.data()[k] * (dim == 2 ? jacobian<2>(x.data(), n, d).det : jacobian<3>(x.data(), n, d).det);
+      double volume =
+          weights.data()[k] * (dim == 2 ? jacobian<2>(x.data(), n, d).det : jacobian<3>(x.data(), n, d).det);
       double smooth[6] = {0}, off[6], r = 0;
       for (std::size_t i = 0; i < n; ++i) {
         r += shape[i] * x[i * dim];
@@ -143,19 +147,24 @@ static Table stress_errors(Matrix<double> points, Matrix<std::int32_t> nodes,
 void bind_recovery(nb::module_ &m) {
   m.def("fit_patches", &fit_patches, nb::arg("samples"), nb::arg("cover"), nb::arg("mirrors"), nb::arg("equations"),
         nb::arg("heavy"),
-        "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,), mean and second moments of corners (cells, dim + 1, dim)) of the cells of "
-        "patches (centres (k, dim), ranges (k + 1,) of cells, cells, degrees (k,)), which planes through the centre mirror "
-        "(planes (k, 3), normals (p, dim)), and to equations (ranges (k + 1,), numbers, positions, coefficients, values): "
+        "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,), mean and "
+        "second moments of corners (cells, dim + 1, dim)) of the cells of "
+        "patches (centres (k, dim), ranges (k + 1,) of cells, cells, degrees (k,)), which planes through the centre "
+        "mirror "
+        "(planes (k, 3), normals (p, dim)), and to equations (ranges (k + 1,), numbers, positions, coefficients, "
+        "values): "
         "coefficients (k, terms, 4 or 6) in each patch's own coordinates, and their metrics (k, dim, dim).");
   m.def("evaluate_patches", &evaluate_patches, nb::arg("x").noconvert(), nb::arg("patches_of").noconvert(),
         nb::arg("patches").noconvert(), nb::arg("weights").noconvert(), nb::arg("centre").noconvert(),
         nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
         "Values (n, 4 or 6) at positions x (n, dim): sums of the weights of some patches times their polynomials.");
-  m.def("stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
-        nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),
-        "Of each cell (n, 3): energy of the recovered less the given stress (cells q, 6), that of the recovered one, and "
-        "volume. rule: shapes (q, n), derivatives (q, n, dim), weights (q,); recovered: own numbers (cells, n) of values (k, "
-        "6); compliance: (b, 6, 6) and each cell's body (cells,).");
+  m.def(
+      "stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
+      nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),
+      "Of each cell (n, 3): energy of the recovered less the given stress (cells q, 6), that of the recovered one, and "
+      "volume. rule: shapes (q, n), derivatives (q, n, dim), weights (q,); recovered: own numbers (cells, n) of values "
+      "(k, "
+      "6); compliance: (b, 6, 6) and each cell's body (cells,).");
 }
 
 } // namespace abut

@@ -22,8 +22,8 @@ struct Results {
   const std::int64_t *indptr = nullptr;  // node pattern of the stiffness
   const std::int32_t *indices = nullptr; // sorted in each row
   double *stiffness = nullptr;           // values of the pattern with dim x dim blocks
-  double *stress = nullptr;              // (cells, rule, 6) at the integration points, written; Cauchy's of finite strains
-  double *energy = nullptr;              // (cells,) of finite strains
+  double *stress = nullptr; // (cells, rule, 6) at the integration points, written; Cauchy's of finite strains
+  double *energy = nullptr; // (cells,) of finite strains
 };
 
 // The first cell, in their order, that has no sound deformation, and the determinant of the deformation gradient there;

@@ -38,10 +38,10 @@ template <int dim> void reflect(const double *n, double shear, double *s) {
     }
 }
 
-// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]; spread (cells, dim + 1, dim): mean of
-// the cell's corners and their second moments about it. patches: centre (count, dim), cells and
-// equations as ranges of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over
-// the components of coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
+// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]; spread (cells, dim + 1, dim): mean
+// of the cell's corners and their second moments about it. patches: centre (count, dim), cells and equations as ranges
+// of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over the components of
+// coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
 struct Patches {
   const double *x, *stress;
   const std::int64_t *first;
@@ -58,8 +58,8 @@ struct Patches {
 template <int dim> class PatchFit {
 public:
   static constexpr int C = dim == 2 ? 4 : 6, T = (dim + 1) * (dim + 2) / 2, UNKNOWNS = C * T;
-  // Of the weight of all samples: what keeps second derivatives small that samples cannot tell, and slopes across samples
-  // that lie in a plane or on a line, of which their spread is less than a share of the cells'.
+  // Of the weight of all samples: what keeps second derivatives small that samples cannot tell, and slopes across
+  // samples that lie in a plane or on a line, of which their spread is less than a share of the cells'.
   static constexpr double RIDGE = 1e-4, FLAT = 1e-2;
 
   explicit PatchFit(const Patches &patches)
@@ -212,8 +212,8 @@ private:
       }
   }
 
-  // So that the fit exists where samples cannot tell all terms: on second derivatives, by their squares; on slopes across
-  // the samples.
+  // So that the fit exists where samples cannot tell all terms: on second derivatives, by their squares; on slopes
+  // across the samples.
   void add_ridges() {
     const double all = single[0];
     double moments[dim][dim], axes[dim][dim];

@@ -14,7 +14,7 @@ from abut.bodies.solids import TemperatureChange
 from abut.contact.coupling import CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, differentiated
 from abut.contact.moving_normals import normal_pattern
-from abut.mesh.make import box, join, rectangle
+from abut.mesh.make import box, join
 from abut.parallel import part
 from abut.parallel.backend import DistributedBodies
 from abut.parallel.interface import differentiate

@@ -1,5 +1,5 @@
-"""What is known of the stress at the surfaces of bodies at the end of a step: tractions of contacts, loads and free surfaces,
-and planes that continue bodies as their mirror image; theory (R3), (R4)."""
+"""What is known of the stress at the surfaces of bodies at the end of a step: tractions of contacts, loads and free
+surfaces, and planes that continue bodies as their mirror image; theory (R3), (R4)."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from abut.contact.nodal_recovery import carry_to_target, corner_values
 from abut.fields import evaluate
 from abut.mesh.patches import Patches
 from abut.mesh.surface import Surface
-from abut.model import Force, Load, Model, Moment, NodalForce, Pressure, Traction
+from abut.model import Force, Load, Model, NodalForce, Pressure, Traction
 from abut.model.conditions import COMPONENTS, Support, weights
 from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult
-from abut.types import Array
 
 ALONG = 1e-6  # sine of the angle between a facet's normal and an axis up to which it is along it
 TABLE = {2: ((0, 3), (3, 1)), 3: ((0, 3, 5), (3, 1, 4), (5, 4, 2))}  # components of a tensor's rows
@@ -64,7 +63,7 @@ class _Skin:
         """Facets of which every node, or any, is among some points of the mesh."""
         nodes = self.surface.nodes
         hit = points[np.maximum(nodes, 0)]
-        return (hit | (nodes < 0)).all(axis=1) if every else (hit & (nodes >= 0)).any(axis=1)
+        return np.asarray((hit | (nodes < 0)).all(axis=1) if every else (hit & (nodes >= 0)).any(axis=1))
 
 
 def known_stress(
@@ -94,7 +93,9 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
     dead = model.finite and not (isinstance(load, Pressure) and load.follows)
     before, now = area_vectors(surface)[found], area_vectors(replace(surface, points=skin.surface.points))[found]
     sizes = [np.linalg.norm(area, axis=2) for area in (before, now)]
-    shrunk = sizes[0] / np.maximum(sizes[1], 1e-300) if dead else np.ones(sizes[0].shape)  # forces are by undeformed area
+    shrunk = (
+        sizes[0] / np.maximum(sizes[1], 1e-300) if dead else np.ones(sizes[0].shape)
+    )  # forces are by undeformed area
     x = mesh.points[np.maximum(surface.nodes[found], 0)]
     where = x.reshape(-1, model.dim)
     if isinstance(load, Pressure):
@@ -141,8 +142,8 @@ def _add_supports(model: Model, skin: _Skin) -> None:
         for axis, value in _axes(model, support):
             held[nodes, axis] = True
             moved[nodes] |= callable(value)
-    for item in (*model.couplings, *model.rotations):
-        held[mesh.nodes_of(item.on)] = True
+    for on in (*(c.on for c in model.couplings), *(r.on for r in model.rotations)):
+        held[mesh.nodes_of(on)] = True
     for equation in model.equations:
         for term in equation.terms:
             at = mesh.nodes_of(term.on) if isinstance(term.on, str) else np.array([int(term.on)])

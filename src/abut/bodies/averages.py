@@ -26,6 +26,8 @@ def averages(solids: Solids, stress: PointStress) -> Array:
 def _to_nodes(group: Group) -> Array:
     """Least-squares linear fit to values at the integration points, at the nodes, (nodes, q)."""
     (xi, weights), where = group.rule, reference_nodes(group.kind)
-    terms, at = (np.concatenate([np.ones((len(x), 1)), x], axis=1)[:, : None if len(xi) > 2 else 1] for x in (xi, where))
+    terms, at = (
+        np.concatenate([np.ones((len(x), 1)), x], axis=1)[:, : None if len(xi) > 2 else 1] for x in (xi, where)
+    )
     root = np.sqrt(np.abs(weights))[:, None]
     return np.asarray(at @ np.linalg.pinv(root * terms) * root.T)

@@ -33,7 +33,9 @@ def respond_finite(
     moved = np.ascontiguousarray(displacement, dtype=float)
     for group in solids.groups():
         energies = np.zeros(len(group.cells))
-        constants = solids.by_cell(group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()})
+        constants = solids.by_cell(
+            group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()}
+        )
         unsound = integrate_hyperelastic(
             group.arrays(solids, group.rule), constants, group.law, solids.plane == "stress", moved,
             temperature.strain(solids, group), force=force,

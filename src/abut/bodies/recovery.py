@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,8 +75,8 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
 
 
 def at_points(of: Patches, values: Array, n_points: int) -> Array:
-    """Values (n_values, 6) at the mesh's points, (n_points, 6): the mean of those of the bodies that share one, 0 where there
-    are none."""
+    """Values (n_values, 6) at the mesh's points, (n_points, 6): the mean of those of the bodies that share one, 0 where
+    there are none."""
     total = np.zeros((n_points, values.shape[1]))
     if not of.shared:
         total[of.point] = values

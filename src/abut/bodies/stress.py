@@ -23,7 +23,7 @@ def point_stress(
     axes. Axisymmetric: xx radial, yy axial, zz hoop. Integration "b-bar": with the mean dilatation of (E3). history: of
     materials that are not linear elastic, before the displacement.
 
-    Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes than they should."""
+    Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     moved = np.ascontiguousarray(displacement, dtype=float)
     return tuple(_of_group(solids, group, moved, temperature, history) for group in solids.groups())
 
@@ -40,7 +40,9 @@ def _of_group(
     if solids.kinematics == "small":
         integrate_isotropic(cells, moduli(solids, group), plane, moved, heat, stress=stress)
     else:
-        constants = solids.by_cell(group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()})
+        constants = solids.by_cell(
+            group, {body: (law(m) or (0, (0.0, 0.0)))[1] for body, m in solids.materials.items()}
+        )
         require_sound(
             solids, group, integrate_hyperelastic(cells, constants, group.law, plane, moved, heat, stress=stress)
         )

@@ -54,7 +54,8 @@ MODEL = {
     "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
-    "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have no limit",
+    "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have "
+    "no limit",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
 }

@@ -184,7 +184,9 @@ def _stress_error(step: Step) -> Json:
     error = step.stress_error
     if error is None:
         return {}
-    near = [{"contact": e.contact, "body": e.body, "error": e.error, "size": e.size, "wanted": e.wanted} for e in error.near]
+    near = [
+        {"contact": e.contact, "body": e.body, "error": e.error, "size": e.size, "wanted": e.wanted} for e in error.near
+    ]
     return {"stress_error": {"whole": error.whole, "energy": error.energy, "near_contact": near}}
 
 
