@@ -1,5 +1,5 @@
 // Superconvergent patch recovery: polynomials fitted to the stresses at the sampling points of the cells around a
-// point, and to linear equations of the stress at its surface; theory (R2), (R3).
+// point, and to linear equations of the stress at its surface; theory (Z2), (Z3).
 #pragma once
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 """What is known of the stress at the surfaces of bodies at the end of a step: tractions of contacts, loads and free
-surfaces, and planes that continue bodies as their mirror image; theory (R3), (R4)."""
+surfaces, and planes that continue bodies as their mirror image; theory (Z3), (Z4)."""
 
 from __future__ import annotations
 

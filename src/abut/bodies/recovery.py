@@ -1,4 +1,4 @@
-"""Stresses at the nodes by superconvergent patch recovery (Zienkiewicz and Zhu 1992); theory (R1) to (R5)."""
+"""Stresses at the nodes by superconvergent patch recovery (Zienkiewicz and Zhu 1992); theory (Z1) to (Z5)."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def nodal_stress(
 
 def energies(solids: Solids, points: Array, stress: PointStress, values: Array) -> Array:
     """Of each cell (n_cells, 3) int e C^-1 e of the recovered less the element's stress, the same of the recovered one, and
-    the volume; theory (R6). values: (n_values, 6)."""
+    the volume; theory (Z6). values: (n_values, 6)."""
     of, result = solids.patches, np.zeros((solids.mesh.n_cells, 3))
     compliance = np.stack([_compliance(material) for material in solids.materials.values()])
     for group, at in zip(solids.groups(), stress):

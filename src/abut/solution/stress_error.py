@@ -13,7 +13,7 @@ AIM = 0.05  # relative error in the energy norm that engineers ask for (Zienkiew
 
 @dataclass(frozen=True)
 class ContactStressError:
-    """The estimate in the cells of a body near pressed facets, theory (R8). error: relative; size: length of these facets;
+    """The estimate in the cells of a body near pressed facets, theory (Z8). error: relative; size: length of these facets;
     wanted: the length that would bring the error to ``AIM``: it falls like the length, with cells of second order too, since
     the stress has a root at the edge of contact."""
 
@@ -29,7 +29,7 @@ class StressError:
     """The difference between recovered and element stress in the energy norm.
 
     cells: (n_cells,) of each cell relative to its body, per volume: their root mean square over the body by volume is its
-    error, theory (R7); whole: relative, of all bodies; energy: of the recovered stresses, twice the elastic energy; near:
+    error, theory (Z7); whole: relative, of all bodies; energy: of the recovered stresses, twice the elastic energy; near:
     where bodies touch."""
 
     cells: NDArray[np.float64]
