@@ -29,7 +29,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     every = [kind for kind, cell in CELLS.items() if cell.dim > 1 and not kind.startswith("wedge")]
     parser.add_argument("--cells", type=lambda text: text.split(","), default=every)
-    print("| case | cells | n | normal % | von Mises % | shear below % | stress error near % |\n|---|---|---|---|---|---|---|")
+    print(
+        "| case | cells | n | normal % | von Mises % | shear below % | stress error near % |\n|---|---|---|---|---|---|---|"
+    )
     for kind in parser.parse_args().cells:
         cell = CELLS[kind]
         for case, sizes in SIZES[cell.degree].items() if cell.dim == 2 else (("ball", SOLID[cell.degree]),):

@@ -17,7 +17,7 @@ from abut.types import Array
 
 NU = 0.3
 HALF_WIDTH, LINE_PEAK, LINE_FORCE = 6.2146 / 8.0, 3585.36 / 8.0, 35e3 / 64.0  # R = 50, E 210e3 on 70e3
-RADIUS, BALL_PEAK, BALL_FORCE = 1.00964 / 4.0, 88.290 / 4.0, 60.0 * np.pi / 64.0  # R = 8, E = 1000, rigid plane
+RADIUS, BALL_PEAK, BALL_FORCE = 1.00964 / 10.0, 88.290 / 10.0, 60.0 * np.pi / 1000.0  # R = 8, E = 1000, rigid plane
 FIT = 1.287775  # pressure of rings of radii 1, 2 and 3, E = 1000, interference 0.01, plane strain
 INSIDE = 0.8  # of the half width: beyond, the pressure ends within two facets
 
@@ -43,13 +43,13 @@ def hertz_ball(cell: str, n: int) -> abut.Model:
     """A ball on a rigid plane, axisymmetric or an octant, 0.9 n facets on the radius of contact."""
     material, solid = abut.LinearElastic(1000.0, NU), CELLS[cell].dim == 3
     if solid:
-        whole = sphere_octant(8.0, (0.0, 0.0, 8.0), fine=0.275, cells=n, growth=2.0, cell=cell)
+        whole = sphere_octant(8.0, (0.0, 0.0, 8.0), fine=0.11, cells=n, growth=2.0, cell=cell)
         parts = {"ball": whole, "plane": box((0.0, 8.0), (0.0, 8.0), (-1.0, 0.0), (1, 1, 1))}
         held = [abut.Support(f"plane.{side}", x=0, y=0, z=0) for side in ("bottom", "top")]
         held += [abut.Support("ball.x0", x=0), abut.Support("ball.y0", y=0)]
         load = abut.Force("ball.z0", (0.0, 0.0, -BALL_FORCE / 4.0))
     else:
-        half = quarter_disc(8.0, (0.0, 8.0), fine=0.275, cells=n, cell=cell)
+        half = quarter_disc(8.0, (0.0, 8.0), fine=0.11, cells=n, cell=cell)
         parts = {"ball": half, "plane": rectangle((0.0, 8.0), (-1.0, 0.0), (1, 1))}
         held = [abut.Support(f"plane.{side}", x=0, y=0) for side in ("bottom", "top")]
         load = abut.Force("ball.flat", (0.0, -BALL_FORCE))
@@ -60,7 +60,10 @@ def hertz_ball(cell: str, n: int) -> abut.Model:
 
 def press_fit(cell: str, n: int) -> abut.Model:
     """A quarter of two rings shrunk on each other, plane strain, n cells through each wall and 3 n round."""
-    parts = {"hub": ring((2.0, 3.0), cells=(n, 3 * n), cell=cell), "shaft": ring((1.0, 2.0), cells=(n, 3 * n), cell=cell)}
+    parts = {
+        "hub": ring((2.0, 3.0), cells=(n, 3 * n), cell=cell),
+        "shaft": ring((1.0, 2.0), cells=(n, 3 * n), cell=cell),
+    }
     held = [abut.Support(f"{body}.start", y=0) for body in parts] + [abut.Support(f"{body}.end", x=0) for body in parts]
     material = abut.LinearElastic(1000.0, NU)
     contact = abut.Contact("hub.inner", "shaft.outer", offset=-0.01)
@@ -73,7 +76,10 @@ def line_errors(solution: abut.Solution) -> dict[str, float]:
     x, stress, a = solution.model.mesh.points, solution.steps[-1].stress, HALF_WIDTH
     nodes = _nodes(solution, "block.top", lambda x: np.abs(x[:, 0]) < INSIDE * a)
     p = np.sqrt(1.0 - (x[nodes, 0] / a) ** 2)
-    known = {"normal": stress[nodes, 1] / LINE_PEAK + p, "von Mises": von_mises(stress[nodes]) / LINE_PEAK - (1 - 2 * NU) * p}
+    known = {
+        "normal": stress[nodes, 1] / LINE_PEAK + p,
+        "von Mises": von_mises(stress[nodes]) / LINE_PEAK - (1 - 2 * NU) * p,
+    }
     block = solution.model.mesh.nodes_of("block")
     middle = block[(np.abs(x[block, 0]) < 1e-9) & (x[block, 1] > -2 * a)]
     shear = np.hypot(0.5 * (stress[middle, 0] - stress[middle, 1]), stress[middle, 3])

@@ -23,6 +23,7 @@ from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult
 
 ALONG = 1e-6  # sine of the angle between a facet's normal and an axis up to which it is along it
+ACROSS = 0.7  # of a surface that meets a plane at more than 45 degrees: the plane's own facets are not meant
 TABLE = {2: ((0, 3), (3, 1)), 3: ((0, 3, 5), (3, 1, 4), (5, 4, 2))}  # components of a tensor's rows
 
 Vector = NDArray[np.float64]
@@ -186,6 +187,12 @@ def _equations(model: Model, skin: _Skin) -> Equations:
     smooth = split.nodes[facet, local].astype(np.int64)
     area = np.zeros((len(split.points), dim))
     np.add.at(area, smooth, area_vectors(surface)[facet, local])
+    for axis in range(dim):  # a curved surface that goes on beyond a plane has its normal in the plane
+        nodes = surface.nodes[skin.mirrored[:, axis]]
+        there = _marked(model, nodes[nodes >= 0])[owner] & (
+            np.abs(area[:, axis]) < ACROSS * np.linalg.norm(area, axis=1)
+        )
+        area[there, axis] = 0.0
     normal = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300)
     keys, point = np.unique(smooth * (int(part.max(initial=0)) + 1) + part.ravel()[facet], return_inverse=True)
     n, point = len(keys), point.ravel()
