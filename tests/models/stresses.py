@@ -1,7 +1,7 @@
 """Contacts whose stresses have closed forms: Hertz's line and ball, Lame's press fit. Errors of what nodes show there.
 
-Hertz's half spaces: the half width (radius) of contact is a hundredth or so of the bodies, since they differ from half spaces
-by terms of that order."""
+Hertz's half spaces: the half width (radius) of contact is a hundredth or so of the bodies, since they differ from half
+spaces by terms of that order."""
 
 from __future__ import annotations
 

@@ -224,9 +224,10 @@ class Solution:
                                    "work of all nodal forces by size"))  # fmt: skip
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
-                                   "estimated error of the elements' stresses in the energy norm, of the whole model or "
-                                   "near contact; what nodes show is closer", pressure=float(np.sqrt(step.stress_error.energy)),
-                                   highest=True, notice=STRESS_NOTICED))  # fmt: skip
+                                   "estimated error of the elements' stresses in the energy norm, of the whole model "
+                                   "or near contact; what nodes show is closer",
+                                   pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
+                                   notice=STRESS_NOTICED))  # fmt: skip
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
