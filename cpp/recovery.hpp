@@ -320,39 +320,38 @@ private:
       }
   }
 
-  // Cholesky's factors of the lower half in place. What rounding leaves without a pivot stays 0.
+  // Cholesky's factors of the lower half in place, column by column, so that the innermost loops are sums of rows. What
+  // rounding leaves without a pivot stays 0.
   static void solve(double *m, int stride, int size, double *b, int columns, double *result) {
     std::array<bool, UNKNOWNS> left{};
+    std::array<double, UNKNOWNS> column, before;
+    for (int j = 0; j < size; ++j)
+      before[j] = m[j * stride + j];
     for (int j = 0; j < size; ++j) {
-      double *own = m + j * stride;
-      const double before = own[j];
-      for (int l = 0; l < j; ++l) {
-        if (left[l]) {
-          own[l] = 0;
-          continue;
-        }
-        const double *other = m + l * stride;
-        double sum = own[l];
-        for (int i = 0; i < l; ++i)
-          sum -= own[i] * other[i];
-        own[l] = sum / other[l];
-        own[j] -= own[l] * own[l];
+      const double pivot = m[j * stride + j];
+      left[j] = !(pivot > 1e-14 * before[j]);
+      const double root = left[j] ? 1 : std::sqrt(pivot), scale = left[j] ? 0 : 1 / root;
+      m[j * stride + j] = root;
+      for (int l = j + 1; l < size; ++l)
+        column[l] = m[l * stride + j] *= scale;
+      for (int l = j + 1; l < size; ++l) {
+        const double factor = column[l];
+        double *row = m + l * stride;
+        if (factor != 0)
+          for (int i = j + 1; i <= l; ++i)
+            row[i] -= factor * column[i];
       }
-      left[j] = !(own[j] > 1e-14 * before);
-      own[j] = left[j] ? 1 : std::sqrt(own[j]);
       for (int c = 0; c < columns; ++c) {
-        double sum = b[j * columns + c];
-        for (int l = 0; l < j; ++l)
-          sum -= own[l] * result[l * columns + c];
-        result[j * columns + c] = left[j] ? 0 : sum / own[j];
+        const double value = result[j * columns + c] = b[j * columns + c] * scale;
+        for (int l = j + 1; l < size; ++l)
+          b[l * columns + c] -= column[l] * value;
       }
     }
     for (int j = size - 1; j >= 0; --j)
       for (int c = 0; c < columns; ++c) {
-        double sum = result[j * columns + c];
-        for (int l = j + 1; l < size; ++l)
-          sum -= left[l] ? 0 : m[l * stride + j] * result[l * columns + c];
-        result[j * columns + c] = left[j] ? 0 : sum / m[j * stride + j];
+        const double value = result[j * columns + c] = left[j] ? 0 : result[j * columns + c] / m[j * stride + j];
+        for (int l = 0; l < j; ++l)
+          result[l * columns + c] -= m[j * stride + l] * value;
       }
   }
 
