@@ -189,7 +189,7 @@ def _equations(model: Model, skin: _Skin) -> Equations:
     np.add.at(area, smooth, area_vectors(surface)[facet, local])
     for axis in range(dim):  # a curved surface that goes on beyond a plane has its normal in the plane
         nodes = surface.nodes[skin.mirrored[:, axis]]
-        there = _marked(model, nodes[nodes >= 0])[owner] & (
+        there = _marked(model, nodes[nodes >= 0].astype(np.int64))[owner] & (
             np.abs(area[:, axis]) < ACROSS * np.linalg.norm(area, axis=1)
         )
         area[there, axis] = 0.0
