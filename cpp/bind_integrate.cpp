@@ -1,4 +1,4 @@
-// The integration over cells for Python: strains at points, and forces, stiffness and nodal stresses of the isotropic
+// The integration over cells for Python: strains at points, and forces, stiffness and stresses of the isotropic
 // material or of stresses and tangents that Python has evaluated.
 #include "bind.hpp"
 #include "integrate.hpp"
@@ -12,7 +12,6 @@ namespace abut {
 
 template <int n> using Output = nb::ndarray<double, nb::numpy, nb::ndim<n>, nb::c_contig, nb::device::cpu>;
 using Tangent = std::tuple<Vector<std::int64_t>, Vector<std::int32_t>, Output<1>>; // indptr, indices, values
-using Nodal = std::tuple<Matrix<double>, Output<2>, Output<1>>;                    // extrapolation, total, count
 
 // Cells of one type with a rule, all that their kinematics need; shares the arrays with Python.
 class CellArrays {
@@ -46,7 +45,7 @@ public:
   }
 
   Results results(const std::optional<Output<2>> &force, const std::optional<Tangent> &tangent,
-                  const std::optional<Nodal> &nodal) const {
+                  const std::optional<Output<2>> &at_points) const {
     Results out;
     if (force) {
       if (force->shape(0) != rows() || force->shape(1) != dim())
@@ -59,12 +58,10 @@ public:
         throw nb::value_error("points and pattern disagree");
       out.indptr = indptr.data(), out.indices = indices.data(), out.stiffness = values.data();
     }
-    if (nodal) {
-      const auto &[extrapolation, total, count] = *nodal;
-      if (extrapolation.shape(0) != nodes.shape(1) || extrapolation.shape(1) != weights.shape(0) ||
-          total.shape(0) != rows() || total.shape(1) != STRAINS || count.shape(0) != rows())
-        throw nb::value_error("points and nodal stresses disagree");
-      out.extrapolation = extrapolation.data(), out.total = total.data(), out.count = count.data();
+    if (at_points) {
+      if (at_points->shape(0) != integration_points() || at_points->shape(1) != STRAINS)
+        throw nb::value_error("integration points and stresses disagree");
+      out.stress = at_points->data();
     }
     return out;
   }
@@ -124,39 +121,39 @@ static nb::ndarray<nb::numpy, double> strains(const CellArrays &cells, Matrix<do
 static void integrate_isotropic(const CellArrays &cells, Matrix<double> moduli, bool plane_stress,
                                 std::optional<Matrix<double>> displacement, std::optional<Matrix<double>> thermal,
                                 std::optional<Output<2>> force, std::optional<Tangent> tangent,
-                                std::optional<Nodal> nodal) {
+                                std::optional<Output<2>> stress) {
   if (moduli.shape(0) != cells.count() || moduli.shape(1) != 2)
     throw nb::value_error("cells and materials disagree");
-  if ((force || nodal) && !displacement)
+  if ((force || stress) && !displacement)
     throw nb::value_error("forces and stresses need displacements");
   cells.integrate<SmallStrain>(cells.state(displacement, thermal), Isotropic{moduli.data(), plane_stress},
-                               cells.results(force, tangent, nodal));
+                               cells.results(force, tangent, stress));
 }
 
 static void integrate_given(const CellArrays &cells, std::optional<Matrix<double>> stresses,
                             std::optional<Tensor3<double>> tangents, std::optional<Output<2>> force,
-                            std::optional<Tangent> tangent, std::optional<Nodal> nodal) {
+                            std::optional<Tangent> tangent) {
   const std::size_t points = cells.integration_points();
   if ((stresses && (stresses->shape(0) != points || stresses->shape(1) != STRAINS)) ||
       (tangents && (tangents->shape(0) != points || tangents->shape(1) != STRAINS || tangents->shape(2) != STRAINS)))
     throw nb::value_error("integration points and what is given there disagree");
-  if (((force || nodal) && !stresses) || (tangent && !tangents))
+  if ((force && !stresses) || (tangent && !tangents))
     throw nb::value_error("forces need stresses, and the stiffness needs tangents");
   cells.integrate<SmallStrain>(State{},
                                Given{stresses ? stresses->data() : nullptr, tangents ? tangents->data() : nullptr},
-                               cells.results(force, tangent, nodal));
+                               cells.results(force, tangent, std::nullopt));
 }
 
 static std::optional<std::tuple<std::size_t, double>>
 integrate_hyperelastic(const CellArrays &cells, Matrix<double> constants, int law, bool plane_stress,
                        Matrix<double> displacement, std::optional<Matrix<double>> thermal,
-                       std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Nodal> nodal,
+                       std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
                        std::optional<Output<1>> energy) {
   if (constants.shape(0) != cells.count() || constants.shape(1) != 2 || (energy && energy->shape(0) != cells.count()))
     throw nb::value_error("cells and materials or energies disagree");
   if (law < 0 || law > int(Law::ISOCHORIC))
     throw nb::value_error("no such law");
-  Results results = cells.results(force, tangent, nodal);
+  Results results = cells.results(force, tangent, stress);
   results.energy = energy ? energy->data() : nullptr;
   const Unsound unsound = cells.integrate<FiniteStrain>(
       cells.state(displacement, thermal), Hyperelastic{constants.data(), Law(law), plane_stress}, results);
@@ -180,22 +177,21 @@ void bind_integrate(nb::module_ &m) {
       "integrate_isotropic", &integrate_isotropic, nb::arg("cells"), nb::arg("moduli").noconvert(),
       nb::arg("plane_stress"), nb::arg("displacement").noconvert() = nb::none(),
       nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
-      nb::arg("tangent").noconvert() = nb::none(), nb::arg("nodal").noconvert() = nb::none(),
+      nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
       "Adds up, in place, what is asked for of cells with the moduli (cells, 2) lambda and mu: force (n_points, dim), "
-      "tangent (indptr, indices, values of a block pattern), nodal (extrapolation (n, q), stresses (n_points, 6), "
-      "numbers of cells (n_points,)).");
+      "tangent (indptr, indices, values of a block pattern); stress (cells q, 6) at the integration points is "
+      "written.");
   m.def("integrate_given", &integrate_given, nb::arg("cells"), nb::arg("stresses").noconvert() = nb::none(),
         nb::arg("tangents").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
-        nb::arg("tangent").noconvert() = nb::none(), nb::arg("nodal").noconvert() = nb::none(),
+        nb::arg("tangent").noconvert() = nb::none(),
         "The same with stresses (cells q, 6) and tangents (cells q, 6, 6) at the integration points.");
   m.def("integrate_hyperelastic", &integrate_hyperelastic, nb::arg("cells"), nb::arg("constants").noconvert(),
         nb::arg("law"), nb::arg("plane_stress"), nb::arg("displacement").noconvert(),
         nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
-        nb::arg("tangent").noconvert() = nb::none(), nb::arg("nodal").noconvert() = nb::none(),
+        nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
         nb::arg("energy").noconvert() = nb::none(),
-        "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses at the nodes, "
-        "and "
-        "energy (cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
+        "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses, and energy "
+        "(cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
         "incomplete.");
 }
 

@@ -16,16 +16,14 @@ struct State {
   const double *displacement = nullptr, *thermal = nullptr;
 };
 
-// What is asked for; null pointers are left out. All are added to.
+// What is asked for; null pointers are left out. All but stresses are added to.
 struct Results {
   double *force = nullptr;               // (points, dim)
   const std::int64_t *indptr = nullptr;  // node pattern of the stiffness
   const std::int32_t *indices = nullptr; // sorted in each row
   double *stiffness = nullptr;           // values of the pattern with dim x dim blocks
-  const double *extrapolation = nullptr; // (n, rule) from the integration points of a cell to its nodes
-  double *total = nullptr;               // (points, 6) stresses of the cells at their nodes
-  double *count = nullptr;               // (points,) how many cells these are of
-  double *energy = nullptr;              // (cells,) of finite strains
+  double *stress = nullptr; // (cells, rule, 6) at the integration points, written; Cauchy's of finite strains
+  double *energy = nullptr; // (cells,) of finite strains
 };
 
 // The first cell, in their order, that has no sound deformation, and the determinant of the deformation gradient there;
@@ -121,8 +119,8 @@ public:
         add_force();
       if (results.stiffness)
         add_stiffness();
-      if (results.total)
-        add_nodal_stress();
+      if (results.stress && rows.has(own[0]))
+        write_stress(c);
     }
     return {};
   }
@@ -132,7 +130,7 @@ private:
   using Tangent = typename Material::Tangent;
 
   void evaluate(std::size_t c) {
-    const bool stressed = results.force || results.total;
+    const bool stressed = results.force || results.stress;
     const bool strained = (Material::stress_by_strain && stressed) || Material::tangent_by_strain;
     const double *thermal = state.thermal ? state.thermal + c * n : nullptr;
     double strain[STRAINS];
@@ -177,21 +175,11 @@ private:
         results.force[std::size_t(own[i]) * dim + a] += force[i * dim + a];
   }
 
-  void add_nodal_stress() {
+  void write_stress(std::size_t c) {
     if constexpr (Kinematics::finite)
       for (std::size_t q = 0; q < cells.rule; ++q)
         kinematics.to_cauchy(q, &stress[q * STRAINS]);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!rows.has(own[i]))
-        continue;
-      double sum[STRAINS] = {0};
-      for (std::size_t q = 0; q < cells.rule; ++q)
-        for (int s = 0; s < STRAINS; ++s)
-          sum[s] += results.extrapolation[i * cells.rule + q] * stress[q * STRAINS + s];
-      for (int s = 0; s < STRAINS; ++s)
-        results.total[std::size_t(own[i]) * STRAINS + s] += sum[s];
-      results.count[own[i]] += 1;
-    }
+    std::copy(stress.begin(), stress.end(), results.stress + c * cells.rule * STRAINS);
   }
 
   void add_stiffness() {

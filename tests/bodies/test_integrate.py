@@ -10,8 +10,8 @@ import pytest
 
 from abut._core import strains
 from abut.bodies.assemble import History, internal_force, respond, stiffness, tangent, thermal_load
+from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids, TemperatureChange
-from abut.bodies.stress import nodal_stress
 from abut.cells import CELLS
 from abut.errors import ConvergenceError, InputError
 from abut.materials.elastic import LinearElastic, lame

@@ -7,8 +7,8 @@ import pytest
 
 from abut.bodies.assemble import stiffness, thermal_load
 from abut.bodies.loads import body_load, force_load, pressure_load, surface_area
+from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids, TemperatureChange
-from abut.bodies.stress import nodal_stress
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from abut._core import shape_functions, smallest_determinants
+from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids, TemperatureChange
-from abut.bodies.stress import nodal_stress, stress_sums
+from abut.bodies.stress import point_stress
 from abut.cells import CELLS
 from abut.materials.elastic import LinearElastic, lame
 from abut.mesh.integrals import gradients
 from abut.mesh.make import box
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import BBAR, stiffness_rule, stress_rule
-from abut.mesh.reference import reference_nodes
+from abut.mesh.quadrature import BBAR, stiffness_rule
 from models.patch import two_blocks
 
 MATERIALS = {
@@ -39,16 +39,16 @@ CASES = [
 
 def stress_by_numpy(
     solids: Solids, temperatures: Mapping[str, float], displacement: np.ndarray, nodal: np.ndarray
-) -> np.ndarray:
-    """Average over the cells of a point of D (B u - thermal strain) at the stress points, carried to the nodes linearly."""
+) -> list[np.ndarray]:
+    """D (B u - thermal strain) at the integration points, of each group of cells (cells, points, 6)."""
     mesh, plane, dim = solids.mesh, solids.plane, solids.mesh.dim
-    total, count = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.points))
+    result = []
     body = np.empty(mesh.n_cells, dtype=object)
     for name, own in mesh.bodies.items():
         body[own] = name
     for group in solids.groups():
         kind, nodes, cells, rule = group.kind, group.nodes, group.cells, group.integration
-        xi, weights = stress_rule(kind)
+        xi, weights = group.rule
         shapes, derivatives = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
         slopes, det = gradients(mesh.points, nodes, derivatives)
         slope = np.einsum("cna,cqnb->cqab", displacement[nodes], slopes)
@@ -74,18 +74,8 @@ def stress_by_numpy(
         trace = np.trace(strain, axis1=2, axis2=3)
         stress = 2.0 * mu[..., None, None] * strain + (lambda_ * trace)[..., None, None] * np.eye(3)
         voigt = stress[..., [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
-        np.add.at(total, nodes, np.einsum("nq,cqs->cns", to_nodes(kind, xi), voigt))
-        np.add.at(count, nodes, 1.0)
-    return total / count[:, None]
-
-
-def to_nodes(kind: str, xi: np.ndarray) -> np.ndarray:
-    """The linear function nearest to values at xi, at the nodes: a single point, or two, tell only a constant."""
-    if len(xi) <= 2:
-        return np.full((CELLS[kind].nodes, len(xi)), 1.0 / len(xi))
-    ones = np.ones((len(xi), 1))
-    nodes = reference_nodes(kind)
-    return np.column_stack([np.ones(len(nodes)), nodes]) @ np.linalg.pinv(np.hstack([ones, xi]))
+        result.append(voigt)
+    return result
 
 
 def blocks(kind: str, plane: str | None) -> Mesh:
@@ -101,20 +91,21 @@ def test_stresses_are_those_of_the_plain_code(kind: str, plane: str | None, rule
     u, nodal = random.uniform(-1, 1, mesh.points.shape), random.uniform(-1, 1, len(mesh.points))
     temperatures = {"lower": 2.0, "upper": -1.0}
     solids = Solids(mesh, MATERIALS, plane, {"lower": rule, "upper": "full"})
-    got = nodal_stress(solids, u, TemperatureChange(temperatures, nodal))
-    want = stress_by_numpy(solids, temperatures, u, nodal)
-    assert np.abs(got - want).max() < 1e-13 * np.abs(want).max()
+    got = point_stress(solids, u, TemperatureChange(temperatures, nodal))
+    for own, want in zip(got, stress_by_numpy(solids, temperatures, u, nodal), strict=True):
+        assert np.abs(own - want).max() < 1e-13 * np.abs(want).max()
 
 
-def test_sums_of_parts_add_up_and_a_body_without_material_counts_nothing() -> None:
+def test_stresses_of_a_body_are_its_own() -> None:
+    """Recovered from its own cells, with another body beside it or without; a body without material has none."""
     mesh = blocks("hex8", None)
     u = np.random.default_rng(4).uniform(-1, 1, mesh.points.shape)
-    whole, count = stress_sums(Solids(mesh, MATERIALS), u)
-    parts = [stress_sums(Solids(mesh, {name: material}), u) for name, material in MATERIALS.items()]
-    assert np.array_equal(sum(total for total, _ in parts), whole)
-    assert np.array_equal(sum(own for _, own in parts), count)
-    cells = sum(np.bincount(block.nodes.ravel(), minlength=len(count)) for block in mesh.blocks)
-    assert np.array_equal(count, cells)
+    whole = nodal_stress(Solids(mesh, MATERIALS), u)
+    for name, material in MATERIALS.items():
+        alone = nodal_stress(Solids(mesh, {name: material}), u)
+        inside = np.isin(np.arange(len(mesh.points)), mesh.nodes_of(name))
+        assert np.abs(alone - whole)[inside].max() < 1e-12 * np.abs(whole).max()
+        assert not alone[~inside].any()
 
 
 @pytest.mark.parametrize("kind", [kind for kind, cell in CELLS.items() if cell.dim > 1])

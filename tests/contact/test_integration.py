@@ -9,8 +9,8 @@ import pytest
 
 import abut
 from abut.bodies.assemble import stiffness, thermal_load
+from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids, TemperatureChange
-from abut.bodies.stress import nodal_stress
 from abut.cells import CELLS
 from abut.errors import InputError
 from abut.materials.elastic import LinearElastic

@@ -112,7 +112,7 @@ def test_pieces_are_the_whole(name: str, size: int, tmp_path: Path, request: pyt
     middles = np.concatenate([mesh.points[block.nodes].mean(axis=1) for block in mesh.blocks])
     places = np.pad(middles + 0.01, ((0, 0), (0, 3 - mesh.dim)))  # inside cells, off their symmetry
     expected, found = probe(one, places), probe(other, places)
-    assert list(found) == list(expected) == ["displacement", "stress", "von_mises", "body"]
+    assert list(found) == list(expected) == ["displacement", "stress", "von_mises", "body", "stress_error"]
     for key, values in expected.items():
         assert np.abs(found[key] - values).max() <= 1e-12 * np.abs(values).max(), key
     assert np.ptp(expected["von_mises"]) > 0.0  # what is compared is not constant

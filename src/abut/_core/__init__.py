@@ -8,6 +8,8 @@ from abut._core._core import (
     block_product,
     couple_surfaces,
     couple_tangent,
+    evaluate_patches,
+    fit_patches,
     integrate_given,
     integrate_hyperelastic,
     integrate_isotropic,
@@ -21,6 +23,7 @@ from abut._core._core import (
     slip_tangent,
     smallest_determinants,
     strains,
+    stress_errors,
     strong_part,
     values_in,
 )
@@ -31,6 +34,8 @@ __all__ = [
     "block_product",
     "couple_surfaces",
     "couple_tangent",
+    "evaluate_patches",
+    "fit_patches",
     "integrate_given",
     "integrate_hyperelastic",
     "integrate_isotropic",
@@ -44,6 +49,7 @@ __all__ = [
     "slip_tangent",
     "smallest_determinants",
     "strains",
+    "stress_errors",
     "strong_part",
     "values_in",
 ]

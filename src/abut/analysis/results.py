@@ -14,8 +14,12 @@ from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
+from abut.analysis.known_stress import known_stress
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
+from abut.bodies.averages import averages
+from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
 from abut.model.conditions import weights
@@ -81,8 +85,13 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
-    stress = assembled.bodies.stress(end.motion)
-    contacts = _contacts(end, attempt, before, stress)
+    sampled = assembled.bodies.stress(end.motion)
+    points = model.mesh.points + end.nodal if model.finite else model.mesh.points
+    points, solids = np.ascontiguousarray(points), model.deformable
+    contacts = _contacts(end, attempt, before, averages(solids, sampled))
+    known = known_stress(model, points, state.time, system.pairs, contacts)
+    values = recovered(solids, points, sampled, known)
+    stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, balance = told(end, attempt, acted, contacts, before)
     strained = _strained(system, end.displacement, end.internal)
@@ -115,6 +124,7 @@ def step_result(
         strained=strained,
         landed=_landed(state),
         energy=balance if strained else None,
+        stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
     )
     return step, acting
 

@@ -15,6 +15,7 @@ from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import law
 from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
+from abut.mesh.patches import Patches, patches
 from abut.mesh.quadrature import Rule, cell_rule
 
 Array = NDArray[np.float64]
@@ -59,6 +60,11 @@ class Solids:
         for number, body in enumerate(self.materials):
             result[self.mesh.bodies[body]] = number
         return result
+
+    @cached_property
+    def patches(self) -> Patches:
+        """Over which stresses are recovered."""
+        return patches(self.mesh, self.body_of)
 
     def groups(self) -> Sequence[Group]:
         """All cells that have a material."""

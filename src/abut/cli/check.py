@@ -36,6 +36,8 @@ def add_check(commands: Any) -> None:
 
 def _check(arguments: argparse.Namespace) -> int:
     from abut.diagnosis import Finding, Report, check, from_error
+    from abut.diagnosis.earlier import sizes_wanted
+    from abut.diagnosis.finding import in_order
     from abut.job import load_job
     from abut.job.load import DECK
     from abut.job.pairs import write_pairs
@@ -49,7 +51,7 @@ def _check(arguments: argparse.Namespace) -> int:
     report = check(job.model)
     where = "deck" if job.path.suffix.lower() == DECK else "notes"
     found = tuple(Finding("info", where, note) for note in job.notes)
-    report = Report(report.findings + found, report.motions)
+    report = Report(in_order([*report.findings, *sizes_wanted(job.directory), *found]), report.motions)
     if arguments.output is not None:
         _write_motions(arguments.output, job, report)
     if arguments.write_pairs is not None:

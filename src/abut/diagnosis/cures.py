@@ -12,6 +12,7 @@ from abut.contact.sides import words
 from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
 from abut.solution import Check, ContactResult, Solution
+from abut.solution.stress_error import ContactStressError
 
 SECOND = " (second pass)"
 EITHER = Choice(1, "alike", False)  # whatever else speaks for the present contactor
@@ -24,6 +25,8 @@ def cure(check: Check, solution: Solution) -> str:
     """What to change so that a failed check passes, or one that warns does no more, a sentence; empty for the others."""
     if check.passed and not check.warns:
         return ""
+    if check.name == "stress error":
+        return _stress_error(solution)
     if not check.contact:
         return MODEL[check.name]
     if check.name in UNSETTLED and not solution.converged:
@@ -51,9 +54,24 @@ MODEL = {
     "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
+    "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have "
+    "no limit",
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
 }
+
+
+def _stress_error(solution: Solution) -> str:
+    known = [step.stress_error for step in solution.steps if step.stress_error is not None]
+    coarse = max(known, key=lambda e: e.energy).coarse
+    where = MODEL["stress error"]
+    if not coarse:
+        return where
+    worst: dict[str, ContactStressError] = {}
+    for near in coarse:
+        worst.setdefault(near.body, near)
+    sizes = ", ".join(f"{e.wanted:.2g} (now {e.size:.2g}) in '{e.body}'" for e in worst.values())
+    return f"for 5 %, cells where bodies touch of about {sizes}; {where}"
 
 
 def _balance(contact: Contact, result: ContactResult, sides: str) -> str:

@@ -18,7 +18,7 @@ from abut.model import Model
 from abut.output.fields import list_name, piece_name, remove_pieces, whole_name
 from abut.parallel.partition import Piece
 from abut.solution import Step
-from abut.solution.grids import Grid, field_grid
+from abut.solution.grids import Grid, cell_error, field_grid
 
 if TYPE_CHECKING:
     from abut.parallel.team import Store, Team
@@ -37,10 +37,14 @@ class Pieces:
         dealt: Sequence[Piece] = self._team.store["pieces"]
         listed = folder / list_name(step.number)
         listed.unlink(missing_ok=True)  # of an earlier run: it is never there beside pieces that are not its own
+        error = cell_error(step)
         arguments = [
-            (folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points])
+            (
+                folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points],
+                None if error is None else error[p.cells],
+            )
             for process, p in enumerate(dealt)
-        ]
+        ]  # fmt: skip
         written = [result for result in self._team.each(write_piece, per_rank=arguments) if result is not None]
         for result in written:
             if isinstance(result, InputError):
@@ -52,16 +56,21 @@ class Pieces:
 
 
 def write_piece(
-    store: Store, path: Path, displacement: NDArray[np.float64], stress: NDArray[np.float64]
+    store: Store,
+    path: Path,
+    displacement: NDArray[np.float64],
+    stress: NDArray[np.float64],
+    error: NDArray[np.float64] | None,
 ) -> dict[str, list[tuple[str, str, int]]] | InputError | None:
-    """Write this process's part of the mesh with displacement (n_points, dim) and stress (n_points, 6) at its points.
+    """Write this process's part of the mesh with displacement (n_points, dim) and stress (n_points, 6) at its points and the
+    estimated error of stresses (n_cells,).
 
     Returns the arrays by place (name, type, components); None where it has no cells; the error where it cannot be
     written: one process must not raise while the others wait for it."""
     mesh: Mesh = store["part"].mesh
     if mesh.n_cells == 0:
         return None
-    grid = field_grid(mesh, displacement, stress)
+    grid = field_grid(mesh, displacement, stress, error)
     try:
         write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     except InputError as error:

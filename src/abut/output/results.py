@@ -162,6 +162,7 @@ def _step_summary(step: Step) -> Json:
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
         "contacts": [contact_summary(c) for c in step.contacts],
         **energy_summary(step),
+        **_stress_error(step),
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
@@ -177,6 +178,16 @@ def _step_summary(step: Step) -> Json:
             for place in unsettled(step)
         ],
     }
+
+
+def _stress_error(step: Step) -> Json:
+    error = step.stress_error
+    if error is None:
+        return {}
+    near = [
+        {"contact": e.contact, "body": e.body, "error": e.error, "size": e.size, "wanted": e.wanted} for e in error.near
+    ]
+    return {"stress_error": {"whole": error.whole, "energy": error.energy, "near_contact": near}}
 
 
 def _history(solution: Solution) -> str:

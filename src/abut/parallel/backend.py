@@ -9,9 +9,9 @@ from typing import TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.finite import Inverted
+from abut.bodies.inverted import Inverted
 from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import averaged
+from abut.bodies.stress import PointStress
 from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
 from abut.contact.moving_normals import MovingNormals
@@ -109,17 +109,21 @@ class DistributedBodies:
         self.told[:] = [(constraints, places)]
         return places
 
-    def stress(
-        self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """As in ``Backend``."""
-        arguments = [(displacement[piece.points], temperature[piece.points]) for piece in self.pieces]
-        total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
-        sums = self.team.each(part.stresses, self.model.temperatures(time), per_rank=arguments)
-        for piece, (stress, cells) in zip(self.pieces, sums):
-            total[piece.points] += stress
-            count[piece.points] += cells
-        return averaged(total, count)
+    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
+        """As in ``Backend``, gathered from all processes."""
+        answers = self.team.each(part.stresses, change.bodies, per_rank=self._moved(displacement, change))
+        self._require_sound(answers)
+        groups = self.model.deformable.groups()
+        result = [np.empty((len(group.cells), len(group.rule[1]), 6)) for group in groups]
+        place = np.empty((self.model.mesh.n_cells, 2), dtype=np.int64)  # group and row of each cell
+        for number, group in enumerate(groups):
+            place[group.cells] = np.column_stack([np.full(len(group.cells), number), np.arange(len(group.cells))])
+        for piece, (stress, cells) in zip(self.pieces, answers):
+            for values, own in zip(stress, cells):
+                number, rows = place[piece.cells[own]].T
+                for one in np.unique(number):  # groups of the whole end where blocks of cells do
+                    result[one][rows[number == one]] = values[number == one]
+        return tuple(result)
 
     def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
         """As in ``Backend``."""
@@ -134,21 +138,6 @@ class DistributedBodies:
         force = self.summed([force for force, _ in answers], displacement.ravel())
         slope = None if kept is None else TangentOfParts(self, kept)
         return Deformed(force, slope, sum(energy for _, energy in answers))
-
-    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
-        """As in ``Backend``. Cells of one kind are treated alike on all processes."""
-        moved, coarse = self._moved(displacement, change), frozenset[tuple[str, int, str]]()
-        for _ in range(2):
-            answers = self.team.each(part.cauchy, change.bodies, coarse, per_rank=moved)
-            self._require_sound(answers)
-            coarse = frozenset[tuple[str, int, str]]().union(*(sums.unsound for sums in answers))
-            if not coarse:
-                break
-        total, count = np.zeros((len(displacement), 6)), np.zeros(len(displacement))
-        for piece, sums in zip(self.pieces, answers):
-            total[piece.points] += sums.total
-            count[piece.points] += sums.count
-        return averaged(total, count)
 
     def _moved(
         self, displacement: NDArray[np.float64], change: TemperatureChange

@@ -9,9 +9,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.bodies.assemble import internal_force, stiffness
-from abut.bodies.finite import CauchySums, Inverted, cauchy_sums, respond_finite
+from abut.bodies.finite import respond_finite
+from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Solids, TemperatureChange
-from abut.bodies.stress import stress_sums
+from abut.bodies.stress import PointStress, point_stress
 from abut.parallel.team import Store
 
 InsideOut = tuple[int, str, float]  # number of a cell of the part, body, determinant of the deformation gradient
@@ -38,10 +39,18 @@ def internal(store: Store, displacement: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def stresses(
-    store: Store, temperatures: dict[str, float], displacement: NDArray[np.float64], nodal: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Sums of stresses (n_points, 6) over this part's cells at its points, and how many take part (n_points,)."""
-    return stress_sums(store["part"], displacement, TemperatureChange(temperatures, nodal))
+    store: Store,
+    temperatures: dict[str, float],
+    displacement: NDArray[np.float64],
+    nodal: NDArray[np.float64] | None,
+) -> tuple[PointStress, list[NDArray[np.int64]]] | InsideOut:
+    """Stresses at the integration points of this part's groups of cells, and the numbers of these cells in the part."""
+    part: Solids = store["part"]
+    try:
+        stress = point_stress(part, displacement, TemperatureChange(temperatures, nodal))
+    except Inverted as error:
+        return error.cell, error.body, error.determinant
+    return stress, [group.cells for group in part.groups()]
 
 
 def deform(
@@ -71,17 +80,3 @@ def deform(
 def product(store: Store, number: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Of the tangent kept under ``number`` with values at this part's points."""
     return np.asarray(store[number] @ values)
-
-
-def cauchy(
-    store: Store,
-    temperatures: dict[str, float],
-    coarse: frozenset[tuple[str, int, str]],
-    displacement: NDArray[np.float64],
-    nodal: NDArray[np.float64],
-) -> CauchySums | InsideOut:
-    """Of this part, as ``abut.bodies.finite.cauchy_sums``."""
-    try:
-        return cauchy_sums(store["part"], displacement, TemperatureChange(temperatures, nodal), coarse)
-    except Inverted as error:
-        return error.cell, error.body, error.determinant

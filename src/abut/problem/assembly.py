@@ -75,7 +75,8 @@ def assemble(
     if model.finite:
         bodies = FiniteBodies(model, loaded, backend)
     else:
-        bodies = LinearBodies(backend, loaded, model.histories) if constant else SolidBodies(model, loaded)
+        linear = LinearBodies(backend, loaded, model.histories, model.temperatures)
+        bodies = linear if constant else SolidBodies(model, loaded)
     problem = ContactProblem(
         model=model,
         terms=(

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.bodies.assemble import stiffness
-from abut.bodies.finite import cauchy_stress, respond_finite
+from abut.bodies.finite import respond_finite
 from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import nodal_stress
+from abut.bodies.stress import PointStress, point_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, differentiated
 from abut.contact.moving_normals import MovingNormals
@@ -58,19 +58,12 @@ class Backend(Tangent, Protocol):
         """The same at current positions with its derivatives, as ``abut.contact.coupling_tangent.differentiated``."""
         ...
 
-    def stress(
-        self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Nodal averages (n_points, 6) under displacements (n_points, dim) and nodal changes of temperature (n_points,);
-        whole solids are heated by their share at ``time``."""
+    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
+        """At the integration points under displacements (n_points, dim), as ``abut.bodies.stress.point_stress``."""
         ...
 
     def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
         """Under finite strains, at displacements (n_points, dim). Raises ``abut.bodies.finite.Inverted``."""
-        ...
-
-    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
-        """The same: nodal averages (n_points, 6) of Cauchy stresses."""
         ...
 
 
@@ -100,22 +93,15 @@ class Serial:
         """As in ``Backend``, CSR."""
         return constraints.reduce(self.matrix)
 
-    def stress(
-        self, displacement: NDArray[np.float64], time: float, temperature: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
         """As in ``Backend``."""
-        change = TemperatureChange(self.model.temperatures(time), temperature)
-        return nodal_stress(self.model.deformable, displacement, change)
+        return point_stress(self.model.deformable, displacement, change)
 
     def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
         """As in ``Backend``."""
         response = respond_finite(self.model.deformable, displacement, change, tangent)
         slope = Serial(self.model, response.tangent) if tangent else None
         return Deformed(response.force, slope, float(response.energy.sum()))
-
-    def cauchy(self, displacement: NDArray[np.float64], change: TemperatureChange) -> NDArray[np.float64]:
-        """As in ``Backend``."""
-        return cauchy_stress(self.model.deformable, displacement, change)
 
 
 def serial(model: Model) -> Serial:

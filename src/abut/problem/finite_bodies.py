@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from abut.bodies.finite import is_symmetric
 from abut.bodies.solids import TemperatureChange
+from abut.bodies.stress import PointStress
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.backend import Backend
@@ -16,7 +17,7 @@ from abut.problem.terms import Motion, Share, Vector
 @dataclass(frozen=True)
 class FiniteBodies:
     """Hyperelastic bodies under finite strains, theory (D2). ``evaluate`` and ``stress`` raise
-    ``abut.bodies.finite.Inverted`` at displacements that turn a cell inside out."""
+    ``abut.bodies.inverted.Inverted`` at displacements that turn a cell inside out."""
 
     model: Model
     loads: Loads
@@ -29,9 +30,9 @@ class FiniteBodies:
         deformed = self.backend.deform(*self._at(now))
         return Share(deformed.force, deformed.tangent, symmetric=is_symmetric(self.model.deformable))
 
-    def stress(self, motion: Motion) -> Vector:
+    def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``: Cauchy stresses."""
-        return self.backend.cauchy(*self._at(motion))
+        return self.backend.stress(*self._at(motion))
 
     def energy(self, motion: Motion) -> float:
         """Elastic energy of all bodies, force times length (per unit thickness in 2D)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.bodies.assemble import respond
 from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import nodal_stress
+from abut.bodies.stress import PointStress, point_stress
 from abut.model import History as Amplitude
 from abut.model import Model
 from abut.model.conditions import weights
@@ -61,18 +61,20 @@ class Term(Protocol):
 class Bodies(Term, Protocol):
     """A term that has stresses."""
 
-    def stress(self, motion: Motion) -> Vector:
-        """Nodal averages (n_points, 6)."""
+    def stress(self, motion: Motion) -> PointStress:
+        """At the integration points."""
         ...
 
 
 @dataclass(frozen=True)
 class LinearBodies:
-    """Linear elastic bodies under small strains: force = K u; their thermal strains are loads."""
+    """Linear elastic bodies under small strains: force = K u; their thermal strains are loads. temperatures: change of
+    temperature of each body as a whole at a time."""
 
     backend: Backend
     loads: Loads
     histories: Sequence[Amplitude]
+    temperatures: Callable[[float], Mapping[str, float]]
     name: str = "bodies"
     constant: bool = True
 
@@ -80,10 +82,11 @@ class LinearBodies:
         """As in ``Term``; the tangent is the backend."""
         return Share(self.backend.internal(now.displacement), self.backend)
 
-    def stress(self, motion: Motion) -> Vector:
+    def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``."""
-        nodal = motion.displacement.reshape(len(self.loads.temperature), -1)
-        return self.backend.stress(nodal, motion.time, self.loads.temperature @ weights(self.histories, motion.time))
+        temperature = self.loads.temperature @ weights(self.histories, motion.time)
+        change = TemperatureChange(self.temperatures(motion.time), temperature)
+        return self.backend.stress(motion.displacement.reshape(len(temperature), -1), change)
 
 
 @dataclass(frozen=True)
@@ -101,10 +104,10 @@ class SolidBodies:
         response = respond(self.model.deformable, nodal, change, history)
         return Share(response.force, Serial(self.model, response.tangent), response.history)
 
-    def stress(self, motion: Motion) -> Vector:
+    def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``."""
         nodal, change, history = self._at(motion, motion.history)
-        return nodal_stress(self.model.deformable, nodal, change, history)
+        return point_stress(self.model.deformable, nodal, change, history)
 
     def _at(
         self, motion: Motion, history: Mapping[str, Vector]

@@ -95,7 +95,7 @@ def _head(solution: Solution, origin: Origin) -> str:
     elif theory:
         good, verdict = False, f"Converged, but different from theory: {', '.join(r['quantity'] for r in theory)}."
     else:
-        warns = [f"{c.contact}: {c.name}" for c in solution.certificate if c.warns]
+        warns = [f"{c.contact}: {c.name}" if c.contact else c.name for c in solution.certificate if c.warns]
         but = f", with a warning of {', '.join(warns)}" if warns else ""
         good, verdict = True, f"Converged, and all {len(solution.certificate)} checks pass{but}."
     facts = [("unknowns", f"{solution.dofs:,}".replace(",", " ")), ("solver", solution.solver)]

@@ -32,13 +32,22 @@ class Grid:
     cell_data: dict[str, Array]
 
 
-def field_grid(mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> Grid:
-    """The whole mesh with displacement, stress, von_mises at points, and the body's number at cells."""
+def field_grid(
+    mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64], error: NDArray[np.float64] | None = None
+) -> Grid:
+    """The whole mesh with displacement, stress, von_mises at points, and the body's number and stress_error at cells (error:
+    (n_cells,) as in ``StressError``, zero where it is not known)."""
     body = np.zeros(mesh.n_cells, dtype=np.int32)
     for number, cells in enumerate(mesh.bodies.values()):
         body[cells] = number
+    of_cells = np.zeros(mesh.n_cells) if error is None else error
     blocks = tuple((block.kind, block.nodes) for block in mesh.blocks)
-    return Grid(mesh.points, blocks, _at_points(displacement, stress), {"body": body})
+    return Grid(mesh.points, blocks, _at_points(displacement, stress), {"body": body, "stress_error": of_cells})
+
+
+def cell_error(step: Step) -> NDArray[np.float64] | None:
+    """``error`` of ``field_grid``."""
+    return None if step.stress_error is None else step.stress_error.cells
 
 
 def point_fields(step: Step) -> dict[str, NDArray[np.float64]]:

@@ -1,0 +1,170 @@
+// Recovery of stresses for Python: fits over patches, their values at points, and the estimated error of each cell.
+#include "bind.hpp"
+#include "jacobian.hpp"
+#include "parallel.hpp"
+#include "recovery.hpp"
+#include <nanobind/stl/tuple.h>
+#include <numbers>
+#include <tuple>
+
+namespace abut {
+
+using Integers = Vector<std::int64_t>;
+using Numbers = Vector<std::int32_t>;
+using Samples =
+    std::tuple<Matrix<double>, Matrix<double>, Integers, Tensor3<double>>; // positions, stresses, first, spread
+using Cover = std::tuple<Matrix<double>, Integers, Integers, Numbers>;     // centres, cells_of, cells, degree
+using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;          // planes of each patch, their normals
+using Equations = std::tuple<Integers, Integers, Matrix<double>, Matrix<double>, Vector<double>>;
+using Table = nb::ndarray<nb::numpy, double>;
+
+constexpr std::size_t FEW_PATCHES = 500; // not worth a thread
+
+static void require(bool agree) {
+  if (!agree)
+    throw nb::value_error("patches, samples and equations disagree");
+}
+
+template <int dim> void fit_all(const Patches &patches, double *coefficients, double *metrics) {
+  const std::size_t parts = patches.count < FEW_PATCHES ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    PatchFit<dim> fit(patches);
+    constexpr int width = PatchFit<dim>::UNKNOWNS;
+    for (std::size_t k = patches.count * part / parts; k < patches.count * (part + 1) / parts; ++k)
+      fit.fit(k, coefficients + k * width, metrics + k * dim * dim);
+  });
+}
+
+static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover &cover, const Mirrors &mirrors,
+                                            const Equations &equations, double heavy) {
+  const auto &[x, stress, first, spread] = samples;
+  const auto &[centre, cells_of, cells, degree] = cover;
+  const auto &[planes, normals] = mirrors;
+  const auto &[rows_of, rows, row_x, row_coefficients, row_values] = equations;
+  const std::size_t count = centre.shape(0), dim = x.shape(1), c = dim == 2 ? 4 : 6;
+  require((dim == 2 || dim == 3) && stress.shape(1) == c && stress.shape(0) == x.shape(0) && centre.shape(1) == dim);
+  require(cells_of.shape(0) == count + 1 && degree.shape(0) == count && planes.shape(0) == count &&
+          planes.shape(1) == 3 && normals.shape(1) == dim && rows_of.shape(0) == count + 1);
+  require(row_x.shape(1) == dim && row_coefficients.shape(1) == c && row_x.shape(0) == row_values.shape(0) &&
+          row_coefficients.shape(0) == row_values.shape(0));
+  const Patches patches{x.data(),          stress.data(), first.data(),
+                        spread.data(),     count,         centre.data(),
+                        cells_of.data(),   cells.data(),  rows_of.data(),
+                        rows.data(),       degree.data(), planes.data(),
+                        normals.data(),    row_x.data(),  row_coefficients.data(),
+                        row_values.data(), heavy};
+  const std::size_t terms = (dim + 1) * (dim + 2) / 2;
+  std::vector<double> coefficients(count * terms * c), metrics(count * dim * dim);
+  {
+    nb::gil_scoped_release release;
+    if (dim == 2)
+      fit_all<2>(patches, coefficients.data(), metrics.data());
+    else
+      fit_all<3>(patches, coefficients.data(), metrics.data());
+  }
+  return {to_numpy(std::move(coefficients), {count, terms, c}), to_numpy(std::move(metrics), {count, dim, dim})};
+}
+
+// Each point's value, the weighted sum of the polynomials of some patches there.
+template <int dim>
+void evaluate_all(const double *x, std::size_t count, const std::int64_t *patches_of, const std::int64_t *patches,
+                  const double *weights, const double *centre, const double *coefficients, const double *metrics,
+                  double *result) {
+  constexpr int C = PatchFit<dim>::C, T = PatchFit<dim>::T;
+  double xi[dim], p[T];
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::int64_t k = patches_of[i]; k < patches_of[i + 1]; ++k) {
+      const std::int64_t patch = patches[k];
+      PatchFit<dim>::own(metrics + patch * dim * dim, x + i * dim, centre + patch * dim, xi);
+      PatchFit<dim>::basis(xi, p);
+      for (int t = 0; t < T; ++t)
+        for (int c = 0; c < C; ++c)
+          result[i * C + c] += weights[k] * p[t] * coefficients[(patch * T + t) * C + c];
+    }
+}
+
+static Table evaluate_patches(Matrix<double> x, Integers patches_of, Integers patches, Vector<double> weights,
+                              Matrix<double> centre, Tensor3<double> coefficients, Tensor3<double> metrics) {
+  const std::size_t count = x.shape(0), dim = x.shape(1), c = dim == 2 ? 4 : 6;
+  require((dim == 2 || dim == 3) && patches_of.shape(0) == count + 1 && patches.shape(0) == weights.shape(0) &&
+          centre.shape(1) == dim && coefficients.shape(0) == centre.shape(0) && coefficients.shape(2) == c &&
+          coefficients.shape(1) == (dim + 1) * (dim + 2) / 2 && metrics.shape(0) == centre.shape(0) &&
+          metrics.shape(1) == dim && metrics.shape(2) == dim);
+  std::vector<double> result(count * c);
+  const auto evaluate = dim == 2 ? evaluate_all<2> : evaluate_all<3>;
+  evaluate(x.data(), count, patches_of.data(), patches.data(), weights.data(), centre.data(), coefficients.data(),
+           metrics.data(), result.data());
+  return to_numpy(std::move(result), {count, c});
+}
+
+// Of a stress s (6): s S s with the compliance S (6, 6) of stresses whose shear strains are doubled.
+static double energy(const double *s, const double *compliance) {
+  double sum = 0;
+  for (int a = 0; a < 6; ++a)
+    for (int b = 0; b < 6; ++b)
+      sum += s[a] * compliance[a * 6 + b] * s[b];
+  return sum;
+}
+
+static Table stress_errors(Matrix<double> points, Matrix<std::int32_t> nodes,
+                           const std::tuple<Matrix<double>, Tensor3<double>, Vector<double>> &rule, bool axisymmetric,
+                           Matrix<double> stress, const std::tuple<Matrix<std::int32_t>, Matrix<double>> &recovered,
+                           const std::tuple<Tensor3<double>, Numbers> &compliance) {
+  const auto &[shapes, derivatives, weights] = rule;
+  const auto &[own, nodal] = recovered;
+  const auto &[compliances, body] = compliance;
+  const std::size_t count = nodes.shape(0), n = nodes.shape(1), q = weights.shape(0), dim = points.shape(1);
+  require((dim == 2 || dim == 3) && shapes.shape(0) == q && shapes.shape(1) == n && derivatives.shape(0) == q &&
+          derivatives.shape(1) == n && derivatives.shape(2) == dim && stress.shape(0) == count * q &&
+          stress.shape(1) == 6 && own.shape(0) == count && own.shape(1) == n && nodal.shape(1) == 6 &&
+          body.shape(0) == count && compliances.shape(1) == 6 && compliances.shape(2) == 6);
+  std::vector<double> result(count * 3), x(n * dim), s(n * 6);
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    gather(points.data(), nodes.data() + cell * n, n, dim, x.data());
+    gather(nodal.data(), own.data() + cell * n, n, 6, s.data());
+    const double *own_compliance = compliances.data() + body.data()[cell] * 36;
+    for (std::size_t k = 0; k < q; ++k) {
+      const double *shape = shapes.data() + k * n, *d = derivatives.data() + k * n * dim;
+      double volume =
+          weights.data()[k] * (dim == 2 ? jacobian<2>(x.data(), n, d).det : jacobian<3>(x.data(), n, d).det);
+      double smooth[6] = {0}, off[6], r = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        r += shape[i] * x[i * dim];
+        for (int a = 0; a < 6; ++a)
+          smooth[a] += shape[i] * s[i * 6 + a];
+      }
+      volume = std::abs(volume * (axisymmetric ? 2 * std::numbers::pi * r : 1));
+      for (int a = 0; a < 6; ++a)
+        off[a] = smooth[a] - stress.data()[(cell * q + k) * 6 + a];
+      result[cell * 3] += volume * energy(off, own_compliance);
+      result[cell * 3 + 1] += volume * energy(smooth, own_compliance);
+      result[cell * 3 + 2] += volume;
+    }
+  }
+  return to_numpy(std::move(result), {count, 3});
+}
+
+void bind_recovery(nb::module_ &m) {
+  m.def("fit_patches", &fit_patches, nb::arg("samples"), nb::arg("cover"), nb::arg("mirrors"), nb::arg("equations"),
+        nb::arg("heavy"),
+        "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,), mean and "
+        "second moments of corners (cells, dim + 1, dim)) of the cells of "
+        "patches (centres (k, dim), ranges (k + 1,) of cells, cells, degrees (k,)), which planes through the centre "
+        "mirror "
+        "(planes (k, 3), normals (p, dim)), and to equations (ranges (k + 1,), numbers, positions, coefficients, "
+        "values): "
+        "coefficients (k, terms, 4 or 6) in each patch's own coordinates, and their metrics (k, dim, dim).");
+  m.def("evaluate_patches", &evaluate_patches, nb::arg("x").noconvert(), nb::arg("patches_of").noconvert(),
+        nb::arg("patches").noconvert(), nb::arg("weights").noconvert(), nb::arg("centre").noconvert(),
+        nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
+        "Values (n, 4 or 6) at positions x (n, dim): sums of the weights of some patches times their polynomials.");
+  m.def(
+      "stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
+      nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),
+      "Of each cell (n, 3): energy of the recovered less the given stress (cells q, 6), that of the recovered one, and "
+      "volume. rule: shapes (q, n), derivatives (q, n, dim), weights (q,); recovered: own numbers (cells, n) of values "
+      "(k, "
+      "6); compliance: (b, 6, 6) and each cell's body (cells,).");
+}
+
+} // namespace abut

@@ -1,0 +1,365 @@
+// Superconvergent patch recovery: polynomials fitted to the stresses at the sampling points of the cells around a
+// point, and to linear equations of the stress at its surface; theory (Z2), (Z3).
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace abut {
+
+// A stress xx yy zz xy (yz zx) or the coefficients of an equation for it, mirrored by a plane with a normal n (dim).
+// shear: 1 for stresses, 2 for coefficients, which are doubled there.
+template <int dim> void reflect(const double *n, double shear, double *s) {
+  constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  double full[3][3] = {{0}}, mirror[3][3], half[3][3], sum;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      if (dim == 3 || (a < 2 && b < 2) || a == b)
+        full[a][b] = s[at[a][b]] / (a == b ? 1 : shear);
+      mirror[a][b] = (a == b) - (a < dim && b < dim ? 2 * n[a] * n[b] : 0);
+    }
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      sum = 0;
+      for (int c = 0; c < 3; ++c)
+        sum += mirror[a][c] * full[c][b];
+      half[a][b] = sum;
+    }
+  for (int a = 0; a < 3; ++a)
+    for (int b = a; b < 3; ++b) {
+      if (dim == 2 && b == 2 && a != b)
+        continue;
+      sum = 0;
+      for (int c = 0; c < 3; ++c)
+        sum += half[a][c] * mirror[c][b];
+      s[at[a][b]] = sum * (a == b ? 1 : shear);
+    }
+}
+
+// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]; spread (cells, dim + 1, dim): mean
+// of the cell's corners and their second moments about it. patches: centre (count, dim), cells and equations as ranges
+// of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over the components of
+// coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
+struct Patches {
+  const double *x, *stress;
+  const std::int64_t *first;
+  const double *spread;
+  std::size_t count;
+  const double *centre;
+  const std::int64_t *cells_of, *cells, *rows_of, *rows;
+  const std::int32_t *degree, *planes;
+  const double *normals;
+  const double *row_x, *row_coefficients, *row_values;
+  double heavy;
+};
+
+template <int dim> class PatchFit {
+public:
+  static constexpr int C = dim == 2 ? 4 : 6, T = (dim + 1) * (dim + 2) / 2, UNKNOWNS = C * T;
+  // Of the weight of all samples: what keeps second derivatives small that samples cannot tell, and slopes across
+  // samples that lie in a plane or on a line, of which their spread is less than a share of the cells'.
+  static constexpr double RIDGE = 1e-4, FLAT = 1e-2;
+
+  explicit PatchFit(const Patches &patches)
+      : in(patches), single(T * T), rhs(T * C), coupled(UNKNOWNS * UNKNOWNS), coupled_rhs(UNKNOWNS) {}
+
+  static int terms(int degree) { return degree == 2 ? T : degree == 1 ? 1 + dim : 1; }
+
+  // 1, xi, products of xi.
+  static void basis(const double *xi, double *p) {
+    int k = 0;
+    p[k++] = 1;
+    for (int a = 0; a < dim; ++a)
+      p[k++] = xi[a];
+    for (int a = 0; a < dim; ++a)
+      for (int b = a; b < dim; ++b)
+        p[k++] = xi[a] * xi[b];
+  }
+
+  // x - centre in the patch's own coordinates, in which its cells are as long as wide: by the inverse of the lower
+  // triangle ``metric``.
+  static void own(const double *metric, const double *x, const double *centre, double *xi) {
+    for (int a = 0; a < dim; ++a) {
+      double sum = x[a] - centre[a];
+      for (int b = 0; b < a; ++b)
+        sum -= metric[a * dim + b] * xi[b];
+      xi[a] = sum / metric[a * dim + a];
+    }
+  }
+
+  // Coefficients (T, C) in the patch's own coordinates, and their metric (dim, dim).
+  void fit(std::size_t k, double *coefficients, double *metric) {
+    find_images(k);
+    find_metric(k, metric);
+    n = terms(in.degree[k]);
+    std::fill(single.begin(), single.end(), 0.0);
+    std::fill(rhs.begin(), rhs.end(), 0.0);
+    std::fill(coefficients, coefficients + T * C, 0.0);
+    const std::int64_t any = in.first[in.cells[in.cells_of[k]]];
+    std::copy(in.stress + any * C, in.stress + (any + 1) * C, level); // rounding is then that of differences
+    add_samples(k, metric);
+    add_ridges();
+    if (in.rows_of[k] == in.rows_of[k + 1])
+      solve(single.data(), T, n, rhs.data(), C, coefficients);
+    else {
+      couple();
+      add_rows(k, metric);
+      solve(coupled.data(), UNKNOWNS, n * C, coupled_rhs.data(), 1, coefficients);
+    }
+    for (int c = 0; c < C; ++c)
+      coefficients[c] += level[c];
+  }
+
+private:
+  static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  static constexpr double NEAR = 1e-2; // a sample at the centre counts by 100, one as far as cells reach by about 1
+  using Image = std::array<std::int32_t, 3>; // planes, one after the other
+
+  void find_images(std::size_t k) {
+    images.assign(1, {-1, -1, -1});
+    for (int a = 0; a < 3; ++a) {
+      const std::int32_t plane = in.planes[k * 3 + a];
+      if (plane < 0)
+        continue;
+      const std::size_t before = images.size();
+      for (std::size_t i = 0; i < before; ++i) {
+        Image image = images[i];
+        bool square = true; // else the images of images are others
+        int free = 0;
+        for (; free < 3 && image[free] >= 0; ++free)
+          square = square && std::abs(product(image[free], plane)) < 1e-6;
+        if (square) {
+          image[free] = plane;
+          images.push_back(image);
+        }
+      }
+    }
+  }
+
+  double product(std::int32_t a, std::int32_t b) const {
+    double sum = 0;
+    for (int c = 0; c < dim; ++c)
+      sum += in.normals[a * dim + c] * in.normals[b * dim + c];
+    return sum;
+  }
+
+  // x and what belongs to it (C), mirrored by planes through the centre.
+  void mirror(const Image &image, const double *centre, double shear, double *x, double *s) const {
+    for (int i = 0; i < 3 && image[i] >= 0; ++i) {
+      const double *normal = in.normals + image[i] * dim;
+      double away = 0;
+      for (int a = 0; a < dim; ++a)
+        away += (x[a] - centre[a]) * normal[a];
+      for (int a = 0; a < dim; ++a)
+        x[a] -= 2 * away * normal[a];
+      reflect<dim>(normal, shear, s);
+    }
+  }
+
+  template <class Call> void each_sample(std::size_t k, Call call) const {
+    double x[dim], s[C];
+    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i)
+      for (std::int64_t j = in.first[in.cells[i]]; j < in.first[in.cells[i] + 1]; ++j)
+        for (const Image &image : images) {
+          std::copy(in.x + j * dim, in.x + (j + 1) * dim, x);
+          std::copy(in.stress + j * C, in.stress + (j + 1) * C, s);
+          mirror(image, in.centre + k * dim, 1, x, s);
+          call(x, s);
+        }
+  }
+
+  static double weight(const double *xi) {
+    double away = 0;
+    for (int a = 0; a < dim; ++a)
+      away += xi[a] * xi[a];
+    return 1 / (NEAR + away);
+  }
+
+  // Cholesky's factor of the second moments of the corners of all cells about the centre.
+  void find_metric(std::size_t k, double *metric) const {
+    const double *centre = in.centre + k * dim;
+    double moments[3][3] = {{0}};
+    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i) {
+      const double *mean = in.spread + in.cells[i] * (dim + 1) * dim;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          moments[a][b] += mean[(a + 1) * dim + b] + (mean[a] - centre[a]) * (mean[b] - centre[b]);
+    }
+    double sum[dim][dim] = {{0}}, scale = 0;
+    for (const Image &image : images) {
+      double x[dim], s[C] = {0};
+      std::copy(centre, centre + dim, x);
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b <= a; ++b)
+          s[AT[a][b]] = moments[a][b];
+      mirror(image, centre, 1, x, s);
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          sum[a][b] += s[AT[a][b]];
+    }
+    const double count = double(images.size()) * double(in.cells_of[k + 1] - in.cells_of[k]);
+    for (int a = 0; a < dim; ++a)
+      scale += sum[a][a];
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b <= a; ++b) {
+        double left = sum[a][b];
+        for (int c = 0; c < b; ++c)
+          left -= metric[a * dim + c] * metric[b * dim + c] * count;
+        metric[a * dim + b] =
+            a == b ? std::sqrt(std::max(left, 1e-14 * scale) / count) : left / count / metric[b * dim + b];
+      }
+  }
+
+  // So that the fit exists where samples cannot tell all terms: on second derivatives, by their squares; on slopes
+  // across the samples.
+  void add_ridges() {
+    const double all = single[0];
+    double moments[dim][dim], axes[dim][dim];
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        moments[a][b] = n > 1 ? single[(1 + std::max(a, b)) * T + 1 + std::min(a, b)] / all -
+                                    single[(1 + a) * T] * single[(1 + b) * T] / (all * all)
+                              : 1;
+    if (n > 1) {
+      eigenvectors(moments, axes);
+      for (int k = 0; k < dim; ++k)
+        if (moments[k][k] < FLAT)
+          for (int a = 0; a < dim; ++a)
+            for (int b = 0; b <= a; ++b)
+              single[(1 + a) * T + 1 + b] += FLAT * all * axes[a][k] * axes[b][k];
+    }
+    if (n == T)
+      for (int a = 0, k = 1 + dim; a < dim; ++a)
+        for (int b = a; b < dim; ++b, ++k)
+          single[k * T + k] += RIDGE * all * (a == b ? 4 : 2);
+  }
+
+  // Jacobi's rotations: the diagonal becomes the eigenvalues, columns of ``axes`` their vectors.
+  static void eigenvectors(double (&m)[dim][dim], double (&axes)[dim][dim]) {
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        axes[a][b] = a == b;
+    for (int sweep = 0; sweep < (dim == 2 ? 1 : 12); ++sweep)
+      for (int p = 0; p < dim; ++p)
+        for (int q = p + 1; q < dim; ++q) {
+          if (m[p][q] == 0)
+            continue;
+          const double angle = 0.5 * std::atan2(2 * m[p][q], m[q][q] - m[p][p]), c = std::cos(angle),
+                       s = std::sin(angle);
+          for (int i = 0; i < dim; ++i) {
+            const double x = m[i][p], y = m[i][q], u = axes[i][p], v = axes[i][q];
+            m[i][p] = c * x - s * y, m[i][q] = s * x + c * y;
+            axes[i][p] = c * u - s * v, axes[i][q] = s * u + c * v;
+          }
+          for (int i = 0; i < dim; ++i) {
+            const double x = m[p][i], y = m[q][i];
+            m[p][i] = c * x - s * y, m[q][i] = s * x + c * y;
+          }
+        }
+  }
+
+  void add_samples(std::size_t k, const double *metric) {
+    const double *centre = in.centre + k * dim;
+    double xi[dim], p[T];
+    each_sample(k, [&](const double *x, const double *s) {
+      own(metric, x, centre, xi);
+      const double w = weight(xi);
+      basis(xi, p);
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j)
+          single[i * T + j] += w * p[i] * p[j];
+        for (int c = 0; c < C; ++c)
+          rhs[i * C + c] += w * p[i] * (s[c] - level[c]);
+      }
+    });
+  }
+
+  // The same fits as one system, term by term; what is minimised does not depend on the axes: shears count twice.
+  void couple() {
+    std::fill(coupled.begin(), coupled.end(), 0.0);
+    std::fill(coupled_rhs.begin(), coupled_rhs.end(), 0.0);
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < C; ++c) {
+        for (int j = 0; j <= i; ++j)
+          coupled[(i * C + c) * UNKNOWNS + j * C + c] = (c < 3 ? 1 : 2) * single[i * T + j];
+        coupled_rhs[i * C + c] = (c < 3 ? 1 : 2) * rhs[i * C + c];
+      }
+  }
+
+  void add_rows(std::size_t k, const double *metric) {
+    const double *centre = in.centre + k * dim;
+    double x[dim], xi[dim], s[C], p[T];
+    const double share = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
+    for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
+      for (const Image &image : images) {
+        const std::int64_t e = in.rows[r];
+        std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
+        std::copy(in.row_coefficients + e * C, in.row_coefficients + (e + 1) * C, s);
+        mirror(image, centre, 2, x, s);
+        own(metric, x, centre, xi);
+        const double w = share * weight(xi);
+        basis(xi, p);
+        int used[C], count = 0; // an equation has few components
+        double value = in.row_values[e];
+        for (int c = 0; c < C; ++c) {
+          value -= s[c] * level[c];
+          if (s[c] != 0)
+            used[count++] = c;
+        }
+        for (int i = 0; i < n; ++i)
+          for (int c = 0; c < count; ++c) {
+            const double own = w * p[i] * s[used[c]];
+            double *out = &coupled[(i * C + used[c]) * UNKNOWNS];
+            for (int j = 0; j <= i; ++j)
+              for (int l = 0; l < count; ++l)
+                out[j * C + used[l]] += own * p[j] * s[used[l]]; // what lies above the diagonal is not read
+            coupled_rhs[i * C + used[c]] += own * value;
+          }
+      }
+  }
+
+  // Cholesky's factors of the lower half in place, column by column, so that the innermost loops are sums of rows. What
+  // rounding leaves without a pivot stays 0.
+  static void solve(double *m, int stride, int size, double *b, int columns, double *result) {
+    std::array<bool, UNKNOWNS> left{};
+    std::array<double, UNKNOWNS> column, before;
+    for (int j = 0; j < size; ++j)
+      before[j] = m[j * stride + j];
+    for (int j = 0; j < size; ++j) {
+      const double pivot = m[j * stride + j];
+      left[j] = !(pivot > 1e-14 * before[j]);
+      const double root = left[j] ? 1 : std::sqrt(pivot), scale = left[j] ? 0 : 1 / root;
+      m[j * stride + j] = root;
+      for (int l = j + 1; l < size; ++l)
+        column[l] = m[l * stride + j] *= scale;
+      for (int l = j + 1; l < size; ++l) {
+        const double factor = column[l];
+        double *row = m + l * stride;
+        if (factor != 0)
+          for (int i = j + 1; i <= l; ++i)
+            row[i] -= factor * column[i];
+      }
+      for (int c = 0; c < columns; ++c) {
+        const double value = result[j * columns + c] = b[j * columns + c] * scale;
+        for (int l = j + 1; l < size; ++l)
+          b[l * columns + c] -= column[l] * value;
+      }
+    }
+    for (int j = size - 1; j >= 0; --j)
+      for (int c = 0; c < columns; ++c) {
+        const double value = result[j * columns + c] = left[j] ? 0 : result[j * columns + c] / m[j * stride + j];
+        for (int l = 0; l < j; ++l)
+          result[l * columns + c] -= m[j * stride + l] * value;
+      }
+  }
+
+  const Patches &in;
+  int n = 1;
+  double level[C] = {0};
+  std::vector<Image> images;
+  std::vector<double> single, rhs, coupled, coupled_rhs;
+};
+
+} // namespace abut

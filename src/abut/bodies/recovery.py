@@ -1,0 +1,195 @@
+"""Stresses at the nodes by superconvergent patch recovery (Zienkiewicz and Zhu 1992); theory (Z1) to (Z5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import evaluate_patches, fit_patches, shape_functions, stress_errors
+from abut.bodies.evaluation import History
+from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
+from abut.bodies.stress import PointStress, point_stress
+from abut.cells import CELLS
+from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import at_rest
+from abut.materials.material import Material
+from abut.mesh.patches import Patches
+from abut.mesh.quadrature import Rule, error_rule, superconvergent_rule
+from abut.types import Sparse
+
+HEAVY = 1.0  # weight of all equations at a patch's surface over that of its samples
+PLANE = (0, 1, 2, 3)  # components in 2D
+
+
+@dataclass(frozen=True)
+class Equations:
+    """What is known of the stress at the surface. x: (n, dim); coefficients: (n, 4 or 6) of xx yy zz xy (yz zx), shear
+    doubled, whose sum with the stress is value (n,); of: (n_patches, n) CSR, nonzero where an equation takes part in a
+    patch; planes: (n_patches, 3) planes through its corner that mirror a patch, -1 for none; normals: (n_planes, dim); bare:
+    (n_patches,) patches that end at a surface which no plane continues."""
+
+    x: Array
+    coefficients: Array
+    value: Array
+    of: Sparse
+    planes: NDArray[np.int32]
+    normals: Array
+    bare: NDArray[np.bool_]
+
+
+def no_equations(of: Patches, dim: int) -> Equations:
+    """Nothing is known."""
+    n = len(of.corner)
+    return Equations(
+        np.zeros((0, dim)), np.zeros((0, 4 if dim == 2 else 6)), np.zeros(0), sp.csr_matrix((n, 0)),
+        np.full((n, 3), -1, dtype=np.int32), np.zeros((0, dim)), np.diff(of.skin.indptr) > 0,
+    )  # fmt: skip
+
+
+def recovered(solids: Solids, points: Array, stress: PointStress, known: Equations | None = None) -> Array:
+    """Stresses xx yy zz xy yz zx of each body at its points, (n_values, 6) in the order of ``solids.patches``, fitted to
+    those at the integration points. points: (n_points, dim) where they are now."""
+    of, dim = solids.patches, points.shape[1]
+    if known is None:
+        known = no_equations(of, dim)
+    x, values, first = _samples(solids, points, stress)
+    cells = _widened(of, known)
+    centre = np.ascontiguousarray(points[of.point[of.corner]])
+    used = list(PLANE) if dim == 2 else list(range(6))
+    coefficients, metrics = fit_patches(
+        (x, np.ascontiguousarray(values[:, used]), first, _spread(solids, points)),
+        (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64), of.degree),
+        (known.planes, known.normals),
+        (known.of.indptr.astype(np.int64), known.of.indices.astype(np.int64), known.x, known.coefficients, known.value),
+        HEAVY,
+    )  # fmt: skip
+    result = np.zeros((len(of.point), 6))
+    result[:, used] = evaluate_patches(
+        np.ascontiguousarray(points[of.point]), of.blend.indptr.astype(np.int64), of.blend.indices.astype(np.int64),
+        of.blend.data, centre, coefficients, metrics,
+    )  # fmt: skip
+    return result
+
+
+def at_points(of: Patches, values: Array, n_points: int) -> Array:
+    """Values (n_values, 6) at the mesh's points, (n_points, 6): the mean of those of the bodies that share one, 0 where
+    there are none."""
+    total = np.zeros((n_points, values.shape[1]))
+    if not of.shared:
+        total[of.point] = values
+        return total
+    for column in range(values.shape[1]):
+        total[:, column] = np.bincount(of.point, values[:, column], n_points)
+    return np.asarray(total / np.maximum(np.bincount(of.point, minlength=n_points), 1)[:, None])
+
+
+def nodal_stress(
+    solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED, history: History | None = None
+) -> Array:
+    """Stresses at the points (n_points, 6) under a displacement (n_points, dim), of which nothing is known at the surface:
+    ``point_stress`` recovered."""
+    stress = point_stress(solids, displacement, temperature, history)
+    points = solids.points + displacement if solids.kinematics == "finite" else solids.points
+    return at_points(solids.patches, recovered(solids, np.ascontiguousarray(points), stress), len(points))
+
+
+def energies(solids: Solids, points: Array, stress: PointStress, values: Array) -> Array:
+    """Of each cell (n_cells, 3) int e C^-1 e of the recovered less the element's stress, the same of the recovered one, and
+    the volume; theory (Z6). values: (n_values, 6)."""
+    of, result = solids.patches, np.zeros((solids.mesh.n_cells, 3))
+    compliance = np.stack([_compliance(material) for material in solids.materials.values()])
+    for group, at in zip(solids.groups(), stress):
+        rule = error_rule(group.kind)
+        shapes, derivatives = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
+        at = np.ascontiguousarray(carried(group.kind, group.rule, rule[0]) @ at).reshape(-1, 6)
+        result[group.cells] = stress_errors(
+            points, group.nodes, (shapes, derivatives, rule[1]), solids.mesh.axisymmetric, at,
+            (_own(solids, of, group), values), (compliance, solids.body_of[group.cells]),
+        )  # fmt: skip
+    return result
+
+
+def _own(solids: Solids, of: Patches, group: Group) -> NDArray[np.int32]:
+    block = int(np.searchsorted(solids.mesh.starts, group.cells[0], side="right")) - 1
+    return np.ascontiguousarray(of.nodes[block][group.cells - solids.mesh.starts[block]])
+
+
+def _compliance(material: Material) -> Array:
+    """(6, 6), at rest."""
+    rest = at_rest(material)
+    if isinstance(rest, LinearElastic):
+        result = np.diag([1.0] * 3 + [2.0] * 3) * (1.0 + rest.poisson)
+        result[:3, :3] -= rest.poisson
+        return np.asarray(result / rest.young)
+    tangent = rest.evaluate(np.zeros((1, 6)), rest.initial(1))[1][0]
+    return np.ascontiguousarray(np.linalg.pinv(tangent, hermitian=True))
+
+
+def _samples(solids: Solids, points: Array, stress: PointStress) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Positions (m, dim) and stresses (m, 6) at the points where they are best, cell after cell, and the first of each cell,
+    (n_cells + 1,)."""
+    count = np.zeros(solids.mesh.n_cells, dtype=np.int64)
+    groups = solids.groups()
+    rules = [superconvergent_rule(group.kind) for group in groups]
+    for group, rule in zip(groups, rules):
+        count[group.cells] = len(rule[1])
+    first = np.concatenate([[0], np.cumsum(count)])
+    x, values = np.empty((first[-1], points.shape[1])), np.empty((first[-1], 6))
+    for group, rule, at in zip(groups, rules, stress):
+        rows = first[group.cells][:, None] + np.arange(len(rule[1]))
+        shapes, _ = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
+        x[rows] = shapes @ points[group.nodes]
+        values[rows] = carried(group.kind, group.rule, rule[0]) @ at
+    return x, values, first
+
+
+def _spread(solids: Solids, points: Array) -> Array:
+    """Mean of the corners of each cell and their second moments about it, (n_cells, dim + 1, dim)."""
+    dim = points.shape[1]
+    result = np.zeros((solids.mesh.n_cells, dim + 1, dim))
+    for block, first in zip(solids.mesh.blocks, solids.mesh.starts.tolist()):
+        x = points[block.nodes[:, : CELLS[block.kind].corners]]
+        mean = x.mean(axis=1)
+        apart = x - mean[:, None]
+        rows = slice(first, first + len(x))
+        result[rows, 0] = mean
+        result[rows, 1:] = np.swapaxes(apart, 1, 2) @ apart / x.shape[1]
+    return result
+
+
+def carried(kind: str, rule: Rule, xi: Array) -> Array:
+    """Linear (on quadrilaterals and hexahedra linear along each axis) fit over a cell to values at the points of a rule, at
+    points xi: (len(xi), points)."""
+    if len(rule[0]) == len(xi) and np.allclose(rule[0], xi, rtol=0.0, atol=1e-14):
+        return np.eye(len(xi))
+    root = np.sqrt(np.abs(rule[1]))[:, None]
+    terms = _monomials(kind, rule[0])
+    rank = np.linalg.matrix_rank(root * terms)
+    while terms.shape[1] > rank:  # fewer points: constant
+        terms = terms[:, :1]
+        rank = 1
+    return np.asarray(_monomials(kind, xi)[:, : terms.shape[1]] @ np.linalg.pinv(root * terms) * root.T)
+
+
+def _monomials(kind: str, xi: Array) -> Array:
+    """Of degree 1, for cubes and along wedges times each other."""
+    columns = [np.ones(len(xi))]
+    if kind.startswith(("quad", "hex")):
+        for a in range(xi.shape[1]):
+            columns += [column * xi[:, a] for column in columns]
+    else:
+        columns += [xi[:, a] for a in range(xi.shape[1])]
+        if kind.startswith("wedge"):
+            columns += [xi[:, 0] * xi[:, 2], xi[:, 1] * xi[:, 2]]
+    return np.stack(columns, axis=1)
+
+
+def _widened(of: Patches, known: Equations) -> Sparse:
+    """The cells of each patch: at the surface also those around the corners of these."""
+    bare = np.flatnonzero(known.bare)
+    wide = (of.around[bare] @ of.around.T) @ of.around
+    place = sp.csr_matrix((np.ones(len(bare)), (bare, np.arange(len(bare)))), shape=(len(of.corner), len(bare)))
+    return (of.around + place @ wide).tocsr()

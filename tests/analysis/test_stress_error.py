@@ -1,0 +1,91 @@
+"""The certificate's line "stress error": its size, its cure, and what `abut check` makes of it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import abut
+from abut.analysis.stress_error import stress_error
+from abut.bodies.recovery import recovered
+from abut.bodies.solids import Solids
+from abut.diagnosis.cures import cure
+from abut.diagnosis.earlier import sizes_wanted
+from abut.mesh.make import join, rectangle
+from abut.output.results import summary
+from models.patch import model, two_blocks
+from models.stresses import hertz_line
+
+STEEL = abut.LinearElastic(1.0, 0.0)
+
+
+def cantilever(cells: tuple[int, int], cell: str = "quad4") -> abut.Model:
+    """A moment at its end."""
+    mesh = join({"beam": rectangle((0.0, 4.0), (-0.5, 0.5), cells, cell)})
+    end = abut.Traction("beam.right", ("y", 0.0))
+    held = [abut.Support("beam.left", x=0, y=0)]
+    return abut.Model(mesh, [abut.Solid("beam", STEEL)], held, [end], plane="stress")
+
+
+def off(solution: abut.Solution) -> float:
+    error = solution.steps[-1].stress_error
+    assert error is not None
+    return error.whole
+
+
+@pytest.mark.parametrize("n", [4, 8])
+def test_triangles_in_bending(n: int) -> None:
+    """Stress y over the height 1, of which right-angled triangles with legs 1 / n hold their mean: h^2 / 18 is the mean
+    square of the rest, 1 / 12 that of the stress. Recovery finds the stress itself."""
+    mesh = rectangle((0.0, 4.0), (-0.5, 0.5), (4 * n, n), "tri3")
+    solids = Solids(mesh, dict.fromkeys(mesh.bodies, STEEL), "stress")
+    stress = np.zeros((mesh.n_cells, 1, 6))
+    stress[:, 0, 0] = mesh.points[mesh.blocks[0].nodes].mean(axis=1)[:, 1]
+    values = recovered(solids, solids.points, [stress])
+    found = stress_error(solids, np.zeros_like(mesh.points), [stress], values, ())
+    assert found is not None
+    assert found.whole == pytest.approx(np.sqrt(12.0 / 18.0) / n, rel=1e-9)
+
+
+def test_uniform_stress_has_none() -> None:
+    solution = abut.solve(model(two_blocks("quad4", "quad8", ((4, 3), (3, 2)))))
+    assert off(solution) < 1e-10
+
+
+def test_cells_root_mean_square_is_the_body() -> None:
+    """By volume, of cells that are alike."""
+    solution = abut.solve(cantilever((16, 4), "tri3"))
+    error = solution.steps[-1].stress_error
+    assert error is not None
+    assert np.sqrt((error.cells**2).mean()) == pytest.approx(error.whole, rel=1e-9)
+
+
+def test_a_coarse_contact_warns_and_says_which_cells(tmp_path: Path) -> None:
+    """A quarter of the size, as wanted, brings the error near contact to what was announced, within a third."""
+    coarse = abut.solve(hertz_line("quad4", 4))
+    line = next(c for c in coarse.certificate if c.name == "stress error")
+    assert line.verdict == "warn"
+    error = coarse.steps[-1].stress_error
+    assert error is not None
+    wanted = {e.body: e for e in error.near}
+    assert set(wanted) == {"block", "cylinder"}
+    assert f"{wanted['block'].wanted:.2g} (now {wanted['block'].size:.2g}) in 'block'" in cure(line, coarse)
+    fine = (
+        abut.solve(hertz_line("quad4", round(4 * wanted["block"].size / wanted["block"].wanted))).steps[-1].stress_error
+    )
+    assert fine is not None
+    assert max(e.error for e in fine.near) == pytest.approx(0.05, rel=0.35)
+    (tmp_path / "summary.json").write_text(json.dumps(summary(coarse)))
+    told = sizes_wanted(tmp_path)
+    assert {finding.where for finding in told} == {"body 'block'", "body 'cylinder'"}
+    assert f"cells of {wanted['block'].wanted:.2g} there would bring that to 5%" in {finding.cure for finding in told}
+
+
+def test_without_an_earlier_run_nothing_is_said(tmp_path: Path) -> None:
+    assert sizes_wanted(tmp_path / "none") == []
+    for text in ("", "[]", "{}", '{"steps": [{"stress_error": {}}]}'):
+        (tmp_path / "summary.json").write_text(text)
+        assert sizes_wanted(tmp_path) == []

@@ -1,0 +1,37 @@
+"""Stresses at contact nodes beside closed forms (``bench/stress/table.py`` has all cells)."""
+
+from __future__ import annotations
+
+import pytest
+
+import abut
+from models.stresses import ball_errors, fit_errors, hertz_ball, hertz_line, line_errors, press_fit
+
+LINEAR, SECOND = 0.05, 0.015  # of the largest pressure or von Mises stress: what an engineer reads stresses to
+SHEAR = 0.02
+BALL = 0.005  # of the half space that the ball is taken for: a / R = 0.013, of which stresses along the surface feel a part
+
+
+@pytest.mark.parametrize(
+    ("cell", "n", "limit"), [("tri3", 8, LINEAR), ("quad4", 8, LINEAR), ("tri6", 8, SECOND), ("quad8", 8, SECOND)]
+)
+def test_hertz_line(cell: str, n: int, limit: float) -> None:
+    errors = line_errors(abut.solve(hertz_line(cell, n)))
+    assert errors["normal"] < limit
+    assert errors["von Mises"] < limit
+    assert abs(errors["shear"]) < SHEAR
+
+
+def test_hertz_ball() -> None:
+    errors = ball_errors(abut.solve(hertz_ball("quad8", 12)))
+    assert errors["normal"] < SECOND
+    assert errors["von Mises"] < SECOND + BALL
+    assert abs(errors["shear"]) < SHEAR
+
+
+@pytest.mark.parametrize(("cell", "n", "limit"), [("quad4", 8, LINEAR), ("quad8", 6, SECOND), ("tri6", 6, SECOND)])
+def test_lame_press_fit(cell: str, n: int, limit: float) -> None:
+    """On the planes of symmetry too, where the chord of the last facet is not normal to the radius."""
+    errors = fit_errors(abut.solve(press_fit(cell, n)))
+    assert errors["normal"] < limit
+    assert errors["von Mises"] < limit
