@@ -59,18 +59,20 @@ def unsupported(deck: Deck) -> Iterator[DeckError]:
 
 def load_steps(deck: Deck) -> SolveOptions:
     """Load steps with NLGEOM: as long as they can be up to the longest increment, or at the times of fixed increments. Where
-    nothing turns at the end of a step, which then would be passed over, times are given for automatic steps as well."""
+    nothing turns at the end of a step, which then would be passed over, times are given for automatic steps as well; so they
+    are without contact, where "auto" is one load step."""
     total = sum(step.period for step in deck.steps)
+    contact = bool(deck.pairs) or deck.general is not None
     turns = {time for kind in KINDS for course in courses(deck, kind).values() for time, _ in course} | {1.0}
     met = all(any(abs(end - time) < SAME for time in turns) for end in ends(deck))
-    if met and all(_automatic(step) for step in deck.steps):
+    if met and contact and all(_automatic(step) for step in deck.steps):
         longest = min(step.increments.longest for step in deck.steps)
         if longest >= max(step.period for step in deck.steps):
             return SolveOptions()
         return SolveOptions(steps=math.ceil(total / longest * (1.0 - SAME)))
     result, start = list(times(deck)), 0.0
     for step in deck.steps:
-        result += [(start + time) / total for time in _increments(step)]
+        result += [(start + time) / total for time in _increments(step, contact)]
         start += step.period
     kept: list[float] = []
     for time in sorted(result):
@@ -84,10 +86,13 @@ def _automatic(step: Step) -> bool:
     return not step.increments.fixed and step.increments.first < step.period
 
 
-def _increments(step: Step) -> list[float]:
-    """Their ends within a step, from its beginning."""
+def _increments(step: Step, contact: bool) -> list[float]:
+    """Their ends within a step, from its beginning. Without contact automatic ones are as long as they may be: nothing
+    depends on the way, and a step that fails is halved."""
     increments = step.increments
-    length = increments.first if not _automatic(step) else max(increments.first, SHARE * step.period)
+    length = increments.first
+    if _automatic(step):
+        length = max(length, SHARE * step.period) if contact else step.period
     count = math.ceil(step.period / min(length, increments.longest) * (1.0 - SAME))
     if increments.fixed:
         return [*(i * increments.first for i in range(1, count)), step.period]

@@ -203,7 +203,8 @@ class Increments:
 
 @dataclass(frozen=True)
 class Step:
-    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM."""
+    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM; total: the total time
+    at its beginning, which amplitudes with TIME=TOTAL TIME go by."""
 
     number: int
     period: float
@@ -212,6 +213,7 @@ class Step:
     place: Place
     increments: Increments
     finite: bool = False
+    total: float = 0.0
 
 
 @dataclass(frozen=True)
