@@ -1,5 +1,5 @@
-"""Time in decks: several steps, amplitudes over step and total time. A bar of one brick, E = 1000, 1 x 1 x 1 without Poisson's
-ratio, sides held, so that a pressure p shortens it by p / 1000; what CalculiX 2.20 gives in each case is the same."""
+"""Time in decks: several steps, amplitudes over step and total time. A bar of one brick, E = 1000, 1 x 1 x 1 without
+Poisson's ratio, sides held, so that a pressure p shortens it by p / 1000; CalculiX 2.20 gives the same in each case."""
 
 from __future__ import annotations
 
@@ -57,13 +57,11 @@ def heights(folder: Path, text: str, ends: int) -> np.ndarray:
 
 @pytest.mark.parametrize("pressures", [(10.0, 30.0, 20.0), (10.0, 20.0, 30.0), (10.0, -10.0, 20.0)])
 @pytest.mark.parametrize("increments", ["", "\n0.1, 1.", "\n0.1, 1., , 0.25"])
-def test_every_step_is_solved_without_contact(
-    pressures: tuple[float, ...], increments: str, tmp_path: Path
-) -> None:
+def test_every_step_is_solved_without_contact(pressures: tuple[float, ...], increments: str, tmp_path: Path) -> None:
     """NLGEOM: the force on the held area is p = -E (l^2 - 1) l / 2 with the stretch l (Saint Venant and Kirchhoff)."""
     steps = [step("*DLOAD", f"1, P2, {p}", card=f"*STATIC{increments}") for p in pressures]
     found = heights(tmp_path, BAR + "".join(steps).replace("*STEP", "*STEP, NLGEOM"), 3)
-    exact = [1.0 - brentq(lambda l, p=p: E * (l * l - 1.0) * l / 2.0 + p, 0.8, 1.2) for p in pressures]
+    exact = [1.0 - brentq(lambda s, p=p: E * (s * s - 1.0) * s / 2.0 + p, 0.8, 1.2) for p in pressures]
     assert found == pytest.approx(exact, rel=1e-8)
 
 

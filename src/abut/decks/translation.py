@@ -25,6 +25,7 @@ from abut.io.deck.nodal_constraints import Bonds, bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
+from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
@@ -226,6 +227,10 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
     for name, side in ((slave, pair.slave), (master, pair.master)):
         if deck.surfaces[side].nodes is not None:
             notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{side}' make up")
+    if pair.is_tie:
+        found = near(deck, groups, pair)
+        notes += tie_notes(deck, groups, pair, found)
+        slave = groups.facets(found.rows, f"{pair.slave}-near") if found.left else slave
     if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
         slave, master = master, slave
         notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")

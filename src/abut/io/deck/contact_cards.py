@@ -35,14 +35,26 @@ def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pai
     for card in cards:
         with reasons.gathered():
             if card.key == "TIE" and not card.has("CYCLIC SYMMETRY"):
-                for i, (line, slave, master) in enumerate(sides(card, mesh)):
-                    name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
-                    result.append(Pair(name, slave, master, True, "TIED", "all", None, line.place))
+                result += _ties(card, mesh)
             elif card.key == "CONTACTPAIR":
                 result += _contact_pairs(card, mesh, interactions, clearances)
     for (slave, master), card in clearances.items():
         reasons.add(card.unknown(f"no *CONTACT PAIR of slave {slave} and master {master}"))
     return tuple(result)
+
+
+def _ties(card: Card, mesh: MeshCards) -> Iterator[Pair]:
+    text = card.get("POSITION TOLERANCE")
+    tolerance = None if text is None else as_float(text)
+    if text is not None and (tolerance is None or tolerance < 0.0):
+        raise card.error(f"POSITIONTOLERANCE: expected a distance >= 0, got {text!r}")
+    of_abaqus = card.has("ADJUST") or card.has("TYPE")
+    for i, (line, slave, master) in enumerate(sides(card, mesh)):
+        name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
+        yield Pair(
+            name, slave, master, True, "TIED", "all", None, line.place,
+            is_tie=True, tolerance=tolerance or None, of_abaqus=of_abaqus,
+        )  # fmt: skip
 
 
 def _contact_pairs(

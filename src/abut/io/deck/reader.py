@@ -115,7 +115,11 @@ def _fixed(
             if card.key != "BOUNDARY":
                 raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
             for value in prescribed(card, mesh, known):
-                if value.value != 0.0 and not value.amplitude and not any("outside the steps" in note for note in notes):
+                if (
+                    value.value != 0.0
+                    and not value.amplitude
+                    and not any("outside the steps" in note for note in notes)
+                ):
                     notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
                 result.append(value)
     return tuple(result)

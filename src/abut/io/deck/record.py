@@ -77,7 +77,8 @@ NO_FRICTION = Friction()
 @dataclass(frozen=True)
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
-    clearance: the gap given for all of the surface, None for the one of the mesh."""
+    clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
+    tolerance (None: the default, that of Abaqus where parameters are its)."""
 
     name: str
     slave: str
@@ -88,6 +89,9 @@ class Pair:
     clearance: float | None
     place: Place
     friction: Friction = NO_FRICTION
+    is_tie: bool = False
+    tolerance: float | None = None
+    of_abaqus: bool = False
 
 
 @dataclass(frozen=True)
@@ -203,8 +207,8 @@ class Increments:
 
 @dataclass(frozen=True)
 class Step:
-    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM; total: the total time
-    at its beginning, which amplitudes with TIME=TOTAL TIME go by."""
+    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM; total: the total
+    time at its beginning, which amplitudes with TIME=TOTAL TIME go by."""
 
     number: int
     period: float

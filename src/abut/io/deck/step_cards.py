@@ -115,8 +115,8 @@ def steps(
 
 
 def _total(group: Sequence[Card], before: float, period: float) -> float:
-    """The total time at the beginning of a step, ``before`` at the end of the one before. TIME RESET has the step end at that
-    time, as in CalculiX."""
+    """The total time at the beginning of a step, ``before`` at the end of the one before. TIME RESET has the step end at
+    that time, as in CalculiX."""
     procedure = next(card for card in group if card.key in STEP_PROCEDURES)
     if procedure.has("TOTAL TIME AT START"):
         given = as_float(procedure.need("TOTAL TIME AT START"))
