@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from abut.cli.run import add_ignore
+from abut.cli.terminal import show
 from abut.errors import InputError
 
 DONE = 0
@@ -52,6 +53,6 @@ def _convert(arguments: argparse.Namespace) -> int:
         written = write_job(target, job)
         notes += [*(f"ignored: {what}" for what in job.ignored), *job.notes]
     if not arguments.quiet:
-        print(*notes, sep="\n", end="\n" if notes else "")
-        print(f"written: {', '.join(map(str, written))}")
+        show(*notes, sep="\n", end="\n" if notes else "")
+        show(f"written: {', '.join(map(str, written))}")
     return DONE

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from abut.cli.terminal import show
 from abut.errors import ConvergenceError, InputError, OutOfTime, Stopped
 from abut.parallel.launch import processes, unused
 
@@ -117,7 +118,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
             _say(str(reason))
             return reason.exit_status if isinstance(reason, OutOfTime) else interrupt.exit_status
     if arguments.json:
-        print(json.dumps(summary(solution), indent=2))
+        show(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
         _print_result(solution, directory)
     if not solution.converged:
@@ -222,7 +223,7 @@ def _check_linear(job: Job) -> None:
 
 
 def _say(text: str) -> None:
-    print(f"abut: {text}", file=sys.stderr, flush=True)
+    show(f"abut: {text}", file=sys.stderr, flush=True)
 
 
 def _left(how: str, steps: int, time: float, directory: Path) -> str:
@@ -256,25 +257,25 @@ def _print_result(solution: Solution, directory: Path) -> None:
     if not (solution.converged and solution.complete):
         last = solution.steps[-1]
         how = "" if last.converged else ", which did not converge"
-        print(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
+        show(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
     for contact in solution.contacts:
-        print(
+        show(
             f"contact '{contact.name}': force on the contactor {force(contact)}, largest pressure "
             f"{contact.max_pressure:.6g}, area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
         for line in lines(contact):
-            print(f"  {line}")
+            show(f"  {line}")
     for result in solution.probes:
-        print(f"probe '{result.name}': {_read(result)}")
-    print("certificate   value      limit")
+        show(f"probe '{result.name}': {_read(result)}")
+    show("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         value = f"{'unknown':>9}" if check.unknown else f"{check.value:9.2e}"
-        print(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
+        show(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
         if text := check.unknown or cure(check, solution):
-            print(f"        {'unknown' if check.unknown else 'cure'}: {text}")
+            show(f"        {'unknown' if check.unknown else 'cure'}: {text}")
     for remedy in remedies(solution):
-        print(f"  try {remedy}")
-    print(
+        show(f"  try {remedy}")
+    show(
         f"{sum(solution.timings.values()):.1f} s; results in {directory}: open report.html in a browser, *.pvd in ParaView"
     )

@@ -91,7 +91,7 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) ->
     if ignore:
         raise InputError(f"{path}: --ignore is for decks ({DECK}); a job file has no cards")
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise InputError(f"cannot read job file {path}: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -22,6 +22,7 @@ from abut.io.deck.model_cards import (
 )
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
+from abut.io.deck.repeated import without_repeated
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
@@ -37,7 +38,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     sifted = sift(without_tied_friction(_cards(path, notes, reasons), notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
-    cards = sifted.cards
+    cards = without_repeated(sifted.cards, notes)
     outside, groups = split_steps(cards, reasons)
     mesh = mesh_cards(cards, notes, reasons)
     known = amplitudes(cards, reasons)
@@ -85,7 +86,8 @@ def read_mesh_only(path: Path) -> Deck:
     reasons = Reasons()
     notes: list[str] = []
     every = _cards(path, notes, reasons)
-    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
+    sifted = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons)
+    cards = without_repeated(sifted.cards, notes)
     mesh = mesh_cards(cards, notes, reasons)
     found = sections(cards, mesh, None, reasons)
     reasons.tell()
