@@ -109,7 +109,7 @@ def test_constraints_that_equations_repeat(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("code", ["C3D8", "C3D8I"])
 def test_a_brick_that_is_warm_on_one_side(code: str, tmp_path: Path) -> None:
-    """It counts with its mean, as in CalculiX, to all of its digits: a free brick grows by alpha T / 2 in all directions, and
+    """It counts with its mean, as in CalculiX, to all digits: a free brick grows by alpha T / 2 in all directions, and
     nothing is stressed."""
     x = ["0,0,0", "1,0,0", "1,1,0", "0,1,0", "0,0,1", "1,0,1", "1,1,1", "0,1,1"]
     nodes = [f"{n}, {at}" for n, at in enumerate(x, start=1)]

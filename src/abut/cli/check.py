@@ -42,7 +42,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.job.pairs import write_pairs
 
     try:
-        job = load_job(arguments.job, ignore=arguments.ignore)
+        job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
     except AbutError as error:
         report = Report((from_error(error, "job"),))
         _print(report, arguments.json)

@@ -49,7 +49,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     elif source.suffix.lower() != DECK:
         raise InputError(f"{source}: only decks ({DECK}) become job files; a mesh becomes a .vtu")
     else:
-        job = load_job(source, ignore=arguments.ignore)
+        job = load_job(source, ignore=arguments.ignore, soft=arguments.soft_contact)
         written = write_job(target, job)
         notes += [*(f"ignored: {what}" for what in job.ignored), *job.notes]
     if not arguments.quiet:

@@ -75,6 +75,9 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
         metavar="CARD",
         help="leave out a card (PLASTIC) or a parameter (NLGEOM) of a deck; may be repeated",
     )
+    parser.add_argument(
+        "--soft-contact", action="store_true", help="a deck's own PRESSURE-OVERCLOSURE, in place of exact contact"
+    )
 
 
 def passes_on(job: Path, options: Sequence[str]) -> bool:
@@ -141,6 +144,7 @@ def _solve(
 ) -> tuple[Solution, Path]:
     """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
     from abut.analysis import solve
+    from abut.decks.overclosure import overlaps
     from abut.job import load_job
     from abut.output import restart
     from abut.output.fields import write_fields
@@ -150,7 +154,7 @@ def _solve(
     from abut.solution import Phase
 
     progress(Phase(f"reading {arguments.job}"))
-    job = load_job(arguments.job, ignore=arguments.ignore)
+    job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
     _check_linear(job)
     for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
         progress(text)
@@ -189,6 +193,9 @@ def _solve(
             raise Stopped(_left("stopped", stream.steps, stream.time, directory)) from None
         if text := _unused(arguments.petsc):
             _say(text)
+            solution = replace(solution, notes=(*solution.notes, text))
+        for text in overlaps(solution, job.own_laws) if job.own_laws else ():
+            progress(text)
             solution = replace(solution, notes=(*solution.notes, text))
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))

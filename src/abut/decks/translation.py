@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from abut.bodies.loads import stress_load, surface_area
+from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.couplings import couplings, reference_loads, reference_nodes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
+from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies
 from abut.detection import add_surfaces, find_contacts
@@ -64,15 +66,17 @@ class Translation:
     model: Model
     notes: tuple[str, ...]
     ignored: tuple[str, ...]
+    own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
 
 
-def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
-    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result.
+def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> Translation:
+    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result; ``soft``:
+    contact with the deck's own pressures over overclosure, not exact.
 
     Raises InputError with card, file, line and cure for what abut does not do."""
     deck = read_deck(path, ignore)
     try:
-        return translate(deck)
+        return translate(deck, soft)
     except DeckError:
         raise
     except InputError as error:
@@ -81,7 +85,7 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
         raise InputError(f"{path}: {error}") from None
 
 
-def translate(deck: Deck) -> Translation:
+def translate(deck: Deck, soft: bool = False) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
     if not deck.steps:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
@@ -92,7 +96,7 @@ def translate(deck: Deck) -> Translation:
         reasons.add(error)
     plane = plane_of(deck)
     deck = cut(deck)
-    notes = [*deck.notes, *finite_notes(deck)]
+    notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     groups = Groups(deck)
     every, stiff = join(deck, pieces(deck))
@@ -125,6 +129,8 @@ def translate(deck: Deck) -> Translation:
     if deck.general is not None:
         mesh, found = _general(deck, deck.general, mesh, solids, contacts, notes)
         contacts += found
+    laws = own_laws(deck, contacts)
+    contacts = softened(contacts, laws) if soft else contacts
     finite = is_finite(deck)
     notes += [] if finite else path_notes(contacts)
     model = Model(
@@ -140,7 +146,7 @@ def translate(deck: Deck) -> Translation:
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else _options(deck),
     )
-    return Translation(model, tuple(notes), deck.ignored)
+    return Translation(model, tuple(notes), deck.ignored, laws)
 
 
 def _referenced(

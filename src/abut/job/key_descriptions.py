@@ -162,7 +162,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "
         "P1 or P2",
-        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick",
+        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick; a table "
+        "of points is soft contact, without friction",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure (of friction: its root)",
         "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
@@ -175,6 +176,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         'between, constant outside), or "rough" where nothing slips; left out: none',
         "friction_amplitude": "pairs of time (0 to 1) and factor of the coefficient; left out: it is constant",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
+    },
+    "OverclosureTable": {
+        "points": "pairs of overclosure [length] and pressure [force per area] that increase from pressure 0 on; linear "
+        "between, and on with the last slope",
     },
     "IntegrationTable": {
         "rule": "Gauss points, or Newton-Cotes points as in the paper",

@@ -263,6 +263,10 @@ class IntegrationTable(Table):
     points: Literal["auto"] | int = "auto"
 
 
+class OverclosureTable(Table):
+    points: Points
+
+
 # The model's own record says what is allowed and what is the default.
 class ContactTable(Table):
     name: str = Contact.name
@@ -273,7 +277,7 @@ class ContactTable(Table):
     reach: Number | None = None
     kind: Annotated[str, OneOf(KINDS)] = Contact.kind
     pressure: Annotated[str, OneOf(PRESSURES)] = Contact.pressure
-    law: Annotated[str, OneOf(LAWS)] = LAWS[0]
+    law: Annotated[str, OneOf(LAWS)] | OverclosureTable = LAWS[0]
     epsilon: Number = Contact.epsilon
     method: Annotated[str, OneOf(METHODS)] = Contact.method
     integration: IntegrationTable = IntegrationTable()

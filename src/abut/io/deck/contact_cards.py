@@ -10,7 +10,7 @@ from abut.io.deck.cards import Card, Line, as_float, key, of
 from abut.io.deck.friction_cards import changed, changes, friction
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import NO_FRICTION, Friction, GeneralContact, Numbers, Pair
+from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact, Numbers, Pair
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,11 @@ class Interaction:
     """What surfaces do to each other. overclosure: HARD, LINEAR, ..."""
 
     overclosure: str = "HARD"
+    behaviour: Behaviour = ()
     friction: Friction = NO_FRICTION
 
 
+FINE = 40  # points of an exponential curve over the clearance in which the pressure falls to a hundredth: 0.2 % off between
 OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
 
 
@@ -74,9 +76,9 @@ def _contact_pairs(
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
         tied, name = properties.overclosure == "TIED", f"{slave}-{master}"
         rub = NO_FRICTION if tied else properties.friction
-        result.append(
-            Pair(name, slave, master, tied, properties.overclosure, _adjust(card, mesh), clearance, line.place, rub)
-        )
+        distance = _adjust(card, mesh)
+        pair = Pair(name, slave, master, tied, properties.overclosure, distance, clearance, line.place, rub)
+        result.append(replace(pair, behaviour=properties.behaviour))
     return result
 
 
@@ -107,7 +109,11 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
-    return None if found is None else GeneralContact(properties.overclosure, found.place, properties.friction)
+    return (
+        None
+        if found is None
+        else GeneralContact(properties.overclosure, found.place, properties.friction, properties.behaviour)
+    )
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
@@ -151,7 +157,7 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                result[current] = replace(result[current], overclosure=_overclosure(card))
+                result[current] = replace(result[current], overclosure=_overclosure(card), behaviour=_behaviour(card))
             elif card.key == "CHANGEFRICTION":
                 change = changes(card, result)
             elif card.key == "FRICTION":
@@ -168,3 +174,19 @@ def _overclosure(card: Card) -> str:
     if overclosure not in OVERCLOSURES:
         raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
     return overclosure
+
+
+def _behaviour(card: Card) -> Behaviour:
+    """Pairs of overclosure and pressure of LINEAR and TABULAR contact; of EXPONENTIAL, close enough for straight lines."""
+    kind = _overclosure(card)
+    if not card.lines or kind not in ("LINEAR", "TABULAR", "EXPONENTIAL"):
+        return ()
+    line = card.lines[0]
+    if kind == "LINEAR":
+        return ((0.0, 0.0), (1.0, line.number(0, "slope")))
+    if kind == "TABULAR":
+        rows = [(each.number(1, "overclosure"), each.number(0, "pressure")) for each in card.lines]
+        return tuple(row for i, row in enumerate(rows) if row[1] > 0.0 or i + 1 == len(rows) or rows[i + 1][1] > 0.0)
+    clearance, pressure = line.number(0, "clearance"), line.number(1, "pressure")
+    rows = [(clearance * k / FINE, pressure * 100.0 ** (k / FINE)) for k in range(-2 * FINE, 3 * FINE + 1)]
+    return ((rows[0][0] - clearance / FINE, 0.0), *rows)

@@ -44,11 +44,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     known = amplitudes(cards, reasons)
     pair_list = pairs(cards, mesh, reasons)
     general = general_contact(cards, reasons)
-    named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
     notes += friction_notes(cards)
-    for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
-        if overclosure not in ("HARD", "TIED"):
-            notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,

@@ -12,6 +12,7 @@ from abut.io.deck.elements import ElementType
 from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
+Behaviour = tuple[tuple[float, float], ...]  # pairs of overclosure and pressure
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,8 @@ NO_FRICTION = Friction()
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
-    tolerance (None: the default, that of Abaqus where parameters are its)."""
+    tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
+    overclosure, where that has numbers."""
 
     name: str
     slave: str
@@ -92,6 +94,7 @@ class Pair:
     is_tie: bool = False
     tolerance: float | None = None
     of_abaqus: bool = False
+    behaviour: Behaviour = ()
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,7 @@ class GeneralContact:
     overclosure: str
     place: Place
     friction: Friction = NO_FRICTION
+    behaviour: Behaviour = ()
 
     @property
     def tied(self) -> bool:
