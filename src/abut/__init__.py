@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from abut.model import (
         Amplitude,
         BodyForce,
+        Centrifugal,
         Contact,
         Coupling,
         Equation,
@@ -52,11 +53,11 @@ _HOME = {  # of public names that do not come from abut.model
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
-    "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke", "NodalForce",
-    "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution",
-    "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot", "solve",
-    "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
+    "FoundContact", "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke",
+    "NodalForce", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
+    "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot",
+    "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Step
-from abut.io.deck.time_histories import courses, ends, times
+from abut.io.deck.time_histories import BODY_LOADS, courses, ends, times
 from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
@@ -16,7 +16,7 @@ DRAG = (
     "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
 )
 NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
-KINDS = ("boundary", "force", "pressure", "gravity")
+KINDS = ("boundary", "force", "pressure", *BODY_LOADS)
 
 
 def is_finite(deck: Deck) -> bool:
@@ -35,6 +35,10 @@ def finite_notes(deck: Deck) -> list[str]:
     if small:
         numbers = ", ".join(str(step.number) for step in small)
         notes.append(f"NLGEOM holds for the whole deck, though *STEP {numbers} is without it ({small[0].place})")
+    if any(value.kind == "centrifugal" for step in deck.steps for value in step.values):
+        notes.append(
+            "NLGEOM: CENTRIF with distances from the axis of the undeformed bodies; CalculiX takes those of deformed ones"
+        )
     if deck.small_sliding:
         notes.append("NLGEOM: SMALL SLIDING is solved as large sliding")
     if any(step.increments.fixed for step in deck.steps):

@@ -11,6 +11,7 @@ import numpy as np
 from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
+from abut.decks.body_loads import body_loads
 from abut.decks.couplings import couplings, reference_loads, reference_nodes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
@@ -40,7 +41,6 @@ from abut.model import (
     Contact,
     Coupling,
     Equation,
-    Gravity,
     Load,
     Model,
     NodalForce,
@@ -187,7 +187,7 @@ def _prescribed(
         result.loads.extend(_forces(bound, groups, plane, thick))
     with reasons.gathered():
         result.loads.extend(reference_loads(deck, references, plane, thick))
-    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
+    for others in (_pressures(deck, groups), body_loads(deck, parts, plane), _temperatures(deck, groups)):
         with reasons.gathered():
             result.loads.extend(others)
     return result
@@ -344,26 +344,6 @@ def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:
             alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
     for i, (course, rows) in enumerate(alike.items(), start=1):
         yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
-
-
-def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> Iterator[Load]:
-    alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
-    for key, course in courses(deck, "gravity").items():
-        if not zero(course):
-            alike.setdefault((key[1:], course), []).append(int(key[0]))
-    for (vector, course), elements in alike.items():
-        place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
-        size, amplitude = _history(course)
-        for name, piece in parts.items():
-            inside = np.isin(piece.elements, elements)
-            if not inside.any():
-                continue
-            if not inside.all():
-                raise DeckError(place, f"*DLOAD: gravity on a part of body '{name}' only; give it to all of the body")
-            if piece.section.material.density == 0.0:
-                raise DeckError(place, f"*DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'")
-            value = tuple(size * x for x in vector[: 2 if plane else 3])
-            yield Gravity(value, name, amplitude)
 
 
 def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:

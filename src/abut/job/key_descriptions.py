@@ -101,6 +101,14 @@ MEANINGS: dict[str, dict[str, str]] = {
         "value": "vector [length/time^2]",
         "on": "name of the body; left out: all bodies",
     },
+    "CentrifugalTable": {
+        "kind": "force of a rotation on the density, with distances from the axis of the undeformed bodies",
+        "speed": "angular speed [radian/time]",
+        "axis": "direction of the axis; left out in 2D (z; axisymmetric: y)",
+        "through": "a point of the axis; left out: the origin [length]",
+        "on": "name of the body; left out: all bodies",
+        "amplitude": "of the force: the square of that of the speed",
+    },
     "NodalForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",

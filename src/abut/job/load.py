@@ -22,6 +22,7 @@ from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
+    Centrifugal,
     Coupling,
     Equation,
     Force,
@@ -54,7 +55,7 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 
 LOADS: Mapping[str, Callable[..., Load]] = {
     "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
-    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity,
+    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity, "centrifugal": Centrifugal,
 }  # fmt: skip
 
 

@@ -252,8 +252,24 @@ class GravityTable(Table):
     amplitude: Points | None = None
 
 
+class CentrifugalTable(Table):
+    kind: Literal["centrifugal"]
+    speed: Number
+    axis: list[Number] | None = None
+    through: list[Number] | None = None
+    on: str | None = None
+    amplitude: Points | None = None
+
+
 LoadTable = Annotated[
-    PressureTable | TractionTable | ForceTable | MomentTable | NodalForceTable | TemperatureTable | GravityTable,
+    PressureTable
+    | TractionTable
+    | ForceTable
+    | MomentTable
+    | NodalForceTable
+    | TemperatureTable
+    | GravityTable
+    | CentrifugalTable,
     Field(discriminator="kind"),
 ]
 

@@ -3,6 +3,7 @@
 from abut.model.conditions import (
     Amplitude,
     BodyForce,
+    Centrifugal,
     Equation,
     Force,
     Gravity,
@@ -26,7 +27,7 @@ from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Coupling", "Equation", "Force",
-    "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe", "Rigid", "Rotation",
-    "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Centrifugal", "Contact", "Coupling",
+    "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
+    "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from abut import checks
 from abut.errors import InputError
@@ -373,4 +373,43 @@ class BodyForce:
         _amplitude(self.amplitude, "body force")
 
 
-Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | BodyForce
+@dataclass(frozen=True)
+class Centrifugal:
+    """Force of a rotation on the density of every body, or of the body named by ``on``: density times speed squared times
+    the distance from the axis, outward, taken in the undeformed body. speed: angle (radian) per time; axis: its direction,
+    left out in 2D, where it is z, and where a model is axisymmetric y; through: a point of it, left out: the origin. The
+    amplitude is that of the force, which is the square of the speed's.
+
+    >>> import abut
+    >>> abut.Centrifugal(speed=314.0, axis=(0, 0, 1)).at([[2.0, 0.0, 5.0]]).tolist()
+    [[197192.0, 0.0, 0.0]]
+    """
+
+    speed: float
+    axis: tuple[float, ...] | None = None
+    through: tuple[float, ...] | None = None
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "speed", checks.finite(self.speed, "centrifugal: speed"))
+        for name in ("axis", "through"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _vector(getattr(self, name), f"centrifugal: {name}"))
+        if self.axis is not None and not any(self.axis):
+            raise InputError("centrifugal: axis: expected a direction, got zero")
+        _amplitude(self.amplitude, "centrifugal")
+
+    def at(self, points: ArrayLike, axisymmetric: bool = False) -> NDArray[np.float64]:
+        """Acceleration (n, dim) at points (n, dim)."""
+        points = np.asarray(points, dtype=float)
+        apart = points - (0.0 if self.through is None else np.array(self.through))
+        if axisymmetric:
+            apart[..., 1] = 0.0
+        elif self.axis is not None:
+            axis = np.array(self.axis) / np.linalg.norm(self.axis)
+            apart -= (apart @ axis)[..., None] * axis
+        return np.asarray(self.speed**2 * apart)
+
+
+Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | Centrifugal | BodyForce

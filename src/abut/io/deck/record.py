@@ -187,15 +187,16 @@ class PreTension:
 @dataclass(frozen=True)
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures;
-    face 0 with ``vector``: gravity on the element. amplitude: name, or "" for the ramp."""
+    face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction it has.
+    amplitude: name, or "" for the ramp."""
 
-    kind: str  # boundary | force | pressure | gravity | temperature
+    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature
     numbers: Numbers
     directions: tuple[int, ...]
     value: float
     amplitude: str
     place: Place
-    vector: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    vector: tuple[float, ...] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

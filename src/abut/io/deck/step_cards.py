@@ -195,8 +195,18 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
             raise line.error("the direction of gravity is missing; write set, GRAV, value, x, y, z")
         vector = (x / size, y / size, z / size)
         return [Prescribed("gravity", elements, (0,), value, amplitude, line.place, vector)]
+    if label == "CENTRIF":
+        if value < 0.0:
+            raise line.error(f"the square of the angular speed: expected a number >= 0, got {value:g}")
+        at = tuple(line.number(i, "point of the axis", 0.0) for i in (3, 4, 5))
+        axis = tuple(line.number(i, "direction of the axis", 0.0) for i in (6, 7, 8))
+        if not any(axis):
+            raise line.error(
+                "the direction of the axis is missing; write set, CENTRIF, square of the speed, point, direction"
+            )
+        return [Prescribed("centrifugal", elements, (0,), value, amplitude, line.place, (*at, *axis))]
     if not label.startswith("P") or label == "P":
-        raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face) and GRAV are")
+        raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face), GRAV and CENTRIF are")
     kinds = {mesh.kinds[number] for number in elements.tolist()}
     face = face_number(line, label, "P", kinds)
     return [Prescribed("pressure", elements, (face,), value, amplitude, line.place)]
