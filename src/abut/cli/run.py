@@ -6,7 +6,7 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -144,7 +144,6 @@ def _solve(
 ) -> tuple[Solution, Path]:
     """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
     from abut.analysis import solve
-    from abut.decks.overclosure import overlaps
     from abut.job import load_job
     from abut.output import restart
     from abut.output.fields import write_fields
@@ -194,12 +193,20 @@ def _solve(
         if text := _unused(arguments.petsc):
             _say(text)
             solution = replace(solution, notes=(*solution.notes, text))
-        for text in overlaps(solution, job.own_laws) if job.own_laws else ():
-            progress(text)
-            solution = replace(solution, notes=(*solution.notes, text))
+        solution = _with_overlaps(solution, job, progress)
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))
     return solution, directory
+
+
+def _with_overlaps(solution: Solution, job: Job, progress: Callable[[str], None]) -> Solution:
+    """The notes of a deck whose own contact exact contact has replaced."""
+    from abut.decks.overclosure import overlaps
+
+    found = overlaps(solution, job.own_laws)
+    for text in found:
+        progress(text)
+    return replace(solution, notes=(*solution.notes, *found))
 
 
 def _read(result: ProbeResult) -> str:

@@ -107,11 +107,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     for pair in deck.pairs:
         with reasons.gathered():
             contacts.append(_contact(deck, groups, pair, hard, notes))
-    solids: list[Solid] = []
-    for name, piece in parts.items():
-        with reasons.gathered():
-            if name not in moving:
-                solids.append(_solid(name, piece))
+    solids = _solids({name: piece for name, piece in parts.items() if name not in moving}, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += _idle(deck, groups)
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
@@ -206,6 +202,14 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
             what = "belongs to no element and no equation" if node in given else "does not exist"
             notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
     return list(notes)
+
+
+def _solids(parts: Mapping[str, Piece], reasons: Reasons) -> list[Solid]:
+    result: list[Solid] = []
+    for name, piece in parts.items():
+        with reasons.gathered():
+            result.append(_solid(name, piece))
+    return result
 
 
 def _solid(name: str, piece: Piece) -> Solid:

@@ -1,14 +1,11 @@
 """What the user states, as frozen records that check themselves and each other."""
 
+from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import (
     Amplitude,
-    BodyForce,
-    Centrifugal,
     Equation,
     Force,
-    Gravity,
     History,
-    Load,
     Moment,
     NodalForce,
     Pressure,

@@ -9,15 +9,12 @@ import numpy as np
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
+from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import (
     COMPONENTS,
     TURNS,
-    BodyForce,
-    Centrifugal,
     Equation,
     Force,
-    Gravity,
-    Load,
     Moment,
     NodalForce,
     Pressure,
