@@ -105,3 +105,41 @@ def test_restarts(tmp_path: Path) -> None:
     with pytest.raises(abut.InputError, match="READ: the state at the end of an earlier run is not read") as raised:
         load(tmp_path, "*RESTART, READ, STEP=1\n" + DECK)
     assert "--ignore" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("second", "more"), [("SLAVE, MASTER", ""), ("MASTER, SLAVE", ", and keep the one whose slave")]
+)
+def test_the_same_pair_twice(second: str, more: str, tmp_path: Path) -> None:
+    pairs = f"SLAVE, MASTER\n*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\n{second}"
+    with pytest.raises(
+        abut.InputError, match=r":\d+: .* are a pair already \(.*:\d+\): .* take one of the two out" + more
+    ):
+        load(tmp_path, DECK.replace("SLAVE, MASTER", pairs))
+
+
+def test_parameters_for_shells(tmp_path: Path) -> None:
+    """Solids have no thickness that contact could count, and no rotations."""
+    assert load(tmp_path, DECK.replace("INTERACTION=I,", "INTERACTION=I, NO THICKNESS,")).model.contacts
+    tie = "*TIE, NAME=T, NO THICKNESS, NO ROTATION\nSLAVE, MASTER\n"
+    assert load(tmp_path, BRICKS + tie + HELD + PUSH).model.contacts[0].kind == "tied"
+
+
+def test_sets_with_a_frequency(tmp_path: Path) -> None:
+    """Stands in decks of CalculiX's own tests, without effect."""
+    assert load(tmp_path, DECK.replace("*NSET, NSET=TOP", "*NSET, NSET=TOP, FREQUENCY=100")).model.contacts
+
+
+@pytest.mark.parametrize("what", ["NSET=FACE", "ELSET=LOW"])
+def test_rigid_bodies_that_are_a_part(what: str, tmp_path: Path) -> None:
+    """Couple their nodes to the reference node: its force is that of a pressure, whose strain the brick above has; the one
+    below, of which all nodes are rigid with ELSET, has none. CalculiX agrees to its digits."""
+    tower = BRICKS.replace("2, 11,12,13,14,15", "2, 5,6,7,8,15").replace("2, S1", "2, S2")
+    text = tower + "*NODE\n90, 0.5,0.5,1.5\n*NSET, NSET=FACE\n5,6,7,8\n"
+    held = "*BOUNDARY\nTOP, 1, 3\n" + ("BOTTOM, 1, 2\n" if "NSET" in what[:4] else "")
+    text += f"*RIGID BODY, {what}, REF NODE=90\n" + held + step("*CLOAD", "90, 3, 5.")
+    job = load(tmp_path, text)
+    assert any("*RIGID BODY is part of a body" in note for note in job.notes)
+    solution = abut.solve(job.model)
+    middle = (solution.model.mesh.points == [0, 0, 1]).all(axis=1)
+    assert solution.displacement[middle, 2] == pytest.approx(5.0 / E, rel=1e-9)

@@ -17,7 +17,7 @@ from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
-from abut.decks.rigid import join, rigid_bodies
+from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -98,8 +98,10 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     deck = cut(deck)
     notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    made = pieces(deck)
+    deck = with_parts_coupled(deck, made, notes)
     groups = Groups(deck)
-    every, stiff = join(deck, pieces(deck))
+    every, stiff = join(deck, made)
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
     moving = [name for body in stiff for name, piece in parts.items() if piece is body]
     hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])

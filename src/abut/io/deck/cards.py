@@ -28,6 +28,7 @@ FLAGS = frozenset(  # parameters without a value, by which a line shows that it 
         "NLGEOM",
         "NODALTHICKNESS",
         "NOSEPARATION",
+        "NOTHICKNESS",
         "PERTURBATION",
         "ROUGH",
         "SMALLSLIDING",

@@ -9,7 +9,7 @@ from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_float, key, of
 from abut.io.deck.friction_cards import changed, changes, friction
 from abut.io.deck.mesh_cards import MeshCards
-from abut.io.deck.reasons import Reasons
+from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact, Numbers, Pair
 
 
@@ -40,9 +40,25 @@ def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pai
                 result += _ties(card, mesh)
             elif card.key == "CONTACTPAIR":
                 result += _contact_pairs(card, mesh, interactions, clearances)
+    _check_once(result, reasons)
     for (slave, master), card in clearances.items():
         reasons.add(card.unknown(f"no *CONTACT PAIR of slave {slave} and master {master}"))
     return tuple(result)
+
+
+def _check_once(every: Sequence[Pair], reasons: Reasons) -> None:
+    """``reasons`` gets pairs of surfaces that are a pair already, with either as the slave."""
+    known: dict[frozenset[str], Pair] = {}
+    for pair in every:
+        first = known.setdefault(frozenset((pair.slave, pair.master)), pair)
+        if first is not pair:
+            text = (
+                f"'{pair.slave}' and '{pair.master}' are a pair already ({first.place}): contact between them would count "
+                "twice; take one of the two out"
+            )
+            if first.slave != pair.slave:
+                text += ", and keep the one whose slave is the softer side"
+            reasons.add(DeckError(pair.place, text))
 
 
 def _ties(card: Card, mesh: MeshCards) -> Iterator[Pair]:
