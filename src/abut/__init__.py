@@ -8,6 +8,7 @@ from abut.errors import AbutError, ConvergenceError, InputError, SingularModelEr
 
 if TYPE_CHECKING:
     from abut.analysis import solve
+    from abut.contact.overclosure import PressureOverclosure
     from abut.detection import FoundContact, add_surfaces, find_contacts
     from abut.materials.elastic import LinearElastic
     from abut.materials.hyperelastic import NeoHooke
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from abut.model import (
         Amplitude,
         BodyForce,
+        Centrifugal,
         Contact,
         Coupling,
         Equation,
@@ -47,13 +49,15 @@ _HOME = {  # of public names that do not come from abut.model
     "write_report": "abut.report", "plot": "abut.output.pyvista_export", "to_pyvista": "abut.output.pyvista_export",
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
+    "PressureOverclosure": "abut.contact.overclosure",
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "BodyForce", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
-    "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke", "NodalForce", "Pressure",
-    "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature",
-    "Term", "Traction", "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
+    "FoundContact", "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke",
+    "NodalForce", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
+    "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot",
+    "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

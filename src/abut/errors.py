@@ -5,6 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+LONGEST_NAME = 200  # characters, above which no name is meant
+
 
 class AbutError(Exception):
     """Base of abut's errors: the message says what is wrong, where, and how to correct it."""
@@ -54,7 +56,7 @@ class OutOfTime(Stopped):
 
 def closest(name: str, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the closest known name, nothing where none is close."""
-    match = difflib.get_close_matches(name, sorted(known), n=1)
+    match = difflib.get_close_matches(name, sorted(known), n=1) if len(name) <= LONGEST_NAME else []
     return f"; did you mean '{match[0]}'?" if match else ""
 
 

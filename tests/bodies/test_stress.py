@@ -58,7 +58,8 @@ def stress_by_numpy(
         lambda_, mu = np.array([lame(m, None) for m in own]).T[..., None]
         poisson = np.array([m.poisson for m in own])[:, None]
         uniform = np.array([temperatures[name] for name in body[cells]])[:, None]
-        thermal = np.array([m.expansion for m in own])[:, None] * (uniform + nodal[nodes] @ shapes.T)
+        heat = nodal[nodes] if CELLS[kind].degree > 1 else nodal[nodes].mean(axis=1, keepdims=True) + 0.0 * nodal[nodes]
+        thermal = np.array([m.expansion for m in own])[:, None] * (uniform + heat @ shapes.T)
         if plane == "axisymmetric":
             radius = mesh.points[nodes][..., 0] @ shapes.T
             det = det * radius

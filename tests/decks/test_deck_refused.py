@@ -182,7 +182,7 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("SLAVE, MASTER\n", "SLAVE, MASTRE\n", "no master surface named 'MASTRE'; did you mean 'MASTER'"),
         ("2, S1\n", "2, S2\n", r"\*CONTACT PAIR: 'SLAVE' and 'MASTER' look the same way"),
         ("2, P2, 10.", "2, P9, 10.", "face label 'P9': expected P1 to P6"),
-        ("2, P2, 10.", "2, CENTRIF, 10.", "load 'CENTRIF' is not supported"),
+        ("2, P2, 10.", "2, NEWTON, 10.", "load 'NEWTON' is not supported"),
         ("2, P2, 10.", "3, P2, 10.", "element 3 does not exist"),
         ("2, P2, 10.", "2, P2", "magnitude is missing"),
         ("BOTTOM, 1, 3", "BOTTOM, 1, 11", "belongs to heat transfer"),

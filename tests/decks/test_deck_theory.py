@@ -105,3 +105,18 @@ def test_constraints_that_equations_repeat(tmp_path: Path) -> None:
     assert solution.displacement[:, 2] == pytest.approx(-0.01 * z, abs=EXACT * 0.02)
     assert np.linalg.norm(solution.contacts[0].force) == pytest.approx(10.0, rel=EXACT)
     assert any("one of many" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize("code", ["C3D8", "C3D8I"])
+def test_a_brick_that_is_warm_on_one_side(code: str, tmp_path: Path) -> None:
+    """It counts with its mean, as in CalculiX, to all digits: a free brick grows by alpha T / 2 in all directions, and
+    nothing is stressed."""
+    x = ["0,0,0", "1,0,0", "1,1,0", "0,1,0", "0,0,1", "1,0,1", "1,1,1", "0,1,1"]
+    nodes = [f"{n}, {at}" for n, at in enumerate(x, start=1)]
+    solution = solve(
+        tmp_path, "*NODE, NSET=ALL", *nodes, f"*ELEMENT, TYPE={code}, ELSET=E", "1, 1,2,3,4,5,6,7,8", "*MATERIAL, NAME=M",
+        "*ELASTIC", "1000., .3", "*EXPANSION", "1.E-3", "*SOLID SECTION, ELSET=E, MATERIAL=M", "*BOUNDARY", "1, 1, 3",
+        "2, 2, 3", "4, 3", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "ALL, 0.", "*STEP", "*STATIC", "*TEMPERATURE",
+        *(f"{n}, 10." for n in (5, 6, 7, 8)), "*END STEP",
+    )  # fmt: skip
+    assert solution.displacement == pytest.approx(5e-3 * solution.model.mesh.points, abs=EXACT * 5e-3)

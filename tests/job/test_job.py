@@ -39,7 +39,7 @@ BAD = {
     "syntax": ("[[contacts]]", "[[contacts]", "not valid TOML"),
     "generator": ('kind = "box"', 'kind = "bix"', "did you mean 'box'?"),
     "generator key": ("cells = [6, 6, 6]", "celss = [6, 6, 6]", "did you mean 'cells'?"),
-    "zero cells": ("cells = [6, 6, 6]", "cells = [0, 6, 6]", "whole numbers >= 1"),
+    "zero cells": ("cells = [6, 6, 6]", "cells = [0, 6, 6]", "whole numbers from 1 to"),
     "same surface": ('"lower.top"', '"upper.bottom"', "same surface"),
     "plane in 3D": ("[materials.steel]", '[model]\nplane = "strain"\n[materials.steel]', "the mesh is 3D"),
     "wrong side": ('"lower.top"', '"lower.bottom"', "faces"),

@@ -139,8 +139,8 @@ class Group:
 
 @dataclass(frozen=True)
 class TemperatureChange:
-    """Degrees: uniform by body (0 for those not named), and at the nodes (n_points,), which the shape functions interpolate;
-    both add up."""
+    """Degrees: uniform by body (0 for those not named), and at the nodes (n_points,), which the shape functions interpolate,
+    but count with their mean in cells of first order, theory (F10); both add up."""
 
     bodies: Mapping[str, float] = field(default_factory=dict)
     nodes: Array | None = None
@@ -157,6 +157,8 @@ class TemperatureChange:
         change = (
             np.broadcast_to(uniform, group.nodes.shape) if self.nodes is None else uniform + self.nodes[group.nodes]
         )
+        if CELLS[group.kind].degree == 1:  # whose strains cannot follow what varies within a cell
+            change = np.broadcast_to(change.mean(axis=1, keepdims=True), group.nodes.shape)
         return np.ascontiguousarray(expansion * change)
 
 

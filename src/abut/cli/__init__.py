@@ -15,6 +15,7 @@ from pathlib import Path
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
 from abut.cli.run import add_run, passes_on
+from abut.cli.terminal import shortened, show
 from abut.cli.verify import add_infsup, add_verify
 from abut.errors import AbutError, InputError
 from abut.parallel.launch import processes, rank
@@ -46,10 +47,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         if rank():
             time.sleep(PAUSE)
         else:
-            print(f"abut: error: {error}", file=sys.stderr, flush=True)
+            show(f"abut: error: {shortened(str(error))}", file=sys.stderr, flush=True)
         return error.exit_status
     except MemoryError:
-        print(
+        show(
             "abut: error: not enough memory for this model; choose a coarser mesh, or a larger machine (a mesh file that "
             "is small may be damaged)",
             file=sys.stderr,
@@ -59,13 +60,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NO_READER
     except KeyboardInterrupt:
-        print("abut: stopped", file=sys.stderr)
+        show("abut: stopped", file=sys.stderr)
         return INTERRUPTED
     except Exception as error:
         if getattr(arguments, "debug", False):
             traceback.print_exc()
-        print(f"abut: internal error: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
-        print(
+        show(f"abut: internal error: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
+        show(
             "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
         )
         return BUG
@@ -123,7 +124,7 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from importlib.metadata import version
 
-        print(f"abut {version('abut')}")
+        show(f"abut {version('abut')}")
         parser.exit(DONE)
 
 
@@ -133,7 +134,7 @@ def _schema(arguments: argparse.Namespace) -> int:
 
     text = json.dumps(json_schema(), indent=2) + "\n"
     if arguments.output is None:
-        print(text, end="")
+        show(text, end="")
     else:
         write_text(arguments.output, text)
     return DONE

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from abut.cli.run import add_ignore
+from abut.cli.terminal import shortened, show
 from abut.errors import AbutError
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.job.pairs import write_pairs
 
     try:
-        job = load_job(arguments.job, ignore=arguments.ignore)
+        job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
     except AbutError as error:
         report = Report((from_error(error, "job"),))
         _print(report, arguments.json)
@@ -67,15 +68,15 @@ def _print(report: Report, as_json: bool) -> None:
             for f in report.findings
         ]
         motions = [{"motion": m.text, "resisted_by": m.resisted_by} for m in report.motions]
-        print(json.dumps({"schema": 1, "status": report.status, "findings": findings, "motions": motions}, indent=2))
+        show(json.dumps({"schema": 1, "status": report.status, "findings": findings, "motions": motions}, indent=2))
         return
     for finding in report.findings:
-        print(f"{finding.severity:8s} {finding.line}")
+        show(shortened(f"{finding.severity:8s} {finding.line}"))
         for line in finding.details:
-            print(f"           {line}")
+            show(f"           {line}")
     counts = [(report.count(severity), severity) for severity in ("error", "warning", "advice")]
     said = [f"{n} {severity}{'s' if n > 1 and severity != 'advice' else ''}" for n, severity in counts if n]
-    print(", ".join(said) or "no problems found")
+    show(", ".join(said) or "no problems found")
 
 
 def _write_motions(directory: Path, job: Job, report: Report) -> None:

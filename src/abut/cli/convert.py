@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from abut.cli.run import add_ignore
+from abut.cli.terminal import show
 from abut.errors import InputError
 
 DONE = 0
@@ -48,10 +49,10 @@ def _convert(arguments: argparse.Namespace) -> int:
     elif source.suffix.lower() != DECK:
         raise InputError(f"{source}: only decks ({DECK}) become job files; a mesh becomes a .vtu")
     else:
-        job = load_job(source, ignore=arguments.ignore)
+        job = load_job(source, ignore=arguments.ignore, soft=arguments.soft_contact)
         written = write_job(target, job)
         notes += [*(f"ignored: {what}" for what in job.ignored), *job.notes]
     if not arguments.quiet:
-        print(*notes, sep="\n", end="\n" if notes else "")
-        print(f"written: {', '.join(map(str, written))}")
+        show(*notes, sep="\n", end="\n" if notes else "")
+        show(f"written: {', '.join(map(str, written))}")
     return DONE

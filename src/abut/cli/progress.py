@@ -9,6 +9,7 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from abut.cli.terminal import plain, show
 from abut.solution import Iteration, Phase
 
 if TYPE_CHECKING:
@@ -68,10 +69,10 @@ class Progress:
 
     def _print(self, text: str) -> None:
         if self._live is not None:
-            self._live.console.print(text, markup=False, highlight=False, soft_wrap=True)
+            self._live.console.print(plain(text), markup=False, highlight=False, soft_wrap=True)
         else:
             with contextlib.suppress(BrokenPipeError):  # the results are worth more than who reads along
-                print(text, flush=True)
+                show(text, flush=True)
         self._spoke = time.monotonic()
 
     def _enter_stage(self, stage: Phase) -> None:
@@ -87,7 +88,7 @@ class Progress:
             self._stage, self._began, self._iteration = stage, now, 0
             self._patience = PATIENCE
             if self._live is not None:
-                self._live.update(self.status(now))
+                self._live.update(plain(self.status(now)))
             elif not self._silent and (stage.seconds or 0.0) >= LONG:
                 self._print(str(stage))
 
@@ -112,7 +113,7 @@ class Progress:
             now = time.monotonic()
             with self._lock:
                 if self._live is not None:
-                    self._live.update(self.status(now))
+                    self._live.update(plain(self.status(now)))
                 elif now - self._spoke >= self._patience:
                     self._print(f"... {self.status(now)}")
                     self._patience *= 2.0

@@ -6,11 +6,12 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from abut.cli.terminal import show
 from abut.errors import ConvergenceError, InputError, OutOfTime, Stopped
 from abut.parallel.launch import processes, unused
 
@@ -74,6 +75,9 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
         metavar="CARD",
         help="leave out a card (PLASTIC) or a parameter (NLGEOM) of a deck; may be repeated",
     )
+    parser.add_argument(
+        "--soft-contact", action="store_true", help="a deck's own PRESSURE-OVERCLOSURE, in place of exact contact"
+    )
 
 
 def passes_on(job: Path, options: Sequence[str]) -> bool:
@@ -117,7 +121,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
             _say(str(reason))
             return reason.exit_status if isinstance(reason, OutOfTime) else interrupt.exit_status
     if arguments.json:
-        print(json.dumps(summary(solution), indent=2))
+        show(json.dumps(summary(solution), indent=2))
     elif not arguments.quiet:
         _print_result(solution, directory)
     if not solution.converged:
@@ -149,7 +153,7 @@ def _solve(
     from abut.solution import Phase
 
     progress(Phase(f"reading {arguments.job}"))
-    job = load_job(arguments.job, ignore=arguments.ignore)
+    job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
     _check_linear(job)
     for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
         progress(text)
@@ -189,9 +193,20 @@ def _solve(
         if text := _unused(arguments.petsc):
             _say(text)
             solution = replace(solution, notes=(*solution.notes, text))
+        solution = _with_overlaps(solution, job, progress)
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))
     return solution, directory
+
+
+def _with_overlaps(solution: Solution, job: Job, progress: Callable[[str], None]) -> Solution:
+    """The notes of a deck whose own contact exact contact has replaced."""
+    from abut.decks.overclosure import overlaps
+
+    found = overlaps(solution, job.own_laws)
+    for text in found:
+        progress(text)
+    return replace(solution, notes=(*solution.notes, *found))
 
 
 def _read(result: ProbeResult) -> str:
@@ -222,7 +237,7 @@ def _check_linear(job: Job) -> None:
 
 
 def _say(text: str) -> None:
-    print(f"abut: {text}", file=sys.stderr, flush=True)
+    show(f"abut: {text}", file=sys.stderr, flush=True)
 
 
 def _left(how: str, steps: int, time: float, directory: Path) -> str:
@@ -256,25 +271,25 @@ def _print_result(solution: Solution, directory: Path) -> None:
     if not (solution.converged and solution.complete):
         last = solution.steps[-1]
         how = "" if last.converged else ", which did not converge"
-        print(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
+        show(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
     for contact in solution.contacts:
-        print(
+        show(
             f"contact '{contact.name}': force on the contactor {force(contact)}, largest pressure "
             f"{contact.max_pressure:.6g}, area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
         for line in lines(contact):
-            print(f"  {line}")
+            show(f"  {line}")
     for result in solution.probes:
-        print(f"probe '{result.name}': {_read(result)}")
-    print("certificate   value      limit")
+        show(f"probe '{result.name}': {_read(result)}")
+    show("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name
         value = f"{'unknown':>9}" if check.unknown else f"{check.value:9.2e}"
-        print(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
+        show(f"  {check.verdict}  {value}  {check.limit:9.2e}  {name}")
         if text := check.unknown or cure(check, solution):
-            print(f"        {'unknown' if check.unknown else 'cure'}: {text}")
+            show(f"        {'unknown' if check.unknown else 'cure'}: {text}")
     for remedy in remedies(solution):
-        print(f"  try {remedy}")
-    print(
+        show(f"  try {remedy}")
+    show(
         f"{sum(solution.timings.values()):.1f} s; results in {directory}: open report.html in a browser, *.pvd in ParaView"
     )

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from abut.cli.terminal import show
 from abut.errors import InputError, closest
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     if arguments.list:
         longest = max(len(name) for name in BENCHMARKS)
         for benchmark in chosen:
-            print(f"{benchmark.name:{longest}s}  {benchmark.title}")
+            show(f"{benchmark.name:{longest}s}  {benchmark.title}")
         return DONE
     if arguments.levels is not None and arguments.levels < 1:
         raise InputError(f"verify: --levels: expected a whole number >= 1, got {arguments.levels}")
@@ -83,7 +84,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     width = max(len(benchmark.name) for benchmark in chosen)
     if not arguments.json:
         titles = f"{'value':>12s} {'reference':>12s} {'error':>9s} {'limit':>9s}  rate"
-        print(f"      {'benchmark':{width}s} {'quantity':16s} {titles}")
+        show(f"      {'benchmark':{width}s} {'quantity':16s} {titles}")
     for benchmark in chosen:
         results = run(benchmark, arguments.levels)
         outcomes += results
@@ -92,9 +93,9 @@ def _verify(arguments: argparse.Namespace) -> int:
         for outcome in results:
             _print_outcome(outcome, width)
         for source in dict.fromkeys(outcome.reference.source for outcome in results):
-            print(f"      {'':{width}s} source: {source}", flush=True)
+            show(f"      {'':{width}s} source: {source}", flush=True)
     if arguments.json:
-        print(json.dumps([_plain(outcome) for outcome in outcomes], indent=2))
+        show(json.dumps([_plain(outcome) for outcome in outcomes], indent=2))
     elif arguments.levels is not None and arguments.levels > 1:
         for outcome in outcomes:
             _text_plot(outcome)
@@ -103,7 +104,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     failed = [outcome for outcome in outcomes if not outcome.passed]
     if not arguments.json:
         seconds = sum({outcome.benchmark: outcome.seconds for outcome in outcomes}.values())
-        print(f"{len(outcomes) - len(failed)} of {len(outcomes)} quantities pass, {seconds:.0f} s")
+        show(f"{len(outcomes) - len(failed)} of {len(outcomes)} quantities pass, {seconds:.0f} s")
     return FAILED if failed else DONE
 
 
@@ -111,7 +112,7 @@ def _print_outcome(outcome: Outcome, width: int) -> None:
     rate = "" if len(outcome.values) < 2 else "-" if outcome.rate is None else f"{outcome.rate:.2f}"
     if outcome.rate is not None and outcome.reference.rate is not None:
         rate += f" (theory {outcome.reference.rate:g})"
-    print(
+    show(
         f"{'pass' if outcome.passed else 'FAIL'}  {outcome.benchmark:{width}s} {outcome.quantity:16s} "
         f"{outcome.values[-1]:12.6g} {outcome.reference.value:12.6g} {outcome.error:9.2e} "
         f"{outcome.reference.tolerance:9.1e}  {rate}",
@@ -142,10 +143,10 @@ def _text_plot(outcome: Outcome, columns: int = 60) -> None:
     errors = outcome.errors
     exponents = [math.log10(max(error, 1e-17)) for error in errors]
     low, high = math.floor(min(exponents)), math.ceil(max(exponents))
-    print(f"{outcome.benchmark} {outcome.quantity}: error by level, 1e{low} .. 1e{high}")
+    show(f"{outcome.benchmark} {outcome.quantity}: error by level, 1e{low} .. 1e{high}")
     for level, (error, exponent) in enumerate(zip(errors, exponents)):
         bar = round(columns * (exponent - low) / max(high - low, 1))
-        print(f"  {level}  {error:9.2e} {'#' * bar}")
+        show(f"  {level}  {error:9.2e} {'#' * bar}")
 
 
 def _matplotlib() -> Any:
@@ -185,10 +186,10 @@ def _verify_job(arguments: argparse.Namespace) -> int:
 
     results = interface_patch(load_job(arguments.job).model)
     if arguments.json:
-        print(json.dumps([{**vars(result), "passed": result.passed} for result in results], indent=2))
+        show(json.dumps([{**vars(result), "passed": result.passed} for result in results], indent=2))
     else:
         for result in results:
-            print(*describe(result), sep="\n")
+            show(*describe(result), sep="\n")
     return DONE if all(result.passed for result in results) else FAILED
 
 
@@ -203,16 +204,16 @@ def _infsup(arguments: argparse.Namespace) -> int:
     results = [inf_sup(models, name) for name in names or [None]]
     if arguments.json:
         plain = [{**vars(r), "levels": [vars(level) for level in r.levels]} for r in results]
-        print(json.dumps(plain, indent=2))
+        show(json.dumps(plain, indent=2))
         return DONE if all(r.stable for r in results) else FAILED
     for result in results:
         first = result.levels[0]
-        print(f"contact '{first.contact}', pressure {first.space}")
-        print("  multipliers   facet size   beta (H^-1/2)   beta (h M)   spurious modes")
+        show(f"contact '{first.contact}', pressure {first.space}")
+        show("  multipliers   facet size   beta (H^-1/2)   beta (h M)   spurious modes")
         for level in result.levels:
-            print(
+            show(
                 f"  {level.multipliers:11d}   {level.size:10.4g}   {level.trace:13.4f}   {level.mesh:10.4f}   "
                 f"{level.spurious:14d}"
             )
-        print(f"  {result.verdict}")
+        show(f"  {result.verdict}")
     return DONE if all(r.stable for r in results) else FAILED

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Step
-from abut.io.deck.time_histories import courses, ends, times
+from abut.io.deck.time_histories import BODY_LOADS, courses, ends, times
 from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
@@ -16,7 +16,7 @@ DRAG = (
     "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
 )
 NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
-KINDS = ("boundary", "force", "pressure", "gravity")
+KINDS = ("boundary", "force", "pressure", *BODY_LOADS)
 
 
 def is_finite(deck: Deck) -> bool:
@@ -35,6 +35,10 @@ def finite_notes(deck: Deck) -> list[str]:
     if small:
         numbers = ", ".join(str(step.number) for step in small)
         notes.append(f"NLGEOM holds for the whole deck, though *STEP {numbers} is without it ({small[0].place})")
+    if any(value.kind == "centrifugal" for step in deck.steps for value in step.values):
+        notes.append(
+            "NLGEOM: CENTRIF with distances from the axis of the undeformed bodies; CalculiX takes those of deformed ones"
+        )
     if deck.small_sliding:
         notes.append("NLGEOM: SMALL SLIDING is solved as large sliding")
     if any(step.increments.fixed for step in deck.steps):
@@ -59,18 +63,20 @@ def unsupported(deck: Deck) -> Iterator[DeckError]:
 
 def load_steps(deck: Deck) -> SolveOptions:
     """Load steps with NLGEOM: as long as they can be up to the longest increment, or at the times of fixed increments. Where
-    nothing turns at the end of a step, which then would be passed over, times are given for automatic steps as well."""
+    nothing turns at the end of a step, which then would be passed over, times are given for automatic steps as well; so they
+    are without contact, where "auto" is one load step."""
     total = sum(step.period for step in deck.steps)
+    contact = bool(deck.pairs) or deck.general is not None
     turns = {time for kind in KINDS for course in courses(deck, kind).values() for time, _ in course} | {1.0}
     met = all(any(abs(end - time) < SAME for time in turns) for end in ends(deck))
-    if met and all(_automatic(step) for step in deck.steps):
+    if met and contact and all(_automatic(step) for step in deck.steps):
         longest = min(step.increments.longest for step in deck.steps)
         if longest >= max(step.period for step in deck.steps):
             return SolveOptions()
         return SolveOptions(steps=math.ceil(total / longest * (1.0 - SAME)))
     result, start = list(times(deck)), 0.0
     for step in deck.steps:
-        result += [(start + time) / total for time in _increments(step)]
+        result += [(start + time) / total for time in _increments(step, contact)]
         start += step.period
     kept: list[float] = []
     for time in sorted(result):
@@ -84,10 +90,13 @@ def _automatic(step: Step) -> bool:
     return not step.increments.fixed and step.increments.first < step.period
 
 
-def _increments(step: Step) -> list[float]:
-    """Their ends within a step, from its beginning."""
+def _increments(step: Step, contact: bool) -> list[float]:
+    """Their ends within a step, from its beginning. Without contact automatic ones are as long as they may be: nothing
+    depends on the way, and a step that fails is halved."""
     increments = step.increments
-    length = increments.first if not _automatic(step) else max(increments.first, SHARE * step.period)
+    length = increments.first
+    if _automatic(step):
+        length = max(length, SHARE * step.period) if contact else step.period
     count = math.ceil(step.period / min(length, increments.longest) * (1.0 - SAME))
     if increments.fixed:
         return [*(i * increments.first for i in range(1, count)), step.period]

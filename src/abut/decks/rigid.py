@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from abut.io.deck.faces import element_nodes
 from abut.io.deck.groups import Piece
 from abut.io.deck.nodal_constraints import coordinates
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Deck, Numbers, RigidBody
+from abut.io.deck.record import Coupling, Deck, Numbers, RigidBody
 from abut.io.deck.time_histories import Course, courses
 from abut.model import Rigid
 from abut.model.conditions import TURNS
@@ -42,15 +43,41 @@ def _components(given: Mapping[tuple[float, ...], Course], body: RigidBody) -> d
     return result
 
 
+def with_parts_coupled(deck: Deck, parts: Sequence[Piece], notes: list[str]) -> Deck:
+    """The deck with rigid bodies that are parts of bodies only as kinematic couplings of their nodes, which is the same;
+    ``notes`` gets them. One with a turning node stays what it is."""
+    whole: list[RigidBody] = []
+    coupled: list[Coupling] = []
+    free = list(parts)
+    for body in deck.rigid:
+        nodes, inside = _inside(deck, body, free)
+        elements = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in inside)])
+        if body.turning or (inside and not len(np.setdiff1d(nodes, _nodes(deck, elements)))):
+            free = [piece for piece in free if not any(piece is other for other in inside)]
+            whole.append(body)
+            continue
+        name = f"rigid part of {body.reference}"
+        coupled.append(Coupling(name, False, body.reference, "", nodes, frozenset(range(1, 7)), None, body.place))
+        notes.append(
+            f"{body.place}: *RIGID BODY is part of a body: its nodes are coupled to node {body.reference} (kinematic)"
+        )
+    return replace(deck, rigid=tuple(whole), couplings=(*deck.couplings, *coupled))
+
+
+def _inside(deck: Deck, body: RigidBody, free: Sequence[Piece]) -> tuple[Numbers, list[Piece]]:
+    """Nodes of a rigid body, and the bodies that are rigid as a whole."""
+    nodes = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
+    nodes = np.setdiff1d(nodes, [body.reference, body.turning])
+    return nodes, [piece for piece in free if np.isin(_nodes(deck, piece.elements), nodes).all()]
+
+
 def join(deck: Deck, parts: Sequence[Piece]) -> tuple[list[Piece], list[Piece]]:
     """All bodies, with those of each rigid body made one; and the rigid ones, in the order of the deck.
 
     Raises InputError where a rigid body is not whole bodies."""
     free, rigid = list(parts), []
     for body in deck.rigid:
-        nodes = np.unique(_nodes(deck, body.elements) if len(body.elements) else body.nodes)
-        nodes = np.setdiff1d(nodes, [body.reference, body.turning])
-        inside = [piece for piece in free if np.isin(_nodes(deck, piece.elements), nodes).all()]
+        nodes, inside = _inside(deck, body, free)
         elements = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in inside)])
         left = np.setdiff1d(nodes, _nodes(deck, elements))
         if len(left) or not inside:

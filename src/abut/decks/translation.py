@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from abut.bodies.loads import stress_load, surface_area
+from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
+from abut.decks.body_loads import body_loads
 from abut.decks.couplings import couplings, reference_loads, reference_nodes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
+from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
-from abut.decks.rigid import join, rigid_bodies
+from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -25,6 +28,7 @@ from abut.io.deck.nodal_constraints import Bonds, bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
+from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
@@ -37,7 +41,6 @@ from abut.model import (
     Contact,
     Coupling,
     Equation,
-    Gravity,
     Load,
     Model,
     NodalForce,
@@ -63,15 +66,17 @@ class Translation:
     model: Model
     notes: tuple[str, ...]
     ignored: tuple[str, ...]
+    own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
 
 
-def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
-    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result.
+def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> Translation:
+    """Read a deck as a model. ``ignore``: cards and parameters to leave out although they change the result; ``soft``:
+    contact with the deck's own pressures over overclosure, not exact.
 
     Raises InputError with card, file, line and cure for what abut does not do."""
     deck = read_deck(path, ignore)
     try:
-        return translate(deck)
+        return translate(deck, soft)
     except DeckError:
         raise
     except InputError as error:
@@ -80,7 +85,7 @@ def load_deck(path: Path, ignore: Collection[str] = ()) -> Translation:
         raise InputError(f"{path}: {error}") from None
 
 
-def translate(deck: Deck) -> Translation:
+def translate(deck: Deck, soft: bool = False) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
     if not deck.steps:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
@@ -91,10 +96,12 @@ def translate(deck: Deck) -> Translation:
         reasons.add(error)
     plane = plane_of(deck)
     deck = cut(deck)
-    notes = [*deck.notes, *finite_notes(deck)]
+    notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    made = pieces(deck)
+    deck = with_parts_coupled(deck, made, notes)
     groups = Groups(deck)
-    every, stiff = join(deck, pieces(deck))
+    every, stiff = join(deck, made)
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
     moving = [name for body in stiff for name, piece in parts.items() if piece is body]
     hard = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in stiff)])
@@ -102,11 +109,7 @@ def translate(deck: Deck) -> Translation:
     for pair in deck.pairs:
         with reasons.gathered():
             contacts.append(_contact(deck, groups, pair, hard, notes))
-    solids: list[Solid] = []
-    for name, piece in parts.items():
-        with reasons.gathered():
-            if name not in moving:
-                solids.append(_solid(name, piece))
+    solids = _solids({name: piece for name, piece in parts.items() if name not in moving}, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += _idle(deck, groups)
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
@@ -124,6 +127,8 @@ def translate(deck: Deck) -> Translation:
     if deck.general is not None:
         mesh, found = _general(deck, deck.general, mesh, solids, contacts, notes)
         contacts += found
+    laws = own_laws(deck, contacts)
+    contacts = softened(contacts, laws) if soft else contacts
     finite = is_finite(deck)
     notes += [] if finite else path_notes(contacts)
     model = Model(
@@ -139,7 +144,7 @@ def translate(deck: Deck) -> Translation:
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else _options(deck),
     )
-    return Translation(model, tuple(notes), deck.ignored)
+    return Translation(model, tuple(notes), deck.ignored, laws)
 
 
 def _referenced(
@@ -180,7 +185,7 @@ def _prescribed(
         result.loads.extend(_forces(bound, groups, plane, thick))
     with reasons.gathered():
         result.loads.extend(reference_loads(deck, references, plane, thick))
-    for others in (_pressures(deck, groups), _gravity(deck, parts, plane), _temperatures(deck, groups)):
+    for others in (_pressures(deck, groups), body_loads(deck, parts, plane), _temperatures(deck, groups)):
         with reasons.gathered():
             result.loads.extend(others)
     return result
@@ -199,6 +204,14 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
             what = "belongs to no element and no equation" if node in given else "does not exist"
             notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
     return list(notes)
+
+
+def _solids(parts: Mapping[str, Piece], reasons: Reasons) -> list[Solid]:
+    result: list[Solid] = []
+    for name, piece in parts.items():
+        with reasons.gathered():
+            result.append(_solid(name, piece))
+    return result
 
 
 def _solid(name: str, piece: Piece) -> Solid:
@@ -226,6 +239,10 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
     for name, side in ((slave, pair.slave), (master, pair.master)):
         if deck.surfaces[side].nodes is not None:
             notes.append(f"contact '{pair.name}': '{name}' is the faces that the nodes of *SURFACE '{side}' make up")
+    if pair.is_tie:
+        found = near(deck, groups, pair)
+        notes += tie_notes(deck, groups, pair, found)
+        slave = groups.facets(found.rows, f"{pair.slave}-near") if found.left else slave
     if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
         slave, master = master, slave
         notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
@@ -333,26 +350,6 @@ def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:
             alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
     for i, (course, rows) in enumerate(alike.items(), start=1):
         yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
-
-
-def _gravity(deck: Deck, parts: dict[str, Piece], plane: str | None) -> Iterator[Load]:
-    alike: dict[tuple[tuple[float, ...], Course], list[int]] = {}
-    for key, course in courses(deck, "gravity").items():
-        if not zero(course):
-            alike.setdefault((key[1:], course), []).append(int(key[0]))
-    for (vector, course), elements in alike.items():
-        place = next(v.place for s in deck.steps for v in s.values if v.kind == "gravity")
-        size, amplitude = _history(course)
-        for name, piece in parts.items():
-            inside = np.isin(piece.elements, elements)
-            if not inside.any():
-                continue
-            if not inside.all():
-                raise DeckError(place, f"*DLOAD: gravity on a part of body '{name}' only; give it to all of the body")
-            if piece.section.material.density == 0.0:
-                raise DeckError(place, f"*DLOAD: gravity needs a *DENSITY of material '{piece.section.material.name}'")
-            value = tuple(size * x for x in vector[: 2 if plane else 3])
-            yield Gravity(value, name, amplitude)
 
 
 def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:

@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import Names, bodies_of, listed
 from abut.detection import AUTO, BodyPair, FoundContact, add_surfaces, every_pair, find_contacts
 from abut.errors import InputError, nearest
-from abut.job.schema import ContactTable
+from abut.job.schema import ContactTable, OverclosureTable
 from abut.job.values import values
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Integration, Solid
@@ -47,7 +48,10 @@ def resolve_contacts(
     contacts: list[tuple[int, Contact]] = []
     notes: list[str] = []
     for i, table in enumerate(tables):
-        options = values(table, f"contacts[{i}]", (*FINDING, "contactor", "target", "integration"))
+        options = values(table, f"contacts[{i}]", (*FINDING, "contactor", "target", "integration", "law"))
+        options["law"] = table.law
+        if isinstance(table.law, OverclosureTable):
+            options["law"] = PressureOverclosure(tuple((over, pressure) for over, pressure in table.law.points))
         options["integration"] = Integration(**table.integration.model_dump())
         if not table.auto:
             contacts.append((i, Contact(table.contactor, table.target, **options)))

@@ -21,6 +21,7 @@ from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
     BodyForce,
+    Centrifugal,
     Force,
     Gravity,
     Integration,
@@ -43,6 +44,7 @@ KINDS: dict[type, str] = {
     NodalForce: "nodal-force",
     Temperature: "temperature",
     Gravity: "gravity",
+    Centrifugal: "centrifugal",
 }
 
 

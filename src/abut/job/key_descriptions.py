@@ -101,6 +101,14 @@ MEANINGS: dict[str, dict[str, str]] = {
         "value": "vector [length/time^2]",
         "on": "name of the body; left out: all bodies",
     },
+    "CentrifugalTable": {
+        "kind": "force of a rotation on the density, with distances from the axis of the undeformed bodies",
+        "speed": "angular speed [radian/time]",
+        "axis": "direction of the axis; left out in 2D (z; axisymmetric: y)",
+        "through": "a point of the axis; left out: the origin [length]",
+        "on": "name of the body; left out: all bodies",
+        "amplitude": "of the force: the square of that of the speed",
+    },
     "NodalForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
@@ -162,7 +170,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "
         "P1 or P2",
-        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick",
+        "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick; a table "
+        "of points is soft contact, without friction",
         "epsilon": "smoothing of the constraint function, over the square of a reference pressure (of friction: its root)",
         "method": "node-to-segment methods are for comparison only",
         "integration": "quadrature on segments",
@@ -177,6 +186,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         "geometry": "curved: gaps are those between the smooth surfaces for which flat facets stand; faceted: those between "
         "the facets; flat surfaces do not differ",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
+    },
+    "OverclosureTable": {
+        "points": "pairs of overclosure [length] and pressure [force per area] that increase from pressure 0 on; linear "
+        "between, and on with the last slope",
     },
     "IntegrationTable": {
         "rule": "Gauss points, or Newton-Cotes points as in the paper",

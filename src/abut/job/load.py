@@ -5,12 +5,13 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable, NeoHookeTable
@@ -21,6 +22,7 @@ from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
+    Centrifugal,
     Coupling,
     Equation,
     Force,
@@ -53,7 +55,7 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 
 LOADS: Mapping[str, Callable[..., Load]] = {
     "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
-    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity,
+    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity, "centrifugal": Centrifugal,
 }  # fmt: skip
 
 
@@ -69,7 +71,8 @@ DECK = ".inp"
 @dataclass(frozen=True)
 class Job:
     """A loaded job: the model, where its results go, the file and its text; notes: what was found and chosen, or
-    replaced in a deck; ignored: what the user had omitted from a deck."""
+    replaced in a deck; ignored: what the user had omitted from a deck; own_laws: of a deck's contacts, by name, which exact
+    contact may replace."""
 
     model: Model
     directory: Path
@@ -78,20 +81,24 @@ class Job:
     notes: tuple[str, ...] = ()
     entries: tuple[int, ...] = ()  # which [[contacts]] each contact of the model comes from
     ignored: tuple[str, ...] = ()
+    own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
 
 
-def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) -> Job:
+def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), soft: bool = False) -> Job:
     """Read a job file, or an Abaqus or CalculiX deck (.inp). Raises InputError that lists every problem with its place.
 
     refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file).
-    ignore: cards and parameters of a deck to leave out although they change the result."""
+    ignore: cards and parameters of a deck to leave out although they change the result. soft: contact with a deck's own
+    pressures over overclosure, not exact."""
     path = Path(path)
     if path.suffix.lower() == DECK:
-        return _deck(path, refine, ignore)
+        return _deck(path, refine, ignore, soft)
+    if soft:
+        raise InputError(f"{path}: --soft-contact is for decks ({DECK}); give the law of each contact in the job file")
     if ignore:
         raise InputError(f"{path}: --ignore is for decks ({DECK}); a job file has no cards")
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise InputError(f"cannot read job file {path}: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -118,13 +125,21 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = ()) ->
     )
 
 
-def _deck(path: Path, refine: int, ignore: Collection[str]) -> Job:
+def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
     from abut.decks.translation import load_deck
 
     if refine:
         raise InputError(f"{path}: only meshes that abut makes can be refined; leave --levels out")
-    deck = load_deck(path, ignore)
-    return Job(deck.model, path.parent / f"{path.stem}-results", path, "", deck.notes, ignored=deck.ignored)
+    deck = load_deck(path, ignore, soft)
+    return Job(
+        deck.model,
+        path.parent / f"{path.stem}-results",
+        path,
+        "",
+        deck.notes,
+        ignored=deck.ignored,
+        own_laws=deck.own_laws,
+    )
 
 
 def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:

@@ -252,8 +252,24 @@ class GravityTable(Table):
     amplitude: Points | None = None
 
 
+class CentrifugalTable(Table):
+    kind: Literal["centrifugal"]
+    speed: Number
+    axis: list[Number] | None = None
+    through: list[Number] | None = None
+    on: str | None = None
+    amplitude: Points | None = None
+
+
 LoadTable = Annotated[
-    PressureTable | TractionTable | ForceTable | MomentTable | NodalForceTable | TemperatureTable | GravityTable,
+    PressureTable
+    | TractionTable
+    | ForceTable
+    | MomentTable
+    | NodalForceTable
+    | TemperatureTable
+    | GravityTable
+    | CentrifugalTable,
     Field(discriminator="kind"),
 ]
 
@@ -261,6 +277,10 @@ LoadTable = Annotated[
 class IntegrationTable(Table):
     rule: Annotated[str, OneOf(RULES)] = Integration.rule
     points: Literal["auto"] | int = "auto"
+
+
+class OverclosureTable(Table):
+    points: Points
 
 
 # The model's own record says what is allowed and what is the default.
@@ -273,7 +293,7 @@ class ContactTable(Table):
     reach: Number | None = None
     kind: Annotated[str, OneOf(KINDS)] = Contact.kind
     pressure: Annotated[str, OneOf(PRESSURES)] = Contact.pressure
-    law: Annotated[str, OneOf(LAWS)] = LAWS[0]
+    law: Annotated[str, OneOf(LAWS)] | OverclosureTable = LAWS[0]
     epsilon: Number = Contact.epsilon
     method: Annotated[str, OneOf(METHODS)] = Contact.method
     integration: IntegrationTable = IntegrationTable()

@@ -65,7 +65,7 @@ def conditions(
     else:
         diagonal = pressures.diagonal
         sizes = np.sqrt(pressures.unit / (diagonal[coupled] + soft))  # residuals are measured in the root of energy
-        inverse = soft_inverse(pressures.forward, diagonal, soft)
+        inverse = soft_inverse(lambda p: push @ pressures.forward(push.T @ p), diagonal[coupled], soft)
     return Conditions(-forces, forces, corner, law.residual[coupled], sizes, sizes, inverse, push, law.fixed)
 
 

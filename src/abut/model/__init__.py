@@ -1,13 +1,11 @@
 """What the user states, as frozen records that check themselves and each other."""
 
+from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import (
     Amplitude,
-    BodyForce,
     Equation,
     Force,
-    Gravity,
     History,
-    Load,
     Moment,
     NodalForce,
     Pressure,
@@ -26,7 +24,7 @@ from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Contact", "Coupling", "Equation", "Force",
-    "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe", "Rigid", "Rotation",
-    "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Centrifugal", "Contact", "Coupling",
+    "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
+    "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

@@ -76,14 +76,15 @@ def weights(histories: Sequence[History], time: float) -> NDArray[np.float64]:
     return np.array([time if history is None else history(time) for history in histories])
 
 
-def _amplitude(value: object, where: str) -> None:
+def check_amplitude(value: object, where: str) -> None:
+    """Raise InputError for what is neither an amplitude nor None."""
     if value is not None and not isinstance(value, Amplitude):
         raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(value).__name__}")
 
 
 def drives(condition: Any) -> bool:
     """Whether a support, load, equation or rigid body prescribes anything but zero; a function of position is taken to."""
-    names = ("value", "normal", *COMPONENTS, *TURNS)
+    names = ("value", "speed", "normal", *COMPONENTS, *TURNS)
     values = [getattr(condition, name, None) for name in names]
     given = any(value is not None and (callable(value) or bool(np.any(value))) for value in values)
     histories = [condition.amplitude, *getattr(condition, "amplitudes", {}).values()]
@@ -120,7 +121,7 @@ class Support:
             raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
             raise InputError(f"support on '{self.on}': give either normal or components, not both")
-        _amplitude(self.amplitude, f"support on '{self.on}'")
+        check_amplitude(self.amplitude, f"support on '{self.on}'")
 
 
 def support_along(on: str, component: str, value: float) -> Support:
@@ -162,7 +163,7 @@ class Equation:
         checks.finite(self.value, "equation: value")
         if not any(term.coefficient for term in self.terms):
             raise InputError("equation: no term with a coefficient other than zero; give at least one")
-        _amplitude(self.amplitude, "equation")
+        check_amplitude(self.amplitude, "equation")
 
 
 def check_motion(body: Any, where: str) -> None:
@@ -171,13 +172,13 @@ def check_motion(body: Any, where: str) -> None:
         if name not in (*COMPONENTS, *TURNS) or getattr(body, name) is None:
             known = ", ".join(key for key in (*COMPONENTS, *TURNS) if getattr(body, key) is not None)
             raise InputError(f"{where}: amplitudes: {name!r} is none of the components that are given: {known}")
-        _amplitude(amplitude, f"{where}: amplitudes.{name}")
+        check_amplitude(amplitude, f"{where}: amplitudes.{name}")
     for name in (*COMPONENTS, *TURNS):
         if getattr(body, name) is not None:
             checks.finite(getattr(body, name), f"{where}: {name}")
     if body.reference is not None:
-        object.__setattr__(body, "reference", _vector(body.reference, f"{where}: reference"))
-    _amplitude(body.amplitude, where)
+        object.__setattr__(body, "reference", vector(body.reference, f"{where}: reference"))
+    check_amplitude(body.amplitude, where)
 
 
 @dataclass(frozen=True)
@@ -236,10 +237,11 @@ class Pressure:
         if not isinstance(self.follows, bool):
             raise InputError(f"pressure on '{self.on}': follows: expected true or false, got {self.follows!r}")
         object.__setattr__(self, "value", number_or_field(self.value, f"pressure on '{self.on}': value"))
-        _amplitude(self.amplitude, f"pressure on '{self.on}'")
+        check_amplitude(self.amplitude, f"pressure on '{self.on}'")
 
 
-def _vector(values: Any, name: str) -> tuple[float, ...]:
+def vector(values: Any, name: str) -> tuple[float, ...]:
+    """Two or three numbers. Raises InputError, beginning with ``name``, for anything else."""
     try:
         result = tuple(checks.finite(value, name) for value in values)
     except TypeError:
@@ -255,7 +257,7 @@ def _components(values: Any, name: str) -> tuple[float, ...] | Field:
         raise InputError(f"{name}: expected 2 or 3 numbers or expressions, got {values!r}")
     given = [number_or_field(value, name) for value in values]
     if not any(isinstance(value, Expression) for value in given):
-        return _vector(given, name)
+        return vector(given, name)
     return Expressions(tuple(v if isinstance(v, Expression) else Expression(repr(v)) for v in given))
 
 
@@ -271,7 +273,7 @@ class Traction:
     def __post_init__(self) -> None:
         if not callable(self.value):
             object.__setattr__(self, "value", _components(self.value, f"traction on '{self.on}': value"))
-        _amplitude(self.amplitude, f"traction on '{self.on}'")
+        check_amplitude(self.amplitude, f"traction on '{self.on}'")
 
 
 @dataclass(frozen=True)
@@ -288,8 +290,8 @@ class Force:
     amplitude: History = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, f"force on '{self.on}': value"))
-        _amplitude(self.amplitude, f"force on '{self.on}'")
+        object.__setattr__(self, "value", vector(self.value, f"force on '{self.on}': value"))
+        check_amplitude(self.amplitude, f"force on '{self.on}'")
 
 
 @dataclass(frozen=True)
@@ -313,7 +315,7 @@ class Moment:
         if len(numbers) not in (1, 3):
             raise InputError(f"{where}: expected 3 numbers, in the plane 1, got {len(numbers)}")
         object.__setattr__(self, "value", numbers)
-        _amplitude(self.amplitude, f"moment on '{self.on}'")
+        check_amplitude(self.amplitude, f"moment on '{self.on}'")
 
 
 @dataclass(frozen=True)
@@ -325,8 +327,8 @@ class NodalForce:
     amplitude: History = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, f"nodal force on '{self.on}': value"))
-        _amplitude(self.amplitude, f"nodal force on '{self.on}'")
+        object.__setattr__(self, "value", vector(self.value, f"nodal force on '{self.on}': value"))
+        check_amplitude(self.amplitude, f"nodal force on '{self.on}'")
 
 
 @dataclass(frozen=True)
@@ -342,35 +344,4 @@ class Temperature:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", number_or_field(self.value, f"temperature on '{self.on}': value"))
-        _amplitude(self.amplitude, f"temperature on '{self.on}'")
-
-
-@dataclass(frozen=True)
-class Gravity:
-    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
-
-    value: tuple[float, ...]
-    on: str | None = None
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _vector(self.value, "gravity: value"))
-        _amplitude(self.amplitude, "gravity")
-
-
-@dataclass(frozen=True)
-class BodyForce:
-    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
-    function of position, points (n, dim) -> (n, dim)."""
-
-    value: tuple[float, ...] | Field
-    on: str | None = None
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _vector(self.value, "body force: value"))
-        _amplitude(self.amplitude, "body force")
-
-
-Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | BodyForce
+        check_amplitude(self.amplitude, f"temperature on '{self.on}'")

@@ -9,14 +9,12 @@ import numpy as np
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
+from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import (
     COMPONENTS,
     TURNS,
-    BodyForce,
     Equation,
     Force,
-    Gravity,
-    Load,
     Moment,
     NodalForce,
     Pressure,
@@ -43,11 +41,14 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
 
     rigid, couplings: their names."""
     for i, load in enumerate(loads):
-        if isinstance(load, (Gravity, BodyForce)):
+        if isinstance(load, (Gravity, Centrifugal, BodyForce)):
             if load.on is not None:
                 checks.known(load.on, mesh.bodies, f"loads[{i}].on", "body")
-            if isinstance(load, Gravity) and load.on in rigid:
+            if isinstance(load, (Gravity, Centrifugal)) and load.on in rigid:
                 raise InputError(f"loads[{i}].on: '{load.on}' is rigid and has no density; give its weight as a force")
+            if isinstance(load, Centrifugal):
+                _check_centrifugal(mesh, load, f"loads[{i}]")
+                continue
         elif isinstance(load, Moment):
             checks.known(load.on, [*rigid, *couplings], f"loads[{i}].on", "rigid body or coupling")
             _check_moment(mesh, load, f"loads[{i}]")
@@ -63,6 +64,20 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
             continue
         if len(load.value) != mesh.dim:
             raise InputError(f"loads[{i}].value: expected {mesh.dim} components, got {len(load.value)}")
+
+
+def _check_centrifugal(mesh: Mesh, load: Centrifugal, where: str) -> None:
+    if mesh.dim == 3 and load.axis is None:
+        raise InputError(f"{where}: axis is missing; give its direction, as [0, 0, 1]")
+    if mesh.dim == 2 and load.axis is not None:
+        which = "y" if mesh.axisymmetric else "z"
+        raise InputError(f"{where}: axis: the axis of this model is {which}; leave it out")
+    if mesh.axisymmetric and load.through is not None:
+        raise InputError(f"{where}: through: the axis of this model is y; leave it out")
+    for name in ("axis", "through"):
+        value = getattr(load, name)
+        if value is not None and len(value) != mesh.dim:
+            raise InputError(f"{where}.{name}: expected {mesh.dim} components, got {len(value)}")
 
 
 def _check_moment(mesh: Mesh, load: Moment, where: str) -> None:

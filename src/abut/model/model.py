@@ -16,7 +16,8 @@ from abut.contact.sides import Sides, bodies_of, check_names, check_own, check_t
 from abut.errors import InputError
 from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
-from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
+from abut.model.body_forces import Load
+from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points

@@ -164,7 +164,8 @@ def supports(model: Model) -> Constraints:
         )
         gram = free.T @ free
         orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
-        point = sp.csr_matrix((np.ones(free.nnz), (free.tocoo().row // model.dim, free.tocoo().col)))
+        at, shape = free.tocoo(), (free.shape[0] // model.dim, free.shape[1])
+        point = sp.csr_matrix((np.ones(at.nnz), (at.row // model.dim, at.col)), shape=shape)
         point.sum_duplicates()
         coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
     factors = [1.0 if history is None else history.largest for history in model.histories]

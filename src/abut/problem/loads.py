@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,19 @@ from abut.bodies.assemble import thermal_load
 from abut.bodies.loads import body_load, force_load, pressure_load, traction_load
 from abut.bodies.solids import TemperatureChange
 from abut.fields import evaluate
-from abut.model import BodyForce, Force, Gravity, Load, Model, Moment, NodalForce, Pressure, Temperature, Traction
+from abut.model import (
+    BodyForce,
+    Centrifugal,
+    Force,
+    Gravity,
+    Load,
+    Model,
+    Moment,
+    NodalForce,
+    Pressure,
+    Temperature,
+    Traction,
+)
 from abut.model.conditions import weights
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
 
@@ -128,5 +141,15 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
     if isinstance(load, Gravity):
         weights = {s.body: s.material.density * np.array(load.value) for s in model.solids}
         return body_load(mesh, weights if load.on is None else {load.on: weights[load.on]})
+    if isinstance(load, Centrifugal):
+        named = {s.body: _turned(load, s.material.density, mesh.axisymmetric) for s in model.solids}
+        return body_load(mesh, named if load.on is None else {load.on: named[load.on]}, "centrifugal")
     assert isinstance(load, BodyForce)
     return body_load(mesh, dict.fromkeys(mesh.bodies if load.on is None else [load.on], load.value))
+
+
+def _turned(
+    load: Centrifugal, density: float, axisymmetric: bool
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Force per volume at points."""
+    return lambda points: density * load.at(points, axisymmetric)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +13,35 @@ from abut.errors import InputError
 from abut.io.deck.reasons import DeckError, Place, Reasons, UnknownName
 
 DEEPEST = 20  # includes within includes
+FLAGS = frozenset(  # parameters without a value, by which a line shows that it goes on with its card
+    (
+        "ADJUST",
+        "ALLEXTERIOR",
+        "CONTINUE",
+        "CYCLICSYMMETRY",
+        "DIRECT",
+        "GENERATE",
+        "INTERNAL",
+        "LAGRANGE",
+        "MOONEY-RIVLIN",
+        "NEOHOOKE",
+        "NLGEOM",
+        "NODALTHICKNESS",
+        "NOSEPARATION",
+        "NOTHICKNESS",
+        "PERTURBATION",
+        "ROUGH",
+        "SMALLSLIDING",
+        "STABILIZE",
+        "TIMERESET",
+        "UNSORTED",
+    )
+)
+LONGEST_FLAG = 40  # characters of a line in which one would stand
+
+LONGEST_NUMBER = 60  # characters
+_LINE_END = re.compile("\r\n|\r|\n")  # not all that str.splitlines takes: a byte of Windows' three dots is among it
+_FORTRAN = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))(?:[dD]|(?=[+-]))([+-]?[0-9]+)")
 
 
 @dataclass(frozen=True)
@@ -108,14 +139,14 @@ def of(cards: Iterable[Card], name: str) -> Iterator[Card]:
 
 
 def as_float(text: str) -> float | None:
-    """A finite number as Fortran or C write it (1.d-3 too), or None."""
+    """A finite number as Fortran or C write it (1.d-3 too, and 2.1+5 for 2.1e5), or None."""
     try:
         value = float(text)
     except ValueError:
-        try:
-            value = float(text.upper().replace("D", "E"))
-        except ValueError:
+        fortran = _FORTRAN.fullmatch(text) if len(text) <= LONGEST_NUMBER else None
+        if fortran is None:
             return None
+        value = float(f"{fortran[1]}e{fortran[2]}")
     return value if math.isfinite(value) and "_" not in text else None
 
 
@@ -136,33 +167,33 @@ def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
     cards: list[Card] = []
     head: tuple[str, str, dict[str, str | None], Place] | None = None
     data: list[Line] = []
-    pending, begun = "", Place(str(path), 0)
+    pending: list[str] = []  # lines of a card that has not ended yet
+    begun = Place(str(path), 0)
 
     def close() -> None:
-        nonlocal data
+        nonlocal data, head
+        if pending:
+            head = (*_parse("".join(pending).rstrip(","), begun), begun)
+            pending.clear()
         if head is not None:
             cards.append(Card(head[0], head[1], head[2], tuple(data), head[3]))
-        data = []
+        head, data = None, []
 
     for text, place in _lines(path, (), opens, reasons):
-        if pending:  # the card goes on after a comma at the end of its line
-            text = pending + text
-            pending = ""
-        elif text.startswith("*"):
-            begun = place
-        if text.startswith("*"):
-            if text.endswith(","):
-                pending = text
-                continue
-            close()
-            head = (*_parse(text, begun), begun)
+        if pending and pending[-1].endswith(",") and _goes_on(text):
+            pending.append(text)
             continue
+        if text.startswith("*"):
+            close()
+            pending.append(text)
+            begun = place
+            continue
+        if pending:
+            head = (*_parse("".join(pending).rstrip(","), begun), begun)
+            pending.clear()
         if head is None:
             raise DeckError(place, "a data line before the first card; decks begin with a card such as *NODE")
         data.append(Line(_fields(text), place, head[1]))
-    if pending:
-        close()
-        head = (*_parse(pending.rstrip(","), begun), begun)
     close()
     if not cards and not reasons.found:
         raise InputError(f"{path}: no card in the file; is it an Abaqus or CalculiX deck?")
@@ -194,49 +225,76 @@ def _fields(text: str) -> tuple[str, ...]:
 
 def _split(text: str) -> list[str]:
     """At commas outside quotes."""
-    parts, inside = [""], False
-    for letter in text:
-        if letter == '"':
-            inside = not inside
-        if letter == "," and not inside:
-            parts.append("")
-        else:
-            parts[-1] += letter
-    return parts
+    parts: list[list[str]] = [[]]
+    for i, piece in enumerate(text.split('"')):
+        if i:
+            parts[-1].append('"')
+        if i % 2:
+            parts[-1].append(piece)
+            continue
+        first, *rest = piece.split(",")
+        parts[-1].append(first)
+        parts += [[each] for each in rest]
+    return ["".join(part) for part in parts]
+
+
+def _goes_on(text: str) -> bool:
+    """Whether a line after a card that ends in a comma has more of its parameters. CalculiX writes such commas before data
+    lines as well."""
+    first = text.partition(",")[0]
+    return "=" in first or key(first[:LONGEST_FLAG]) in FLAGS
 
 
 def _lines(path: Path, above: tuple[Path, ...], opens: Opens, reasons: Reasons) -> Iterator[tuple[str, Place]]:
     """Lines that say something, those of included files in their place."""
-    pending = card = ""  # a card to include from may go on over several lines, as any other
-    for number, raw in enumerate(_text(path).splitlines(), start=1):
+    card: list[str] = []  # lines of a card that may go on, which may include a file
+    begun = Place(str(path), 0)
+    for number, raw in enumerate(_LINE_END.split(_text(path)), start=1):
         text = raw.strip()
-        place = Place(str(path), number)
         if not text or text.startswith("**"):
             continue
-        if pending or (text.startswith("*") and key(text[1:8]) == "INCLUDE"):
-            pending += text
-            if not pending.endswith(","):
-                name, title, parameters = _parse(pending, place)
-                pending = ""
-                if name != "INCLUDE" or not parameters.get("INPUT"):
-                    raise DeckError(place, f"{title}: the file is missing; write *INCLUDE, INPUT=file")
-                yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)
-            continue
-        yield text, place
-        if card or text.startswith("*"):
-            card += text
-        if card and not card.endswith(","):
-            if "INPUT" in key(card):
-                name, _, parameters = _parse(card, place)
-                if parameters.get("INPUT") and opens(name, parameters):
-                    yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)
-            card = ""
+        place = Place(str(path), number)
+        if card and not (card[-1].endswith(",") and _goes_on(text)):
+            yield from _of_card(path, card, begun, above, opens, reasons)
+            card = []
+        if text.startswith("*"):
+            card, begun = [text], place
+        elif card:
+            card.append(text)
+        if not _includes(card):
+            yield text, place
+    if card:
+        yield from _of_card(path, card, begun, above, opens, reasons)
+
+
+def _includes(card: list[str]) -> bool:
+    return bool(card) and key(card[0][1:8]) == "INCLUDE"
+
+
+def _of_card(
+    path: Path, card: list[str], place: Place, above: tuple[Path, ...], opens: Opens, reasons: Reasons
+) -> Iterator[tuple[str, Place]]:
+    """Lines of the file that a card names: in place of *INCLUDE, or the data of another one."""
+    text = "".join(card)
+    if _includes(card):
+        name, title, parameters = _parse(text, place)
+        if name != "INCLUDE" or not parameters.get("INPUT"):
+            raise DeckError(place, f"{title}: the file is missing; write *INCLUDE, INPUT=file")
+    elif "INPUT" in key(text):
+        name, _, parameters = _parse(text, place)
+        if not (parameters.get("INPUT") and opens(name, parameters)):
+            return
+    else:
+        return
+    yield from _included(path, str(parameters["INPUT"]), place, above, opens, reasons)
 
 
 def _included(
     path: Path, file: str, place: Place, above: tuple[Path, ...], opens: Opens, reasons: Reasons
 ) -> Iterator[tuple[str, Place]]:
-    inner = path.parent / file
+    """A file is looked for beside the deck, as CalculiX does it, then beside the file that includes it."""
+    first = (*above, path)[0].parent / file
+    inner = path.parent / file if not first.is_file() and (path.parent / file).is_file() else first
     if inner in (*above, path) or len(above) >= DEEPEST:
         raise DeckError(place, f"the file {file} includes itself; take the *INCLUDE out")
     if not inner.is_file():
@@ -253,4 +311,4 @@ def _text(path: Path) -> str:
         raise InputError(f"cannot read deck {path}: {error.strerror}") from None
     if b"\0" in data:
         raise InputError(f"{path}: not a text file; is it an Abaqus or CalculiX deck?")
-    return data.decode("latin-1")
+    return data.removeprefix(codecs.BOM_UTF8).decode("latin-1")

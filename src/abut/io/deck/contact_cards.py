@@ -9,8 +9,8 @@ from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_float, key, of
 from abut.io.deck.friction_cards import changed, changes, friction
 from abut.io.deck.mesh_cards import MeshCards
-from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import NO_FRICTION, Friction, GeneralContact, Numbers, Pair
+from abut.io.deck.reasons import DeckError, Reasons
+from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact, Numbers, Pair
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,11 @@ class Interaction:
     """What surfaces do to each other. overclosure: HARD, LINEAR, ..."""
 
     overclosure: str = "HARD"
+    behaviour: Behaviour = ()
     friction: Friction = NO_FRICTION
 
 
+FINE = 40  # points of an exponential curve over the clearance in which the pressure falls to a hundredth: 0.2 % off between
 OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
 
 
@@ -35,14 +37,42 @@ def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pai
     for card in cards:
         with reasons.gathered():
             if card.key == "TIE" and not card.has("CYCLIC SYMMETRY"):
-                for i, (line, slave, master) in enumerate(sides(card, mesh)):
-                    name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
-                    result.append(Pair(name, slave, master, True, "TIED", "all", None, line.place))
+                result += _ties(card, mesh)
             elif card.key == "CONTACTPAIR":
                 result += _contact_pairs(card, mesh, interactions, clearances)
+    _check_once(result, reasons)
     for (slave, master), card in clearances.items():
         reasons.add(card.unknown(f"no *CONTACT PAIR of slave {slave} and master {master}"))
     return tuple(result)
+
+
+def _check_once(every: Sequence[Pair], reasons: Reasons) -> None:
+    """``reasons`` gets pairs of surfaces that are a pair already, with either as the slave."""
+    known: dict[frozenset[str], Pair] = {}
+    for pair in every:
+        first = known.setdefault(frozenset((pair.slave, pair.master)), pair)
+        if first is not pair:
+            text = (
+                f"'{pair.slave}' and '{pair.master}' are a pair already ({first.place}): contact between them would count "
+                "twice; take one of the two out"
+            )
+            if first.slave != pair.slave:
+                text += ", and keep the one whose slave is the softer side"
+            reasons.add(DeckError(pair.place, text))
+
+
+def _ties(card: Card, mesh: MeshCards) -> Iterator[Pair]:
+    text = card.get("POSITION TOLERANCE")
+    tolerance = None if text is None else as_float(text)
+    if text is not None and (tolerance is None or tolerance < 0.0):
+        raise card.error(f"POSITIONTOLERANCE: expected a distance >= 0, got {text!r}")
+    of_abaqus = card.has("ADJUST") or card.has("TYPE")
+    for i, (line, slave, master) in enumerate(sides(card, mesh)):
+        name = (card.get("NAME") or f"{slave}-{master}") + (f"-{i + 1}" if i else "")
+        yield Pair(
+            name, slave, master, True, "TIED", "all", None, line.place,
+            is_tie=True, tolerance=tolerance or None, of_abaqus=of_abaqus,
+        )  # fmt: skip
 
 
 def _contact_pairs(
@@ -62,9 +92,9 @@ def _contact_pairs(
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
         tied, name = properties.overclosure == "TIED", f"{slave}-{master}"
         rub = NO_FRICTION if tied else properties.friction
-        result.append(
-            Pair(name, slave, master, tied, properties.overclosure, _adjust(card, mesh), clearance, line.place, rub)
-        )
+        distance = _adjust(card, mesh)
+        pair = Pair(name, slave, master, tied, properties.overclosure, distance, clearance, line.place, rub)
+        result.append(replace(pair, behaviour=properties.behaviour))
     return result
 
 
@@ -95,7 +125,11 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
-    return None if found is None else GeneralContact(properties.overclosure, found.place, properties.friction)
+    return (
+        None
+        if found is None
+        else GeneralContact(properties.overclosure, found.place, properties.friction, properties.behaviour)
+    )
 
 
 def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
@@ -139,7 +173,7 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                result[current] = replace(result[current], overclosure=_overclosure(card))
+                result[current] = replace(result[current], overclosure=_overclosure(card), behaviour=_behaviour(card))
             elif card.key == "CHANGEFRICTION":
                 change = changes(card, result)
             elif card.key == "FRICTION":
@@ -156,3 +190,19 @@ def _overclosure(card: Card) -> str:
     if overclosure not in OVERCLOSURES:
         raise card.error(f"PRESSURE-OVERCLOSURE={overclosure} is not known; use HARD")
     return overclosure
+
+
+def _behaviour(card: Card) -> Behaviour:
+    """Pairs of overclosure and pressure of LINEAR and TABULAR contact; of EXPONENTIAL, close enough for straight lines."""
+    kind = _overclosure(card)
+    if not card.lines or kind not in ("LINEAR", "TABULAR", "EXPONENTIAL"):
+        return ()
+    line = card.lines[0]
+    if kind == "LINEAR":
+        return ((0.0, 0.0), (1.0, line.number(0, "slope")))
+    if kind == "TABULAR":
+        rows = [(each.number(1, "overclosure"), each.number(0, "pressure")) for each in card.lines]
+        return tuple(row for i, row in enumerate(rows) if row[1] > 0.0 or i + 1 == len(rows) or rows[i + 1][1] > 0.0)
+    clearance, pressure = line.number(0, "clearance"), line.number(1, "pressure")
+    rows = [(clearance * k / FINE, pressure * 100.0 ** (k / FINE)) for k in range(-2 * FINE, 3 * FINE + 1)]
+    return ((rows[0][0] - clearance / FINE, 0.0), *rows)

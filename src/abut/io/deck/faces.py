@@ -111,6 +111,18 @@ def connectivity(deck: Deck, rows: Rows) -> dict[str, Numbers]:
     return {kind: np.concatenate(here) for kind, here in parts.items()}
 
 
+def nodes_of_rows(deck: Deck, rows: Rows) -> Numbers:
+    """Nodes (n, 9) of the facets in ``rows``, padded with -1."""
+    result = np.full((len(rows), MAX_FACET_NODES), -1, np.int64)
+    for block in deck.blocks:
+        here = np.isin(rows[:, 0], block.ids)
+        for local in np.unique(rows[here, 1]).tolist():
+            own = here & (rows[:, 1] == local)
+            pick = CELLS[block.type.kind].facets[local][1]
+            result[own, : len(pick)] = element_nodes(block, rows[own, 0])[:, pick]
+    return result
+
+
 def element_nodes(block: Block, elements: Numbers) -> Numbers:
     """Nodes (n, k) of elements of a block by number."""
     order = np.argsort(block.ids)

@@ -14,12 +14,13 @@ from abut.io.deck.faces import FreeFaces, Rows, connectivity, element_nodes, fre
 from abut.io.deck.reader import read_mesh_only
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Numbers, Section
+from abut.io.deck.time_histories import BODY_LOADS
 from abut.io.raw import RawMesh
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A body: the connected elements of a section that integrate alike."""
+    """A body: the connected elements of a section that integrate and are loaded alike."""
 
     name: str
     section: Section
@@ -56,18 +57,25 @@ def _parts(deck: Deck) -> Numbers:
 
 
 def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
-    """Connected elements that integrate alike, in the order of their lowest numbers: (integration, types, elements)."""
-    parts: dict[tuple[int, str], tuple[set[str], list[Numbers]]] = {}
+    """Connected elements that integrate alike and have the same gravity and centrifugal forces, in the order of their lowest
+    numbers: (integration, types, elements)."""
+    parts: dict[tuple[int, str, int], tuple[set[str], list[Numbers]]] = {}
+    loaded = [value.numbers for step in deck.steps for value in step.values if value.kind in BODY_LOADS]
     for block in deck.blocks:
         each = np.intersect1d(elements, block.ids)
         if not len(each):
             continue
         at = part[np.searchsorted(deck.nodes, element_nodes(block, each)[:, 0])]
-        for number in np.unique(at).tolist():
-            codes, members = parts.setdefault((number, block.type.integration), (set(), []))
+        loads = (
+            np.unique([np.isin(each, numbers) for numbers in loaded], axis=1, return_inverse=True)[1] if loaded else 0
+        )
+        for number, load in dict.fromkeys(zip(at.tolist(), np.broadcast_to(loads, at.shape).tolist())):
+            here = (at == number) & (loads == load)
+            mark = hash(tuple(bool(np.isin(each[here][0], numbers)) for numbers in loaded))
+            codes, members = parts.setdefault((number, block.type.integration, mark), (set(), []))
             codes.add(block.code)
-            members.append(each[at == number])
-    result = [(i, tuple(sorted(codes)), np.sort(np.concatenate(m))) for (_, i), (codes, m) in parts.items()]
+            members.append(each[here])
+    result = [(key[1], tuple(sorted(codes)), np.sort(np.concatenate(m))) for key, (codes, m) in parts.items()]
     return sorted(result, key=lambda each: int(each[2][0]))
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,16 +20,20 @@ MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which
 
 @dataclass
 class Names:
-    """Sets by their name in any case; ``spelled`` keeps the first spelling. Filled while the mesh cards are read."""
+    """Sets by their name in any case; ``spelled`` keeps the first spelling, ``order`` the members of sets that are UNSORTED
+    in the order of the deck. Filled while the mesh cards are read."""
 
     sets: dict[str, Numbers] = field(default_factory=dict)
     spelled: dict[str, str] = field(default_factory=dict)
+    order: dict[str, Numbers] = field(default_factory=dict)
 
-    def add(self, name: str, numbers: Numbers) -> None:
+    def add(self, name: str, numbers: Numbers, unsorted: bool = False) -> None:
         upper = name.upper()
         self.spelled.setdefault(upper, name)
-        known = self.sets.get(upper)
-        self.sets[upper] = np.unique(numbers if known is None else np.concatenate([known, numbers]))
+        known = self.sets.get(upper, numbers[:0])
+        if unsorted or upper in self.order:
+            self.order[upper] = np.concatenate([self.order.get(upper, known), numbers])
+        self.sets[upper] = np.unique(np.concatenate([known, numbers]))
 
     def by_name(self) -> dict[str, Numbers]:
         return {self.spelled[name]: numbers for name, numbers in self.sets.items()}
@@ -37,15 +42,16 @@ class Names:
         """What may have been meant, to end a message; not the sets that Abaqus/CAE makes for itself, _NAME."""
         return nearest(name, [each for each in self.spelled.values() if not each.rpartition(".")[2].startswith("_")])
 
-    def resolve(self, line: Line, i: int, what: str) -> Numbers:
-        """Field i of a line: a number, or the name of a set."""
+    def resolve(self, line: Line, i: int, what: str, ordered: bool = False) -> Numbers:
+        """Field i of a line: a number, or the name of a set, in its own order where that counts (``ordered``)."""
         text = line.text(i)
         number = as_integer(text)
         if number is not None:
             return np.array([number], dtype=np.int64)
         if text.upper() not in self.sets:
             raise line.unknown(f"no {what} set named {text!r}{self.like(text)}")
-        return self.sets[text.upper()]
+        members = self.sets[text.upper()]
+        return self.order.get(text.upper(), members) if ordered else members
 
 
 @dataclass(frozen=True)
@@ -62,9 +68,9 @@ class MeshCards:
     kinds: Mapping[int, str]
     virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
 
-    def existing(self, line: Line, i: int) -> Numbers:
+    def existing(self, line: Line, i: int, ordered: bool = False) -> Numbers:
         """The nodes that field i of a line names. Raises InputError for none, and for a number that no node has."""
-        nodes = self.node_sets.resolve(line, i, "node")
+        nodes = self.node_sets.resolve(line, i, "node", ordered)
         if not len(nodes):
             raise line.unknown(f"node set '{line.text(i)}' is empty")
         if len(nodes) == 1 and int(nodes[0]) not in self.numbers and int(nodes[0]) not in self.virtual:
@@ -77,7 +83,8 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
     ``reasons`` what is wrong."""
     nodes: dict[int, tuple[float, float, float]] = {}
     elements: dict[int, tuple[str, tuple[int, ...]]] = {}
-    node_sets, element_sets, surfaces = Names(), Names(), {}
+    node_sets, element_sets = Names(), Names()
+    surfaces: dict[tuple[str, bool], Faces] = {}
     cards = tuple(cards)
     named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
     virtual = frozenset(number for number in named if number is not None)
@@ -93,13 +100,14 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
                 element_sets.add(card.need("ELSET"), members)
         elif card.key == "NSET":
             members = _set(card, "node", node_sets, element_sets, elements)
-            node_sets.add(card.need("NSET"), _present(card, "node", members, there, notes))
+            node_sets.add(card.need("NSET"), _present(card, "node", members, there, notes), card.has("UNSORTED"))
         elif card.key == "ELSET":
             members = _set(card, "element", element_sets, element_sets, elements)
             element_sets.add(card.need("ELSET"), _present(card, "element", members, elements, notes))
         else:
             surface = _surface(card, node_sets, element_sets, elements)
-            surfaces[(surface.name.upper(), surface.nodes is not None)] = surface
+            here = (surface.name.upper(), surface.nodes is not None)
+            surfaces[here] = _joined(surfaces[here], surface) if here in surfaces else surface
 
     there: Collection[int] = ()
     for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET"), ("SURFACE",)):
@@ -125,6 +133,13 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
     )
 
 
+def _joined(one: Faces, other: Faces) -> Faces:
+    """A surface that is given twice."""
+    if one.nodes is None or other.nodes is None:
+        return replace(one, faces=(*one.faces, *other.faces))
+    return replace(one, nodes=np.union1d(one.nodes, other.nodes))
+
+
 def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
     """By name; where a name stands for faces and for nodes (CalculiX allows both), faces win."""
     return {name: s for (name, by_nodes), s in surfaces.items() if not (by_nodes and (name, False) in surfaces)}
@@ -132,9 +147,17 @@ def _named(surfaces: dict[tuple[str, bool], Faces]) -> dict[str, Faces]:
 
 def _nodes(card: Card, nodes: dict[int, tuple[float, float, float]]) -> Numbers:
     numbers = []
+    system = key(card.get("SYSTEM", "R") or "R")
+    if system not in ("R", "C"):
+        raise card.error(
+            f"SYSTEM={system} is not read; write coordinates along x, y and z, or SYSTEM=C (radius, degrees, z)"
+        )
     for line in card.lines:
         number = line.integer(0, "node number")
         x = (line.number(1, "x", 0.0), line.number(2, "y", 0.0), line.number(3, "z", 0.0))
+        if system == "C":
+            angle = math.radians(x[1])
+            x = (x[0] * math.cos(angle), x[0] * math.sin(angle), x[2])
         if nodes.setdefault(number, x) != x:
             raise line.error(f"node {number} is given twice, in different places; take one of them out")
         numbers.append(number)
@@ -209,8 +232,8 @@ def _set(
                 raise line.error(f"{(last - first) // step} numbers in one set; check the line")
             parts.append(np.arange(first, last + 1, step, dtype=np.int64))
             continue
-        parts += [names.resolve(line, i, what) for i, text in enumerate(line.fields) if text]
-    return np.unique(np.concatenate(parts))
+        parts += [names.resolve(line, i, what, card.has("UNSORTED")) for i, text in enumerate(line.fields) if text]
+    return np.concatenate(parts) if card.has("UNSORTED") else np.unique(np.concatenate(parts))
 
 
 def _present(card: Card, what: str, numbers: Numbers, known: Collection[int], notes: list[str]) -> Numbers:

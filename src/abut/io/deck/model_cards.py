@@ -158,7 +158,7 @@ def _equations(head: Line, fields: list[tuple[Line, int]], mesh: MeshCards) -> l
     """One equation, or one for each node of the sets that stand in its terms."""
     sets, rest = [], []
     for (line, i), (other, j), (third, k) in zip(fields[::3], fields[1::3], fields[2::3]):
-        sets.append(mesh.existing(line, i))
+        sets.append(mesh.existing(line, i, ordered=True))
         rest.append((_direction(other, j), third.number(k, "coefficient")))
     count = max(len(numbers) for numbers in sets)
     if any(len(numbers) not in (1, count) for numbers in sets):
@@ -185,7 +185,7 @@ def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
     kind = key(line.text(0))
     if kind not in ("TIE", "PIN"):
         raise line.error(f"type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
-    a, b = (mesh.existing(line, i) for i in (1, 2))
+    a, b = (mesh.existing(line, i, ordered=True) for i in (1, 2))
     if len(b) == 1:
         b = np.repeat(b, len(a))
     if len(a) != len(b):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from abut.io.deck.assembly import without_parts
@@ -21,7 +21,8 @@ from abut.io.deck.model_cards import (
     transforms,
 )
 from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import Deck, Prescribed
+from abut.io.deck.record import Amplitude, Deck, Prescribed
+from abut.io.deck.repeated import without_repeated
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
@@ -37,17 +38,13 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     sifted = sift(without_tied_friction(_cards(path, notes, reasons), notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
-    cards = sifted.cards
+    cards = without_repeated(sifted.cards, notes)
     outside, groups = split_steps(cards, reasons)
     mesh = mesh_cards(cards, notes, reasons)
     known = amplitudes(cards, reasons)
     pair_list = pairs(cards, mesh, reasons)
     general = general_contact(cards, reasons)
-    named = [(f"contact '{pair.name}'", pair.overclosure) for pair in pair_list]
     notes += friction_notes(cards)
-    for what, overclosure in [*named, *([("general contact", general.overclosure)] if general else [])]:
-        if overclosure not in ("HARD", "TIED"):
-            notes.append(f"{what}: PRESSURE-OVERCLOSURE={overclosure} replaced by exact contact, without penetration")
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,
@@ -64,7 +61,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         transforms=transforms(cards, mesh, reasons),
         cyclic=cyclic_symmetry(cards, mesh, reasons),
         pretension=pretension_sections(cards, mesh, reasons),
-        fixed=_fixed(outside, mesh, notes, reasons),
+        fixed=_fixed(outside, mesh, known, notes, reasons),
         initial=initial_temperature(cards, mesh, reasons),
         amplitudes=known,
         steps=steps(groups, mesh, known, reasons),
@@ -85,7 +82,8 @@ def read_mesh_only(path: Path) -> Deck:
     reasons = Reasons()
     notes: list[str] = []
     every = _cards(path, notes, reasons)
-    cards = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons).cards
+    sifted = sift([card for card in every if card.key in MESH or card.key in NEEDED], reasons)
+    cards = without_repeated(sifted.cards, notes)
     mesh = mesh_cards(cards, notes, reasons)
     found = sections(cards, mesh, None, reasons)
     reasons.tell()
@@ -103,7 +101,9 @@ def _cards(path: Path, notes: list[str], reasons: Reasons) -> tuple[Card, ...]:
     return without_parts(read_cards(path, opens, reasons), notes, reasons)
 
 
-def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: Reasons) -> tuple[Prescribed, ...]:
+def _fixed(
+    outside: Sequence[Card], mesh: MeshCards, known: Mapping[str, Amplitude], notes: list[str], reasons: Reasons
+) -> tuple[Prescribed, ...]:
     """Supports outside the steps."""
     result = []
     for card in outside:
@@ -112,8 +112,12 @@ def _fixed(outside: Sequence[Card], mesh: MeshCards, notes: list[str], reasons: 
         with reasons.gathered():
             if card.key != "BOUNDARY":
                 raise card.error("loads stand inside a step; move it between *STEP and *END STEP")
-            for value in prescribed(card, mesh, {}):
-                if value.value != 0.0 and not any("outside the steps" in note for note in notes):
+            for value in prescribed(card, mesh, known):
+                if (
+                    value.value != 0.0
+                    and not value.amplitude
+                    and not any("outside the steps" in note for note in notes)
+                ):
                     notes.append(f"{value.place}: displacements given outside the steps grow in the first step")
                 result.append(value)
     return tuple(result)

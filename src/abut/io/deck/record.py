@@ -12,6 +12,7 @@ from abut.io.deck.elements import ElementType
 from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
+Behaviour = tuple[tuple[float, float], ...]  # pairs of overclosure and pressure
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,9 @@ NO_FRICTION = Friction()
 @dataclass(frozen=True)
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
-    clearance: the gap given for all of the surface, None for the one of the mesh."""
+    clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
+    tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
+    overclosure, where that has numbers."""
 
     name: str
     slave: str
@@ -88,6 +91,10 @@ class Pair:
     clearance: float | None
     place: Place
     friction: Friction = NO_FRICTION
+    is_tie: bool = False
+    tolerance: float | None = None
+    of_abaqus: bool = False
+    behaviour: Behaviour = ()
 
 
 @dataclass(frozen=True)
@@ -97,6 +104,7 @@ class GeneralContact:
     overclosure: str
     place: Place
     friction: Friction = NO_FRICTION
+    behaviour: Behaviour = ()
 
     @property
     def tied(self) -> bool:
@@ -179,15 +187,16 @@ class PreTension:
 @dataclass(frozen=True)
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures;
-    face 0 with ``vector``: gravity on the element. amplitude: name, or "" for the ramp."""
+    face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction it has.
+    amplitude: name, or "" for the ramp."""
 
-    kind: str  # boundary | force | pressure | gravity | temperature
+    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature
     numbers: Numbers
     directions: tuple[int, ...]
     value: float
     amplitude: str
     place: Place
-    vector: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    vector: tuple[float, ...] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -203,7 +212,8 @@ class Increments:
 
 @dataclass(frozen=True)
 class Step:
-    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM."""
+    """period: its length on the time axis; new: kinds whose earlier values end (OP=NEW); finite: NLGEOM; total: the total
+    time at its beginning, which amplitudes with TIME=TOTAL TIME go by."""
 
     number: int
     period: float
@@ -212,6 +222,7 @@ class Step:
     place: Place
     increments: Increments
     finite: bool = False
+    total: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from abut.errors import nearest
-from abut.io.deck.cards import Card, Line, key
+from abut.io.deck.cards import Card, Line, as_float, key
 from abut.io.deck.mesh_cards import MeshCards, face_number
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Increments, Prescribed, Step
@@ -90,10 +90,12 @@ def steps(
 ) -> tuple[Step, ...]:
     """The steps; ``reasons`` gets those without procedure."""
     result = []
+    total = 0.0
     for number, group in enumerate(groups, start=1):
-        period, increments = 1.0, Increments(1.0, math.inf, False)
+        period, increments, begin = 1.0, Increments(1.0, math.inf, False), total
         with reasons.gathered():
             period, increments = _times(group)
+            begin = _total(group, total, period)
         values: list[Prescribed] = []
         new = set()
         for card in group:
@@ -107,8 +109,21 @@ def steps(
                         new.add(KIND[card.key])
         first = group[0]
         finite = first.has("NLGEOM") and key(first.get("NLGEOM") or "") != "NO"
-        result.append(Step(number, period, tuple(values), frozenset(new), first.place, increments, finite))
+        result.append(Step(number, period, tuple(values), frozenset(new), first.place, increments, finite, begin))
+        total = begin + period
     return tuple(result)
+
+
+def _total(group: Sequence[Card], before: float, period: float) -> float:
+    """The total time at the beginning of a step, ``before`` at the end of the one before. TIME RESET has the step end at
+    that time, as in CalculiX."""
+    procedure = next(card for card in group if card.key in STEP_PROCEDURES)
+    if procedure.has("TOTAL TIME AT START"):
+        given = as_float(procedure.need("TOTAL TIME AT START"))
+        if given is None:
+            raise procedure.error(f"TOTALTIMEATSTART: expected a time, got {procedure.get('TOTAL TIME AT START')!r}")
+        return given
+    return before - period if procedure.has("TIME RESET") else before
 
 
 def _times(group: Sequence[Card]) -> tuple[float, Increments]:
@@ -180,8 +195,18 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
             raise line.error("the direction of gravity is missing; write set, GRAV, value, x, y, z")
         vector = (x / size, y / size, z / size)
         return [Prescribed("gravity", elements, (0,), value, amplitude, line.place, vector)]
+    if label == "CENTRIF":
+        if value < 0.0:
+            raise line.error(f"the square of the angular speed: expected a number >= 0, got {value:g}")
+        at = tuple(line.number(i, "point of the axis", 0.0) for i in (3, 4, 5))
+        axis = tuple(line.number(i, "direction of the axis", 0.0) for i in (6, 7, 8))
+        if not any(axis):
+            raise line.error(
+                "the direction of the axis is missing; write set, CENTRIF, square of the speed, point, direction"
+            )
+        return [Prescribed("centrifugal", elements, (0,), value, amplitude, line.place, (*at, *axis))]
     if not label.startswith("P") or label == "P":
-        raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face) and GRAV are")
+        raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face), GRAV and CENTRIF are")
     kinds = {mesh.kinds[number] for number in elements.tolist()}
     face = face_number(line, label, "P", kinds)
     return [Prescribed("pressure", elements, (face,), value, amplitude, line.place)]

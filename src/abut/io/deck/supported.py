@@ -12,10 +12,10 @@ from abut.io.deck.reasons import DeckError, Reasons
 
 # Cards that are read, with the parameters that are read or change nothing in statics.
 READ: dict[str, tuple[str, ...]] = {
-    "NODE": ("NSET", "INPUT"),
+    "NODE": ("NSET", "INPUT", "SYSTEM"),
     "ELEMENT": ("TYPE", "ELSET", "INPUT"),
-    "NSET": ("NSET", "ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL"),
-    "ELSET": ("ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL"),
+    "NSET": ("NSET", "ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL", "FREQUENCY"),
+    "ELSET": ("ELSET", "GENERATE", "INPUT", "UNSORTED", "INTERNAL", "FREQUENCY"),
     "SURFACE": ("NAME", "TYPE", "INTERNAL"),
     "MATERIAL": ("NAME",),
     "ELASTIC": ("TYPE",),
@@ -30,7 +30,7 @@ READ: dict[str, tuple[str, ...]] = {
     "TEMPERATURE": ("OP", "AMPLITUDE"),
     "INITIAL CONDITIONS": ("TYPE",),
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
-    "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR"),
+    "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR", "NO THICKNESS"),
     "SURFACE INTERACTION": ("NAME",),
     "FRICTION": ("ROUGH", "LAGRANGE", "ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE"),
     "CHANGE FRICTION": ("INTERACTION",),
@@ -39,7 +39,7 @@ READ: dict[str, tuple[str, ...]] = {
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
     "CONTACT PROPERTY ASSIGNMENT": (),
     "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
-    "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY"),
+    "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
     "EQUATION": (),
@@ -167,6 +167,10 @@ NEEDED = {  # leaving these out would leave no deck
 }
 
 POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING
+WRITTEN = ("NODE", "ELEMENT", "NSET", "ELSET")  # cards whose parameters say what their numbers mean
+RESTART = (
+    "READ: the state at the end of an earlier run is not read; put the model and the steps of that run before these"
+)
 MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
 COUPLINGS = {"COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING"}
 LEFT_OUT = {"FRICTION", "CHANGEFRICTION", *COUPLINGS}  # cards that are read, and may be left out all the same
@@ -218,6 +222,8 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             changing = ""
         elif isinstance(card, _Step):
             ignored.setdefault(f"the step with {card.procedure.title}", []).append(str(card.procedure.place))
+        elif card.key == "RESTART" and card.has("READ"):
+            found.setdefault("RESTART READ", card.error(RESTART))
         elif card.key in _QUIET:
             quiet[card.title] = None
         elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
@@ -292,8 +298,9 @@ def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], foun
             ignored.setdefault(f"{name} of {card.title}", []).append(str(card.place))
         else:
             rubber = card.key == "HYPERELASTIC"
+            cure = "" if rubber or card.key in WRITTEN else name
             reason = _PARAMETERS.get((_name(card), name), _RUBBER if rubber else "abut does not know this parameter")
-            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", "" if rubber else name))
+            found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", cure))
 
 
 def _name(card: Card) -> str:

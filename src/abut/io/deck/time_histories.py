@@ -6,8 +6,9 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable
 
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Deck, Prescribed, Step
+from abut.io.deck.record import Amplitude, Deck, Prescribed, Step
 
+BODY_LOADS = ("gravity", "centrifugal")
 Course = tuple[tuple[float, float], ...]  # (time, value), linear between, constant outside
 Key = tuple[float, ...]
 
@@ -28,10 +29,13 @@ def times(deck: Deck) -> tuple[float, ...]:
     """Ends of the steps, and the corners of the amplitudes that act in them."""
     total = sum(step.period for step in deck.steps)
     result, start = set(ends(deck)), 0.0
+    going = {value.amplitude for value in deck.fixed}  # those over the total time hold in later steps as well
     for step in deck.steps:
-        for name in {value.amplitude for value in step.values} - {""}:
+        going = {name for name in going - {""} if deck.amplitudes[name].total or step is deck.steps[0]}
+        going |= {value.amplitude for value in step.values} - {""}
+        for name in going:
             amplitude = deck.amplitudes[name]
-            shift = 0.0 if amplitude.total else start
+            shift = _shift(amplitude, step, start)
             inside = (shift + t for t, _ in amplitude.points)
             result |= {t / total for t in inside if start + RAMP * total < t < start + step.period - RAMP * total}
         start += step.period
@@ -39,32 +43,33 @@ def times(deck: Deck) -> tuple[float, ...]:
 
 
 def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0) -> dict[Key, Course]:
-    """Courses of one kind ("boundary", "force", "pressure", "gravity", "temperature") by (number, direction), gravity by
-    (number, x, y, z). ``base``: the value before the first step.
+    """Courses of one kind ("boundary", "force", "pressure", "gravity", "centrifugal", "temperature") by (number, direction),
+    gravity by (number, x, y, z), centrifugal forces by (number, point and direction of the axis). ``base``: the value before
+    the first step.
 
-    Values given twice in a step add up where they are loads; the later one holds for supports and temperatures. Raises
-    InputError for supports that begin or end between steps."""
+    Values given twice in a step add up where they are loads; the later one holds for supports and temperatures. What has an
+    amplitude over the total time follows it in the steps after, too, until another value takes its place or OP=NEW ends it.
+    Raises InputError for supports that begin or end between steps."""
     state: dict[Key, list[tuple[float, float]]] = {}
-    places: dict[Key, Prescribed] = {}
-    if kind == "boundary" and deck.steps:
-        for value in deck.fixed:
-            for key in _keys(value):
-                state[key], places[key] = [(0.0, 0.0), (deck.steps[0].period, value.value)], value
+    last: dict[Key, tuple[Prescribed, float]] = {}
     start = 0.0
     for step in deck.steps:
-        given = _given(step, kind)
+        first = step is deck.steps[0]
+        given = (_given(deck.fixed, kind) if first else {}) | _given(step.values, kind)
         end = start + step.period
-        for key, (value, size) in given.items():
+        ended = state.keys() - given.keys() if _group(kind) in step.new else set()
+        for key in ended:
+            if kind == "boundary":
+                raise _error(last[key][0], f"OP=NEW of step {step.number} lets node {int(key[0])} go again")
+            state[key] = [*state[key], (start, state[key][-1][1]), (end, base(key))]
+            del last[key]
+        going = {key: of for key, of in last.items() if key not in given and _over_total_time(deck, of[0])}
+        for key, (value, size) in {**given, **going}.items():
             before = [p for p in state.get(key, []) if p[0] <= start] or [(start, base(key))]
-            if kind == "boundary" and key not in state and step is not deck.steps[0]:
+            if kind == "boundary" and key not in state and not first:
                 raise _error(value, f"node {int(key[0])} is free in the step before and held in step {step.number}")
-            state[key] = [*before, *_within(deck, value, size, before[-1][1], start, end)]
-            places[key] = value
-        if _group(kind) in step.new:
-            for key in state.keys() - given.keys():
-                if kind == "boundary":
-                    raise _error(places[key], f"OP=NEW of step {step.number} lets node {int(key[0])} go again")
-                state[key] = [*state[key], (start, state[key][-1][1]), (end, base(key))]
+            state[key] = [*before, *_within(deck, value, size, before[-1][1], start, step)]
+        last |= given
         start = end
     total = start or 1.0
     return {key: _tidy([(t / total, v) for t, v in points]) for key, points in state.items()}
@@ -78,19 +83,28 @@ def _error(value: Prescribed, what: str) -> DeckError:
 
 
 def _group(kind: str) -> str:
-    return "pressure" if kind == "gravity" else kind
+    return "pressure" if kind in BODY_LOADS else kind
 
 
 def _keys(value: Prescribed) -> Iterable[Key]:
-    if value.kind == "gravity":
+    if value.kind in BODY_LOADS:
         return [(number, *value.vector) for number in value.numbers.tolist()]
     return [(number, direction) for number in value.numbers.tolist() for direction in value.directions]
 
 
-def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
+def _over_total_time(deck: Deck, value: Prescribed) -> bool:
+    return bool(value.amplitude) and deck.amplitudes[value.amplitude].total
+
+
+def _shift(amplitude: Amplitude, step: Step, start: float) -> float:
+    """What an amplitude's times are less than those on the axis, on which the step begins at ``start``."""
+    return start - step.total if amplitude.total else start
+
+
+def _given(values: Iterable[Prescribed], kind: str) -> dict[Key, tuple[Prescribed, float]]:
     """The values of one step by key, with sums of loads."""
     result: dict[Key, tuple[Prescribed, float]] = {}
-    for value in step.values:
+    for value in values:
         if value.kind != kind:
             continue
         for key in _keys(value):
@@ -109,13 +123,14 @@ def _given(step: Step, kind: str) -> dict[Key, tuple[Prescribed, float]]:
 
 
 def _within(
-    deck: Deck, value: Prescribed, size: float, before: float, start: float, end: float
+    deck: Deck, value: Prescribed, size: float, before: float, start: float, step: Step
 ) -> list[tuple[float, float]]:
     """Points of a course within a step, with the one at its beginning."""
+    end = start + step.period
     if not value.amplitude:
         return [(start, before), (end, size)]
     amplitude = deck.amplitudes[value.amplitude]
-    shift = 0.0 if amplitude.total else start
+    shift = _shift(amplitude, step, start)
     inside = [t + shift for t, _ in amplitude.points if start < t + shift < end]
     first = size * at(amplitude.points, start - shift)
     jump = [] if first == before else [(start + RAMP * (end - start), first)]

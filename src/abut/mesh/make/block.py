@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -25,6 +26,8 @@ LINEAR = {"tri": "tri3", "qua": "quad4", "tet": "tet4", "hex": "hex8", "wed": "w
 NAMES = {2: ("left", "right", "bottom", "top"), 3: ("left", "right", "front", "back", "bottom", "top")}
 Move = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
+MOST_POINTS = 100_000_000  # of a body that abut makes
+
 
 def axis(limits: Sequence[float], cells: int | Sequence[float], name: str) -> NDArray[np.float64]:
     """Coordinates of grid lines: ``cells`` equal ones between the two limits, or the lines themselves."""
@@ -38,8 +41,8 @@ def axis(limits: Sequence[float], cells: int | Sequence[float], name: str) -> ND
     low, high = checks.array(limits, name, shape=(2,))
     if not low < high:
         raise InputError(f"{name}: expected [low, high] with low < high, got {list(limits)}")
-    if isinstance(cells, bool) or cells < 1:
-        raise InputError(f"cells: expected whole numbers >= 1, got {cells!r}")
+    if isinstance(cells, bool) or not 1 <= cells <= MOST_POINTS:
+        raise InputError(f"cells: expected whole numbers from 1 to {MOST_POINTS}, got {cells!r}")
     return np.linspace(low, high, cells + 1)
 
 
@@ -49,6 +52,8 @@ def grid(lines: Sequence[NDArray[np.float64]], cell: str, move: Move | None = No
     dim = len(lines)
     checks.choice(cell, "cell", PLANE_CELLS if dim == 2 else SOLID_CELLS)
     shape = [len(x) for x in lines]
+    if math.prod(shape) > MOST_POINTS:
+        raise InputError(f"cells: {' x '.join(str(n - 1) for n in shape)} are more than abut makes; take fewer")
     index = np.arange(int(np.prod(shape))).reshape(shape)
     points = np.stack([g.ravel() for g in np.meshgrid(*lines, indexing="ij")], axis=1)
     low, high = slice(None, -1), slice(1, None)

@@ -1,0 +1,41 @@
+"""Names that a deck defines twice: which definition counts, as runs of CalculiX 2.20 show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from abut.io.deck.cards import Card
+
+# Of these the first counts, with the cards that follow it and belong to it
+FIRST = {
+    "MATERIAL": ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"),
+    "AMPLITUDE": (),
+    "SURFACEINTERACTION": ("SURFACEBEHAVIOR", "FRICTION"),
+}
+
+
+def without_repeated(cards: Sequence[Card], notes: list[str]) -> tuple[Card, ...]:
+    """Cards without second definitions of materials, amplitudes and interactions; ``notes`` gets them, and surfaces that are
+    given twice, which are all of their faces or nodes together."""
+    known: dict[tuple[str, ...], Card] = {}
+    result: list[Card] = []
+    dropped: tuple[str, ...] = ()
+    for card in cards:
+        if card.key in dropped:
+            continue
+        dropped = ()
+        name = card.get("NAME")
+        if name and (card.key in FIRST or card.key == "SURFACE"):
+            kind = (card.get("TYPE") or "ELEMENT").upper() if card.key == "SURFACE" else ""
+            first = known.setdefault((card.key, name.upper(), kind), card)
+            if first is not card:
+                counts = "both together make it up" if card.key == "SURFACE" else "the first counts"
+                notes.append(
+                    f"{card.place}: {card.title} '{name}' is defined a second time (first {first.place}): {counts}, as in "
+                    "CalculiX"
+                )
+                if card.key in FIRST:
+                    dropped = FIRST[card.key]
+                    continue
+        result.append(card)
+    return tuple(result)

@@ -1,0 +1,93 @@
+"""Forces on the volume of bodies: gravity, centrifugal forces, any others; and all kinds of loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from abut import checks
+from abut.errors import InputError
+from abut.fields import Field
+from abut.model.conditions import (
+    Force,
+    History,
+    Moment,
+    NodalForce,
+    Pressure,
+    Temperature,
+    Traction,
+    check_amplitude,
+    vector,
+)
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
+
+    value: tuple[float, ...]
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", vector(self.value, "gravity: value"))
+        check_amplitude(self.amplitude, "gravity")
+
+
+@dataclass(frozen=True)
+class BodyForce:
+    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
+    function of position, points (n, dim) -> (n, dim)."""
+
+    value: tuple[float, ...] | Field
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            object.__setattr__(self, "value", vector(self.value, "body force: value"))
+        check_amplitude(self.amplitude, "body force")
+
+
+@dataclass(frozen=True)
+class Centrifugal:
+    """Force of a rotation on the density of every body, or of the body named by ``on``: density times speed squared times
+    the distance from the axis, outward, taken in the undeformed body. speed: angle (radian) per time; axis: its direction,
+    left out in 2D, where it is z, and where a model is axisymmetric y; through: a point of it, left out: the origin. The
+    amplitude is that of the force, which is the square of the speed's.
+
+    >>> import abut
+    >>> abut.Centrifugal(speed=314.0, axis=(0, 0, 1)).at([[2.0, 0.0, 5.0]]).tolist()
+    [[197192.0, 0.0, 0.0]]
+    """
+
+    speed: float
+    axis: tuple[float, ...] | None = None
+    through: tuple[float, ...] | None = None
+    on: str | None = None
+    amplitude: History = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "speed", checks.finite(self.speed, "centrifugal: speed"))
+        for name in ("axis", "through"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, vector(getattr(self, name), f"centrifugal: {name}"))
+        if self.axis is not None and not any(self.axis):
+            raise InputError("centrifugal: axis: expected a direction, got zero")
+        check_amplitude(self.amplitude, "centrifugal")
+
+    def at(self, points: ArrayLike, axisymmetric: bool = False) -> NDArray[np.float64]:
+        """Acceleration (n, dim) at points (n, dim)."""
+        points = np.asarray(points, dtype=float)
+        apart = points - (0.0 if self.through is None else np.array(self.through))
+        if axisymmetric:
+            apart[..., 1] = 0.0
+        elif self.axis is not None:
+            axis = np.array(self.axis) / np.linalg.norm(self.axis)
+            apart -= (apart @ axis)[..., None] * axis
+        return np.asarray(self.speed**2 * apart)
+
+
+Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | Centrifugal | BodyForce
