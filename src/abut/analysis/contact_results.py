@@ -20,8 +20,9 @@ from abut.analysis.statistics import (
     resultant,
 )
 from abut.contact.friction_bound import FrictionBound
-from abut.contact.geometry import full_moments, nodal_normals
+from abut.contact.geometry import full_moments, nodal_normals, side_normals, split_at_creases
 from abut.contact.nodal_recovery import (
+    ON_AXIS,
     Averages,
     at_facet_nodes,
     averages,
@@ -29,7 +30,9 @@ from abut.contact.nodal_recovery import (
     corner_values,
     facet_node_values,
 )
+from abut.contact.point_values import Places, point_values
 from abut.contact.pressure_space import WEAK_SUPPORT
+from abut.contact.rim import rim
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -127,7 +130,7 @@ def contact_result(
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
     raw = facet_node_values(pair.contactor, degree, state.normal)
-    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(state, at))
+    nodal = raw if at is None else reported(state, at)
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
@@ -216,16 +219,39 @@ def _statistics(
     )
 
 
-def _reported(state: PairState, at: Averages) -> NDArray[np.float64]:
-    """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients, by
-    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
-    planes of symmetry mended, theory (P14)."""
+def reported(state: PairState, at: Averages) -> NDArray[np.float64]:
+    """The pressure at the facets' nodes, (n_facets, 9): from averages of facet-wise coefficients, theory (P10), values at
+    points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
+    over, theory (P12), else with those on planes of symmetry mended, theory (P14)."""
     pair, average = state.pair, at.of(state.normal)
-    if pair.tied or (state.closed.all() and pair.space.continuous and pair.space.ordinary):
+    plain, smooth = average, pair.tied or (state.closed.all() and pair.space.continuous and pair.space.ordinary)
+    if smooth:
         sharp = at.sharpened(average, at.surface.points)
-        if pair.tied or sharp.min() >= 0.0:
-            return sharp
-    return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
+        plain, smooth = (sharp, True) if pair.tied or sharp.min() >= 0.0 else (average, False)
+    if not smooth and pair.planes is not None:
+        plain = evened(pair.contactor, at, average, pair.planes)
+    places = _places(pair, at.surface, smooth)
+    return point_values(at, average, plain, places, pair.tied).at_facet_nodes(at.surface, pair.tied)
+
+
+def _places(pair: Pair, split: Surface, smooth: bool) -> Places:
+    """split: the contactor, split at its creases; smooth: closed all over."""
+    _, normals = side_normals(pair.contactor)
+    owner, n = split_at_creases(pair.contactor)[1], len(split.points)
+    border, ends = np.zeros((2, n), dtype=bool)
+    border[rim(split).ends] = True
+    across = np.zeros((n, 2, split.dim))
+    if pair.planes is not None:
+        across = pair.planes.across[owner]
+    if split.axisymmetric:
+        axis = border & (split.points[:, 0] <= ON_AXIS * split.points[split.node_ids, 0].max())
+        across[axis, 0] = (1.0, 0.0)
+    border &= ~across.any(axis=(1, 2))
+    if not smooth:
+        outer = slice(None) if pair.interior is None else ~pair.interior
+        nodes = split.nodes[outer]
+        ends[nodes[nodes >= 0]] = True
+    return Places(normals, across, border, ends & border)
 
 
 def _compression(contactor: Surface, traction: NDArray[np.float64]) -> NDArray[np.float64]:
