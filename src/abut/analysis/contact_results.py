@@ -27,10 +27,9 @@ from abut.contact.nodal_recovery import (
     at_facet_nodes,
     averages,
     carry_to_target,
-    corner_values,
     facet_node_values,
 )
-from abut.contact.point_values import Places, point_values
+from abut.contact.point_values import Places, Recovery, recovered
 from abut.contact.pressure_space import WEAK_SUPPORT
 from abut.contact.rim import rim
 from abut.contact.symmetry_planes import evened
@@ -130,11 +129,11 @@ def contact_result(
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
     raw = facet_node_values(pair.contactor, degree, state.normal)
-    nodal = raw if at is None else reported(state, at)
+    shown = None if at is None else reported(state, at)
+    nodal = raw if shown is None else shown.nodal
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
-    shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
         contactor=_undeformed(mesh, pair.contactor),
@@ -153,7 +152,7 @@ def contact_result(
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, state.gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal),
         checks=_checks(state, residual, around, nodal, share),
         statistics=statistics,
         resultant=amount,
@@ -161,9 +160,9 @@ def contact_result(
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
         friction=None
-        if at is None
+        if shown is None
         else friction_result(
-            pair, at, state.multipliers, state.status, state.slips, state.limit, before, around.reference
+            pair, shown, state.multipliers, state.status, state.slips, state.limit, before, around.reference
         ),
     )
 
@@ -219,8 +218,8 @@ def _statistics(
     )
 
 
-def reported(state: PairState, at: Averages) -> NDArray[np.float64]:
-    """The pressure at the facets' nodes, (n_facets, 9): from averages of facet-wise coefficients, theory (P10), values at
+def reported(state: PairState, at: Averages) -> Recovery:
+    """The pressure at points and at the facets' nodes: from averages of facet-wise coefficients, theory (P10), values at
     points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
     over, theory (P12), else with those on planes of symmetry mended, theory (P14)."""
     pair, average = state.pair, at.of(state.normal)
@@ -231,7 +230,7 @@ def reported(state: PairState, at: Averages) -> NDArray[np.float64]:
     if not smooth and pair.planes is not None:
         plain = evened(pair.contactor, at, average, pair.planes)
     places = _places(pair, at.surface, smooth)
-    return point_values(at, average, plain, places, pair.tied).at_facet_nodes(at.surface, pair.tied)
+    return recovered(at, average, plain, places, pair.tied)
 
 
 def _places(pair: Pair, split: Surface, smooth: bool) -> Places:

@@ -16,6 +16,7 @@ from abut.mesh.surface import Surface
 CLOSED = 1e-3  # average over the largest from which on a point counts as in contact
 WHOLE = 1e-2  # a support covered to within this share is fully covered
 PASSES = 3  # at the edge of contact; the second changes values by a hundredth of the first, the third by nothing to speak of
+TAKEN = 2.0 / np.pi * np.arctan(np.sqrt(2.0))  # theory (P20), of the force over an open point's function
 SWING = 1.0  # of the range of averages around a point: values farther from the average are no correction
 
 Array = NDArray[np.float64]
@@ -81,31 +82,79 @@ class PointValues:
         return np.maximum(result, 0.25 * (np.sqrt(np.maximum(one, 0.0)) - np.sqrt(np.maximum(other, 0.0))) ** 2)
 
 
-def point_values(at: Averages, average: Array, plain: Array, places: Places, tied: bool = False) -> PointValues:
-    """Values at the points of ``at.surface`` from averages (n_points,), theory (P18)-(P20); ``plain`` (n_points,) where
-    they are not known any better: on facets of first order, of whose cells the nodal averages are values at the nodes
+@dataclass(frozen=True)
+class Recovery:
+    """A contact's pressure at points and facets' nodes, and other fields there in the same way.
+
+    pressure: at points; nodal: (n_facets, 9) at the facets' nodes, NaN where padded; average: (n_points,) what it was
+    recovered from; the rest is how."""
+
+    at: Averages
+    average: Array
+    pressure: PointValues
+    nodal: Array
+    stars: _Stars
+    fits: StarFits | None
+    of: Supports | None
+    across: Array
+
+    def field(self, values: Array) -> Array:
+        """A field that is at most in proportion to the pressure, of facet-wise coefficients (9 n_facets,), at the facets'
+        nodes, (n_facets, 9): next to the edge of contact with the pressure's ratio of value to average, theory (P23)."""
+        average, surface, edge = self.at.of(values), self.at.surface, self.pressure.edge
+        if self.fits is None or self.of is None:
+            return at_facet_nodes(surface, average)
+        found = _smooth(surface, average, _untouched(average), self.stars, self.fits, self.of, self.across)
+        ratio = _divided(average, self.average)
+        value = np.where(edge, ratio * self.pressure.value, found.value)
+        result = replace(found, value=value, known=found.known & ~edge).at_facet_nodes(surface, signed=True)
+        some = (self.pressure.value > 0.0).astype(float)
+        mean = _divided(at_facet_nodes(surface, ratio * some), at_facet_nodes(surface, some))
+        middle = at_facet_nodes(surface, edge.astype(float))
+        here = (middle > 0.0) & (np.arange(surface.nodes.shape[1]) >= _corners(surface)[:, None])
+        return np.where(here, mean * self.nodal, result)
+
+
+def recovered(at: Averages, average: Array, plain: Array, places: Places, tied: bool = False) -> Recovery:
+    """The pressure of averages (n_points,) at the points of ``at.surface``, theory (P18)-(P20); ``plain`` (n_points,) where
+    it is not known any better: on facets of first order, of whose cells the nodal averages are values at the nodes
     already, at points that facets without target belong to, and at ends of the contactor. tied: a tie's, which pulls, too."""
-    stars = _stars(at, average, places, tied)
-    nothing = np.zeros_like(at.surface.points)
-    values = PointValues(plain.copy(), nothing, nothing, np.zeros(len(plain), dtype=bool), np.zeros(len(plain), dtype=bool))
-    if not stars.inner.any():
-        return values
-    of = supports(at.surface)
-    fits = star_fits(at.surface, np.flatnonzero(stars.inner), places.normals, places.across, of)
-    values = _smooth(at.surface, average, values, stars, fits, of, places.across)
-    if stars.edge.any():
-        values = _at_edge(at, average, values, stars, fits, places.across)
-    low, high = _range(stars, average)
-    swing = SWING * (high - low)
-    value = np.clip(values.value, average - swing, average + swing)
-    value = np.where(values.known, value if tied else np.maximum(value, 0.0), values.value)
-    return replace(values, value=value)
+    stars, values = _stars(at, average, places, tied), _untouched(plain)
+    fits = of = None
+    if stars.inner.any():
+        of = supports(at.surface)
+        fits = star_fits(at.surface, np.flatnonzero(stars.inner), places.normals, places.across, of)
+        values = _smooth(at.surface, average, values, stars, fits, of, places.across)
+        if stars.edge.any():
+            values = _at_edge(at, average, values, stars, fits, places.across)
+        low, high = _range(stars, average)
+        value = np.clip(values.value, average - SWING * (high - low), average + SWING * (high - low))
+        values = replace(values, value=np.where(values.known, value if tied else np.maximum(value, 0.0), values.value))
+    return Recovery(at, average, values, values.at_facet_nodes(at.surface, tied), stars, fits, of, places.across)
+
+
+def _untouched(average: Array) -> PointValues:
+    nothing, none = np.zeros((len(average), 1)), np.zeros(len(average), dtype=bool)
+    return PointValues(average, nothing, nothing, none, none)
+
+
+def _divided(values: Array, by: Array) -> Array:
+    return np.asarray(np.where(by > 0.0, values / np.where(by > 0.0, by, 1.0), 0.0))
+
+
+def _corners(surface: Surface) -> Ids:
+    """How many corners each facet has, (n_facets,)."""
+    count = np.zeros(len(surface), dtype=np.int64)
+    for kind, facets in by_kind(surface):
+        count[facets] = CELLS[kind].corners
+    return count
 
 
 @dataclass(frozen=True)
 class _Stars:
     """one, other: pairs of neighbours; inner, edge, outer: (n_points,) points in contact all of whose neighbours are, those
-    with an open neighbour, and further ones; the last two next to inner ones; near: inner ones next to the edge."""
+    with an open neighbour, and further ones; the last two next to inner ones; near: inner ones next to the edge; open: not in
+    contact."""
 
     one: Ids
     other: Ids
@@ -113,10 +162,7 @@ class _Stars:
     edge: Flags
     outer: Flags
     near: Flags
-
-    def any_of(self, flags: Flags) -> Flags:
-        """Points (n_points,) with a neighbour that has the flag."""
-        return _any(self.one, flags[self.other], len(flags))
+    open: Flags
 
     def models(self, points: Flags, across: Array) -> tuple[Ids, Ids]:
         """Pairs of a point and an inner neighbour whose polynomial holds there; on planes of symmetry one that lies there
@@ -143,7 +189,7 @@ def _stars(at: Averages, average: Array, places: Places, tied: bool) -> _Stars:
     further = usable & ~inner & ~places.ends & _any(one, inner[other], n)
     edge = further & _any(one, ~closed[other], n)
     near = inner & _any(one, edge[other], n)
-    return _Stars(one, other, inner, edge, further & ~edge, near)
+    return _Stars(one, other, inner, edge, further & ~edge, near, ~closed)
 
 
 def _of_second_order(surface: Surface) -> Flags:
@@ -167,7 +213,7 @@ def _smooth(
     surface: Surface, average: Array, before: PointValues, stars: _Stars, fits: StarFits, of: Supports, across: Array
 ) -> PointValues:
     """Theory (P18) at inner points; at outer ones with the polynomials of inner neighbours, (P19)."""
-    value, slope, points = before.value.copy(), before.slope.copy(), fits.points
+    value, slope, points = before.value.copy(), np.zeros_like(surface.points), fits.points
     found = fits.to_averages(average)
     value[points], slope[points] = found.value, found.gradient
     here, other = stars.models(stars.outer, across)
@@ -192,7 +238,7 @@ def _at_edge(
     for _ in range(PASSES):
         squares = fits.to_values(value**2)
         root = np.sqrt(np.maximum(squares.some(number).at(surface.points[here][:, None], surface.points[model]), 0.0))[:, 0]
-        more = _mean(here, (root - _root_averages(surface, here, model, squares.some(number)))[:, None], len(value))[:, 0]
+        more = _mean(here, (root - _root_averages(surface, here, model, squares.some(number), stars.open))[:, None], len(value))[:, 0]
         value = np.where(some, np.maximum(average + more, 0.0), value)
     squares = fits.to_values(value**2)
     of_square, slope = before.square_slope.copy(), before.slope.copy()
@@ -209,9 +255,9 @@ def _mean(here: Ids, values: Array, n: int) -> Array:
     return summed(here, values, n) / np.maximum(np.bincount(here, minlength=n), 1)[:, None]
 
 
-def _root_averages(surface: Surface, here: Ids, model: Ids, squares: Polynomials) -> Array:
+def _root_averages(surface: Surface, here: Ids, model: Ids, squares: Polynomials, opened: Flags) -> Array:
     """Averages (m,) over the functions of points ``here`` of the roots of polynomials at points ``model``, zero where these
-    are negative."""
+    are negative; with what these points take over from open ones beside them, (n_points,) bool."""
     load, weight = np.zeros(len(here)), np.zeros(len(here))
     order = np.argsort(here, kind="stable")
     first, last = (np.searchsorted(here[order], np.arange(len(surface.points)), side=s) for s in ("left", "right"))
@@ -219,11 +265,14 @@ def _root_averages(surface: Surface, here: Ids, model: Ids, squares: Polynomials
         corners = surface.nodes[facets, : CELLS[kind].corners].astype(np.int64)
         touched = (first[corners] < last[corners]).any(axis=1)
         x, force = corner_weights(surface, kind, facets[touched])
+        beyond = opened[corners[touched]]
+        share = TAKEN / np.maximum((~beyond).sum(axis=1), 1)
+        taken = share[:, None] * np.einsum("fqk,fk->fq", force, beyond)
         for k, point in enumerate(corners[touched].T):
             count = last[point] - first[point]
             facet = np.repeat(np.arange(len(point)), count)
             use = order[np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count) + first[point][facet]]
             root = np.sqrt(np.maximum(squares.some(use).at(x[facet], surface.points[model[use]]), 0.0))
-            load += np.bincount(use, (force[facet, :, k] * root).sum(axis=1), len(load))
+            load += np.bincount(use, ((force[facet, :, k] + taken[facet]) * root).sum(axis=1), len(load))
             weight += np.bincount(use, force[facet, :, k].sum(axis=1), len(load))
     return load / np.where(weight > 0.0, weight, 1.0)
