@@ -15,6 +15,7 @@ from abut.mesh.surface import Surface
 
 CLOSED = 1e-3  # average over the largest from which on a point counts as in contact
 WHOLE = 1e-2  # a support covered to within this share is fully covered
+ROUNDS = 3  # after which points that turn out to lie beyond the edge of contact are taken for open
 PASSES = 3  # at the edge of contact; the second changes values by a hundredth of the first, the third by nothing to speak of
 TAKEN = 2.0 / np.pi * np.arctan(np.sqrt(2.0))  # theory (P20), of the force over an open point's function
 SWING = 1.0  # of the range of averages around a point: values farther from the average are no correction
@@ -95,14 +96,14 @@ class Recovery:
     nodal: Array
     stars: _Stars
     fits: StarFits | None
-    of: Supports | None
+    of: Supports
     across: Array
 
     def field(self, values: Array) -> Array:
         """A field that is at most in proportion to the pressure, of facet-wise coefficients (9 n_facets,), at the facets'
         nodes, (n_facets, 9): next to the edge of contact with the pressure's ratio of value to average, theory (P23)."""
         average, surface, edge = self.at.of(values), self.at.surface, self.pressure.edge
-        if self.fits is None or self.of is None:
+        if self.fits is None:
             return at_facet_nodes(surface, average)
         found = _smooth(surface, average, _untouched(average), self.stars, self.fits, self.of, self.across)
         ratio = _divided(average, self.average)
@@ -119,17 +120,23 @@ def recovered(at: Averages, average: Array, plain: Array, places: Places, tied: 
     """The pressure of averages (n_points,) at the points of ``at.surface``, theory (P18)-(P20); ``plain`` (n_points,) where
     it is not known any better: on facets of first order, of whose cells the nodal averages are values at the nodes
     already, at points that facets without target belong to, and at ends of the contactor. tied: a tie's, which pulls, too."""
-    stars, values = _stars(at, average, places, tied), _untouched(plain)
-    fits = of = None
-    if stars.inner.any():
-        of = supports(at.surface)
+    closed = at.weight > 0.0 if tied else average > CLOSED * average.max(initial=0.0)
+    stars, of = _stars(at, closed, places), supports(at.surface)
+    for _ in range(ROUNDS):
+        values, fits = _untouched(plain), None
+        if not stars.inner.any():
+            break
         fits = star_fits(at.surface, np.flatnonzero(stars.inner), places.normals, places.across, of)
         values = _smooth(at.surface, average, values, stars, fits, of, places.across)
-        if stars.edge.any():
-            values = _at_edge(at, average, values, stars, fits, places.across)
-        low, high = _range(stars, average)
-        value = np.clip(values.value, average - SWING * (high - low), average + SWING * (high - low))
-        values = replace(values, value=np.where(values.known, value if tied else np.maximum(value, 0.0), values.value))
+        if not stars.edge.any():
+            break
+        values = _at_edge(at, average, values, stars, fits, places.across)
+        if (values.value[stars.edge] > 0.0).all():
+            break
+        stars = _stars(at, closed & ~(stars.edge & (values.value <= 0.0)), places)
+    low, high = _range(stars, average)
+    value = np.clip(values.value, average - SWING * (high - low), average + SWING * (high - low))
+    values = replace(values, value=np.where(values.known, value if tied else np.maximum(value, 0.0), values.value))
     return Recovery(at, average, values, values.at_facet_nodes(at.surface, tied), stars, fits, of, places.across)
 
 
@@ -178,10 +185,9 @@ def _any(one: Ids, flags: Flags, n: int) -> Flags:
     return np.asarray(np.bincount(one, flags, n) > 0.0)
 
 
-def _stars(at: Averages, average: Array, places: Places, tied: bool) -> _Stars:
+def _stars(at: Averages, closed: Flags, places: Places) -> _Stars:
     one, other = neighbours(at.surface)
-    n, c = len(average), at.surface.dim - 1
-    closed = at.weight > 0.0 if tied else average > CLOSED * average.max(initial=0.0)
+    n, c = len(closed), at.surface.dim - 1
     usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & _of_second_order(at.surface)
     images = np.prod(1 + places.across.any(axis=2), axis=1)
     enough = np.bincount(one, minlength=n) * images >= c + c * (c + 1) // 2
@@ -223,7 +229,7 @@ def _smooth(
     each = _mean(here, np.column_stack([less, gradient]), len(value))
     value[stars.outer], slope[stars.outer] = (average - each[:, 0])[stars.outer], each[stars.outer, 1:]
     known = stars.inner | stars.outer
-    return replace(before, value=value, slope=slope, square_slope=2.0 * value[:, None] * slope, known=known)
+    return PointValues(value, slope, 2.0 * value[:, None] * slope, known, before.edge)
 
 
 def _at_edge(
