@@ -153,7 +153,7 @@ def contact_result(
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
         target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal),
-        checks=_checks(state, residual, around, nodal, share),
+        checks=_checks(state, residual, around, nodal, share, None if shown is None else shown.average),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
@@ -168,8 +168,14 @@ def contact_result(
 
 
 def _checks(
-    state: PairState, residual: float, around: Surroundings, nodal: NDArray[np.float64], share: NDArray[np.float64]
+    state: PairState,
+    residual: float,
+    around: Surroundings,
+    nodal: NDArray[np.float64],
+    share: NDArray[np.float64],
+    average: NDArray[np.float64] | None,
 ) -> tuple[Check, ...]:
+    around = replace(around, average=average)
     pair, balanced = state.pair, friction_balance(state.pair, state.multipliers)
     largest = max(around.reference, FAINT * around.beside)
     return (
@@ -223,7 +229,7 @@ def reported(state: PairState, at: Averages) -> Recovery:
     points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
     over, theory (P12), else with those on planes of symmetry mended, theory (P14)."""
     pair, average = state.pair, at.of(state.normal)
-    plain, smooth = average, pair.tied or (state.closed.all() and pair.space.continuous and pair.space.ordinary)
+    plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
     if smooth:
         sharp = at.sharpened(average, at.surface.points)
         plain, smooth = (sharp, True) if pair.tied or sharp.min() >= 0.0 else (average, False)

@@ -40,8 +40,9 @@ def friction_result(
     earlier: FrictionResult | None = None,
     reference: float = 0.0,
 ) -> FrictionResult | None:
-    """recovery: of the pair's pressure; multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit: at the end of the step; earlier:
-    of the step before, None in the first; reference: the largest pressure of the steps before; None without friction."""
+    """recovery: of the pair's pressure. multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit:
+    at the end of the step; earlier: of the step before, None in the first; reference: the largest pressure of the steps
+    before; None without friction."""
     if limit is None:
         return None
     weight, states = pair.space.weight, status[pair.normal]

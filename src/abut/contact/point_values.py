@@ -10,13 +10,25 @@ from numpy.typing import NDArray
 from abut.cells import CELLS
 from abut.contact.geometry import by_kind
 from abut.contact.nodal_recovery import Averages, at_facet_nodes
-from abut.contact.star_fits import Polynomials, StarFits, Supports, corner_weights, neighbours, star_fits, summed, supports
+from abut.contact.star_fits import (
+    Polynomials,
+    StarFits,
+    Supports,
+    corner_weights,
+    neighbours,
+    of_second_order,
+    star_fits,
+    summed,
+    supports,
+)
 from abut.mesh.surface import Surface
 
 CLOSED = 1e-3  # average over the largest from which on a point counts as in contact
 WHOLE = 1e-2  # a support covered to within this share is fully covered
 ROUNDS = 3  # after which points that turn out to lie beyond the edge of contact are taken for open
-PASSES = 3  # at the edge of contact; the second changes values by a hundredth of the first, the third by nothing to speak of
+PASSES = (
+    3  # at the edge of contact; the second changes values by a hundredth of the first, the third by nothing to speak of
+)
 TAKEN = 2.0 / np.pi * np.arctan(np.sqrt(2.0))  # theory (P20), of the force over an open point's function
 SWING = 1.0  # of the range of averages around a point: values farther from the average are no correction
 
@@ -119,7 +131,7 @@ class Recovery:
 def recovered(at: Averages, average: Array, plain: Array, places: Places, tied: bool = False) -> Recovery:
     """The pressure of averages (n_points,) at the points of ``at.surface``, theory (P18)-(P20); ``plain`` (n_points,) where
     it is not known any better: on facets of first order, of whose cells the nodal averages are values at the nodes
-    already, at points that facets without target belong to, and at ends of the contactor. tied: a tie's, which pulls, too."""
+    already, at points that facets without target belong to, and at ends of the contactor. tied: a tie, which may pull."""
     closed = at.weight > 0.0 if tied else average > CLOSED * average.max(initial=0.0)
     stars, of = _stars(at, closed, places), supports(at.surface)
     for _ in range(ROUNDS):
@@ -160,8 +172,8 @@ def _corners(surface: Surface) -> Ids:
 @dataclass(frozen=True)
 class _Stars:
     """one, other: pairs of neighbours; inner, edge, outer: (n_points,) points in contact all of whose neighbours are, those
-    with an open neighbour, and further ones; the last two next to inner ones; near: inner ones next to the edge; open: not in
-    contact."""
+    with an open neighbour, and further ones; the last two next to inner ones; near: inner ones next to the edge; open: the
+    rest."""
 
     one: Ids
     other: Ids
@@ -188,7 +200,7 @@ def _any(one: Ids, flags: Flags, n: int) -> Flags:
 def _stars(at: Averages, closed: Flags, places: Places) -> _Stars:
     one, other = neighbours(at.surface)
     n, c = len(closed), at.surface.dim - 1
-    usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & _of_second_order(at.surface)
+    usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & of_second_order(at.surface)
     images = np.prod(1 + places.across.any(axis=2), axis=1)
     enough = np.bincount(one, minlength=n) * images >= c + c * (c + 1) // 2
     inner = usable & enough & ~places.rim & ~_any(one, ~usable[other], n) & (np.bincount(one, minlength=n) > 0)
@@ -196,15 +208,6 @@ def _stars(at: Averages, closed: Flags, places: Places) -> _Stars:
     edge = further & _any(one, ~closed[other], n)
     near = inner & _any(one, edge[other], n)
     return _Stars(one, other, inner, edge, further & ~edge, near, ~closed)
-
-
-def _of_second_order(surface: Surface) -> Flags:
-    """Points (n_points,) that no facet of first order belongs to."""
-    result = np.ones(len(surface.points), dtype=bool)
-    for kind, facets in by_kind(surface):
-        if CELLS[kind].degree == 1:
-            result[surface.nodes[facets, : CELLS[kind].corners]] = False
-    return result
 
 
 def _range(stars: _Stars, average: Array) -> tuple[Array, Array]:
@@ -243,8 +246,12 @@ def _at_edge(
     value = np.where(some, average, before.value)
     for _ in range(PASSES):
         squares = fits.to_values(value**2)
-        root = np.sqrt(np.maximum(squares.some(number).at(surface.points[here][:, None], surface.points[model]), 0.0))[:, 0]
-        more = _mean(here, (root - _root_averages(surface, here, model, squares.some(number), stars.open))[:, None], len(value))[:, 0]
+        root = np.sqrt(np.maximum(squares.some(number).at(surface.points[here][:, None], surface.points[model]), 0.0))[
+            :, 0
+        ]
+        more = _mean(
+            here, (root - _root_averages(surface, here, model, squares.some(number), stars.open))[:, None], len(value)
+        )[:, 0]
         value = np.where(some, np.maximum(average + more, 0.0), value)
     squares = fits.to_values(value**2)
     of_square, slope = before.square_slope.copy(), before.slope.copy()

@@ -74,7 +74,7 @@ def summed(here: Ids, values: Array, n: int) -> Array:
     """Values (m, ...) added up by number ``here`` (m,), (n, ...)."""
     width = int(np.prod(values.shape[1:]))
     columns = [np.bincount(here, column, n) for column in values.reshape(-1, width).T]
-    return np.stack(columns, axis=-1).reshape(n, *values.shape[1:])
+    return np.stack(columns, axis=-1, dtype=float).reshape(n, *values.shape[1:])
 
 
 def corner_weights(surface: Surface, kind: str, facets: Ids) -> tuple[Array, Array]:
@@ -94,6 +94,15 @@ def neighbours(surface: Surface) -> tuple[Ids, Ids]:
             pairs.append(np.stack([corners, np.roll(corners, shift, axis=1)], axis=-1).reshape(-1, 2))
     one, other = np.unique(np.concatenate(pairs), axis=0).T
     return one, other
+
+
+def of_second_order(surface: Surface) -> NDArray[np.bool_]:
+    """Points (n_points,) that no facet of first order belongs to."""
+    result = np.ones(len(surface.points), dtype=bool)
+    for kind, facets in by_kind(surface):
+        if CELLS[kind].degree == 1:
+            result[surface.nodes[facets, : CELLS[kind].corners]] = False
+    return result
 
 
 def tangents(normals: Array) -> Array:
@@ -194,9 +203,9 @@ def own_support(
 
 
 def _mirrors(across: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """The identity and reflections across a point's planes, first, second, both: (m, 4, dim, dim), and (m, 4) which exist."""
+    """The identity and reflections across a point's planes, first, second, both: (m, 4, dim, dim); which exist, (m, 4)."""
     one, two = (np.eye(across.shape[2]) - 2.0 * n[:, :, None] * n[:, None] for n in np.moveaxis(across, 1, 0))
-    first, second = across.any(axis=2).T
+    first, second = (n.any(axis=1) for n in np.moveaxis(across, 1, 0))
     every = np.ones(len(across), dtype=bool)
     same = np.broadcast_to(np.eye(across.shape[2]), one.shape)
     return np.stack([same, one, two, one @ two], axis=1), np.stack([every, first, second, first & second], axis=1)
