@@ -26,10 +26,8 @@ from abut.mesh.surface import Surface
 CLOSED = 1e-3  # average over the largest from which on a point counts as in contact
 WHOLE = 1e-2  # a support covered to within this share is fully covered
 ROUNDS = 3  # after which points that turn out to lie beyond the edge of contact are taken for open
-PASSES = (
-    3  # at the edge of contact; the second changes values by a hundredth of the first, the third by nothing to speak of
-)
-TAKEN = 2.0 / np.pi * np.arctan(np.sqrt(2.0))  # theory (P20), of the force over an open point's function
+PASSES = 8  # at the edge of contact, each half of the way: values change by 1e-3 of the largest in the last
+TAKEN = 2.0 / np.pi * np.arctan(2.0)  # theory (P20), of the force over an open point's function
 SWING = 1.0  # of the range of averages around a point: values farther from the average are no correction
 
 Array = NDArray[np.float64]
@@ -249,10 +247,11 @@ def _at_edge(
         root = np.sqrt(np.maximum(squares.some(number).at(surface.points[here][:, None], surface.points[model]), 0.0))[
             :, 0
         ]
-        more = _mean(
-            here, (root - _root_averages(surface, here, model, squares.some(number), stars.open))[:, None], len(value)
-        )[:, 0]
-        value = np.where(some, np.maximum(average + more, 0.0), value)
+        held = _root_averages(
+            surface, here, model, squares.some(number), stars.open, np.maximum(average, 0.0) * at.weight
+        )
+        more = _mean(here, (root - held)[:, None], len(value))[:, 0]
+        value = np.where(some, 0.5 * (value + np.maximum(average + more, 0.0)), value)
     squares = fits.to_values(value**2)
     of_square, slope = before.square_slope.copy(), before.slope.copy()
     of_square[points] = squares.gradient
@@ -268,24 +267,33 @@ def _mean(here: Ids, values: Array, n: int) -> Array:
     return summed(here, values, n) / np.maximum(np.bincount(here, minlength=n), 1)[:, None]
 
 
-def _root_averages(surface: Surface, here: Ids, model: Ids, squares: Polynomials, opened: Flags) -> Array:
+def _root_averages(
+    surface: Surface, here: Ids, model: Ids, squares: Polynomials, opened: Flags, carried: Array
+) -> Array:
     """Averages (m,) over the functions of points ``here`` of the roots of polynomials at points ``model``, zero where these
-    are negative; with what these points take over from open ones beside them, (n_points,) bool."""
-    load, weight = np.zeros(len(here)), np.zeros(len(here))
+    are negative; with what these points take over from open ones beside them, (n_points,) bool, but for what those carry
+    themselves, (n_points,) a force."""
+    load, weight, seen = np.zeros(len(here)), np.zeros(len(here)), np.zeros(len(opened))
     order = np.argsort(here, kind="stable")
     first, last = (np.searchsorted(here[order], np.arange(len(surface.points)), side=s) for s in ("left", "right"))
+    parts = []
     for kind, facets in by_kind(surface):
         corners = surface.nodes[facets, : CELLS[kind].corners].astype(np.int64)
         touched = (first[corners] < last[corners]).any(axis=1)
         x, force = corner_weights(surface, kind, facets[touched])
-        beyond = opened[corners[touched]]
+        parts.append((corners[touched], x, force))
+        seen += np.bincount(corners[touched].ravel(), force.sum(axis=1).ravel(), len(seen))
+    for corners, x, force in parts:
+        beyond = opened[corners]
         share = TAKEN / np.maximum((~beyond).sum(axis=1), 1)
-        taken = share[:, None] * np.einsum("fqk,fk->fq", force, beyond)
-        for k, point in enumerate(corners[touched].T):
+        theirs = carried[corners] * force.sum(axis=1) / np.maximum(seen[corners], 1e-300)
+        for k, point in enumerate(corners.T):
             count = last[point] - first[point]
             facet = np.repeat(np.arange(len(point)), count)
             use = order[np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count) + first[point][facet]]
             root = np.sqrt(np.maximum(squares.some(use).at(x[facet], surface.points[model[use]]), 0.0))
-            load += np.bincount(use, ((force[facet, :, k] + taken[facet]) * root).sum(axis=1), len(load))
+            over = np.maximum(np.einsum("mqk,mq->mk", force[facet], root) - theirs[facet], 0.0)
+            taken = share[facet] * (over * beyond[facet]).sum(axis=1)
+            load += np.bincount(use, (force[facet, :, k] * root).sum(axis=1) + taken, len(load))
             weight += np.bincount(use, force[facet, :, k].sum(axis=1), len(load))
     return load / np.where(weight > 0.0, weight, 1.0)

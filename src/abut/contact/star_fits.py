@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,8 +123,7 @@ class StarFits:
     points: (m,) which; here: (r,) of which of them each row is; other: (r,) its neighbour; of_averages, of_values:
     (r, c) what a unit of each coefficient adds to the difference of averages, or values, between neighbour and point;
     scale: (m,) length of a star; frame: (m, dim - 1, dim) tangents; mean: (m, dim), square: (m, dim, dim) moments of the
-    point's own function as in ``Supports``, continued beyond planes of symmetry; full: (m,) whether there are as many rows
-    as coefficients."""
+    point's own function as in ``Supports``, continued beyond planes of symmetry."""
 
     points: Ids
     here: Ids
@@ -134,27 +134,41 @@ class StarFits:
     frame: Array
     mean: Array
     square: Array
-    full: NDArray[np.bool_]
 
     def to_averages(self, average: Array) -> Polynomials:
         """k-exact (Barth and Frederickson 1990): the average of each polynomial over the point's own function is the given
         one, those over the neighbours' functions as near as can be. average: (n_points,)."""
-        found = self._solved(self.of_averages, average)
+        found = self._solved(self.of_averages, self._from_averages, average)
         away = (found.gradient * self.mean).sum(axis=1)
         bent = 0.5 * (found.curvature * self.square).sum(axis=(1, 2))
         return Polynomials(average[self.points] - away - bent, found.gradient, found.curvature)
 
     def to_values(self, value: Array) -> Polynomials:
         """Through the values (n_points,) at the points and near those at the neighbours."""
-        return self._solved(self.of_values, value)
+        return self._solved(self.of_values, self._from_values, value)
 
-    def _solved(self, rows: Array, value: Array) -> Polynomials:
+    @cached_property
+    def _from_averages(self) -> Array:
+        return self._inverse(self.of_averages)
+
+    @cached_property
+    def _from_values(self) -> Array:
+        return self._inverse(self.of_values)
+
+    def _inverse(self, rows: Array) -> Array:
+        """Of the normal equations, (m, c, c)."""
+        metric = self._weights(rows)[:, None, None] * rows[:, :, None] * rows[:, None]
+        return np.linalg.pinv(summed(self.here, metric, len(self.points)), rcond=FLAT, hermitian=True)
+
+    def _weights(self, rows: Array) -> Array:
+        """The inverse square of the distance, over the scale, (r,)."""
+        return np.asarray(1.0 / np.maximum((rows[:, : self.frame.shape[1]] ** 2).sum(axis=1), 1e-300))
+
+    def _solved(self, rows: Array, inverse: Array, value: Array) -> Polynomials:
         m, k = len(self.points), self.frame.shape[1]
-        weight = 1.0 / np.maximum((rows[:, :k] ** 2).sum(axis=1), 1e-300)
         rise = value[self.other] - value[self.points[self.here]]
-        metric = summed(self.here, weight[:, None, None] * rows[:, :, None] * rows[:, None], m)
-        rate = summed(self.here, (weight * rise)[:, None] * rows, m)
-        found = np.einsum("mab,mb->ma", np.linalg.pinv(metric, rcond=FLAT, hermitian=True), rate)
+        rate = summed(self.here, (self._weights(rows) * rise)[:, None] * rows, m)
+        found = np.einsum("mab,mb->ma", inverse, rate)
         slope, bend = found[:, :k] / self.scale[:, None], np.zeros((m, k, k))
         bend[(slice(None), *np.triu_indices(k))] = found[:, k:] / self.scale[:, None] ** 2
         bend = bend + np.triu(bend, 1).transpose(0, 2, 1)
@@ -188,8 +202,7 @@ def star_fits(surface: Surface, points: Ids, normals: Array, across: Array, of: 
     of_averages = _row(mean - own_mean[at], square - own_square[at], scale[at])
     of_values = _row(away, away[:, :, None] * away[:, None], scale[at])
     own = np.einsum("mk,mkd->md", own_mean, frame), np.einsum("mka,mkl,mlb->mab", frame, own_square, frame)
-    enough = count >= of_values.shape[1]
-    return StarFits(points, at, beside, of_averages, of_values, scale, frame, *own, enough)
+    return StarFits(points, at, beside, of_averages, of_values, scale, frame, *own)
 
 
 def own_support(
