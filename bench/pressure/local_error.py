@@ -1,8 +1,8 @@
 """Local errors of the reported pressure, mid-nodes included: python bench/pressure/local_error.py [line | ball | rows].
 
-Shares of the peak inside 0.9 of the contact's half width. Theory's reference: Hertz's line (NAFEMS R0094) and Hertz's ball, whose
+Shares of the peak inside 0.9 of the contact's half width. References: Hertz's line (NAFEMS R0094) and Hertz's ball, whose
 radius and peak follow from the force of the result (`tests/models/pressure.py` has the models).
-rows: one more row of facets inside the contact, edges at eight places within a facet.
+rows: how errors fall with the size of facets at parts of the contact, and beside its edge.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from models import pressure as models
 
 SIZES = (6, 10, 20)
 BALLS = {"hex20": (4, 5, 7), "hex27": (7,), "tet10": (4, 5, 7), "wedge15": (7,), "hex8": (13,), "tet4": (13,)}
-ROWS = (3, 4, 6, 8, 12, 16)
+ROWS = (6, 10, 16, 26)
 
 
 def line() -> None:
@@ -46,25 +46,27 @@ def ball() -> None:
 
 
 def rows() -> None:
-    """A cylinder ten times as flat, for which the formula is exact to 1e-3; largest error farther than one facet from the
-    last one in contact, as the root mean square over eight places of the edge."""
-    print("facets over a: error in %, its exponent")
-    before = None
+    """A cylinder ten times as flat, for which the formula is exact to 1e-3: largest errors inside parts of the half width,
+    and farther inside than two facets, root mean squares over four places of the edge, with exponents of the facets' size."""
+    print("facets over a: error in % and its exponent inside 0.5 a, 0.7 a, 0.9 a, and two facets from the edge")
+    before: tuple[int, list[float]] | None = None
     for n in ROWS:
         found = []
-        for k in range(8):
-            width = models.LINE * (1.0 + (k / 8.0 - 0.5) / n)
-            size = models.LINE / n
-            model = models.line("quad8", round(8.0 / size), "block", 10.0, width)
-            contact = abut.solve(model).contacts[0]
+        for k in range(4):
+            width = models.LINE * (1.0 + (k / 4.0 - 0.5) * 8.0 / models.LINE / n)
+            contact = abut.solve(models.line("quad8", n, "block", 10.0, width)).contacts[0]
             used = contact.contactor.nodes >= 0
             x, p = contact.contactor.points[contact.contactor.nodes[used]], contact.pressure[used]
             peak = 0.1 * models.LINE_PEAK * width / models.LINE
             error = np.abs(p - models.ellipse(width, peak, 2)(x)) / peak
-            found.append(error[np.abs(x[:, 0]) < width - 2.0 * 8.0 / round(8.0 / size)].max())
-        value = float(np.sqrt(np.mean(np.square(found))))
-        rate = "" if before is None else f"{np.log(before[1] / value) / np.log(n / before[0]):.2f}"
-        print(f"{n:3d}: {100 * value:6.3f}  {rate}", flush=True)
+            limits = (0.5 * width, 0.7 * width, 0.9 * width, width - 16.0 / n)
+            found.append([float(error[np.abs(x[:, 0]) < limit].max()) for limit in limits])
+        value = np.sqrt(np.mean(np.square(found), axis=0)).tolist()
+        rates = [""] * 4
+        if before is not None:
+            rates = [f"{np.log(old / new) / np.log(n / before[0]):.2f}" for old, new in zip(before[1], value)]
+        row = "  ".join(f"{100 * v:6.3f} {rate:>5s}" for v, rate in zip(value, rates))
+        print(f"{n * models.LINE / 8.0:5.1f}: {row}", flush=True)
         before = n, value
 
 

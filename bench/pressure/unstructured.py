@@ -1,7 +1,7 @@
 """A quarter of a ball on a block of Gmsh's tetrahedra: python bench/pressure/unstructured.py CELL FACETS [contactor].
 
-CELL: tet4 or tet10; FACETS: over the radius of contact; errors of the reported pressure inside 0.9 a over Hertz's peak. Needs
-gmsh, which a `bench` install brings.
+CELL: tet4 or tet10; FACETS: over the radius of contact; errors of the reported pressure inside 0.9 a over Hertz's peak.
+Needs gmsh, which a `bench` install brings.
 """
 
 from __future__ import annotations
@@ -99,7 +99,9 @@ def main() -> None:
     solution = abut.solve(model(cell, float(facets), *contactor))
     radius, mean, most = errors(solution)
     check = next(c for c in solution.certificate if c.name == "pressure error")
-    print(f"{cell}, a = {radius:.3f}: mean {100 * mean:.1f} %, largest {100 * most:.1f} %, estimate {100 * check.value:.1f} %")
+    print(
+        f"{cell}, a = {radius:.3f}: mean {100 * mean:.1f} %, largest {100 * most:.1f} %, estimate {100 * check.value:.1f} %"
+    )
 
 
 if __name__ == "__main__":

@@ -96,7 +96,7 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
 @pytest.mark.parametrize("n", [6, 12, 24])
 def test_no_bias_at_a_rim(n: int) -> None:
     """Contact that is closed at the contactor's rim and opens elsewhere: the average there would lag behind by a third of
-    the pressure's change over a facet. What is left is of second order: a twentieth of the change on 6 facets, less on more."""
+    the pressure's change over a facet. What is left is of second order: a twentieth of the change on 6 facets."""
     (x, p), (at, found) = along(opened(48)), along(opened(n))
     error = found - np.interp(at, x, p)
     change = p[-1] - np.interp(at[-2], x, p)

@@ -158,7 +158,7 @@ class StarFits:
     def _inverse(self, rows: Array) -> Array:
         """Of the normal equations, (m, c, c)."""
         metric = self._weights(rows)[:, None, None] * rows[:, :, None] * rows[:, None]
-        return np.linalg.pinv(summed(self.here, metric, len(self.points)), rcond=FLAT, hermitian=True)
+        return np.asarray(np.linalg.pinv(summed(self.here, metric, len(self.points)), rcond=FLAT, hermitian=True))
 
     def _weights(self, rows: Array) -> Array:
         """The inverse square of the distance, over the scale, (r,)."""
