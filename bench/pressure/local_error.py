@@ -47,7 +47,7 @@ def ball() -> None:
 
 def rows() -> None:
     """A cylinder ten times as flat, for which the formula is exact to 1e-3: largest errors inside parts of the half width,
-    and farther inside than two facets, root mean squares over four places of the edge, with exponents of the facets' size."""
+    and farther inside than two facets, root mean squares over four places of the edge, with exponents of the size."""
     print("facets over a: error in % and its exponent inside 0.5 a, 0.7 a, 0.9 a, and two facets from the edge")
     before: tuple[int, list[float]] | None = None
     for n in ROWS:

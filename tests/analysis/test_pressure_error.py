@@ -180,7 +180,9 @@ def test_both_differences_count() -> None:
     assert pressure_error(own, off, off, share, 2.0, None) == pytest.approx(SHARE * 0.1)
     assert pressure_error(own, even, even, share, 2.0, off) == pytest.approx(OF_SECOND_ORDER * 0.1)
     assert pressure_error(own, even, off, share, 2.0, even) == pytest.approx(OF_SECOND_ORDER * 0.1)
-    assert pressure_error(own, even, even, share, 2.0, 1e-9 * off) == pytest.approx(0.0, abs=1e-12)  # a rigid body has none
+    assert pressure_error(own, even, even, share, 2.0, 1e-9 * off) == pytest.approx(
+        0.0, abs=1e-12
+    )  # a rigid body has none
     partly = share.copy()
     partly[middle] = 0.5
     assert pressure_error(own, even, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)

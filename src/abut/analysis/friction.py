@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
-from abut.contact.geometry import by_kind, function_count
+from abut.contact.geometry import by_kind, function_count, nodal_normals
 from abut.contact.nodal_recovery import facet_node_values
 from abut.contact.point_values import Recovery
 from abut.contact.smooth_friction import slip_of
@@ -55,7 +55,7 @@ def friction_result(
     work, each = float(area @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
         coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
-        traction=_within(np.stack([recovery.field(component) for component in values.T], axis=-1), most),
+        traction=_within(_along(pair, recovery, values), most),
         traction_limit=most,
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
@@ -85,6 +85,16 @@ def _limit_at_nodes(pair: Pair, recovery: Recovery, bound: Vector) -> Vector:
     rough = bool(np.isinf(bound).any())
     shown = recovery.field(pair.space.transfer @ np.where(np.isfinite(bound), bound, 1.0))
     return np.where(shown > 0.0, np.inf, shown) if rough else np.maximum(shown, 0.0)
+
+
+def _along(pair: Pair, recovery: Recovery, values: Vector) -> Vector:
+    """Tractions (9 n_facets, dim) at the facets' nodes, (n_facets, 9, dim), along the surface there: components that are
+    recovered one by one leave it by a little where it is curved."""
+    traction = np.stack([recovery.field(component) for component in values.T], axis=-1)
+    if recovery.fits is None:
+        return traction
+    normal = nodal_normals(pair.contactor)
+    return np.asarray(traction - np.einsum("fkd,fkd->fk", traction, normal)[..., None] * normal)
 
 
 def _within(traction: Vector, most: Vector) -> Vector:

@@ -14,8 +14,8 @@ from abut.diagnosis.friction import friction
 from abut.diagnosis.interface import MIXED, interface, not_facing
 from abut.diagnosis.probes import probes
 from abut.diagnosis.quality import quality
-from abut.diagnosis.tetrahedra import tetrahedra
 from abut.diagnosis.rigid_body_check import motions
+from abut.diagnosis.tetrahedra import tetrahedra
 from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior

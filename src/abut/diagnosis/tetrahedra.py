@@ -25,7 +25,7 @@ def tetrahedra(model: Model, pair: Pair) -> list[Finding]:
             "advice",
             f"contact '{pair.contact.name}'",
             f"{words(pair.contact.contactor)} is of tet4: pressures at single nodes are off by 5 to 25 % on irregular "
-            "meshes, since a node with fewer cells around it takes more force (resultants and means are right to a few per cent)",
+            "meshes, since a node with fewer cells around it takes more force (means are right to a few per cent)",
             f"take tet10 for {', '.join(repr(name) for name in names)} (within 3 % with as many facets), or average over a "
             "few facets",
         )
