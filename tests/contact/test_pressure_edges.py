@@ -85,7 +85,7 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
     values[at.corners[corners]] = contact.pressure[corners]
     if name != "curved":  # flat: the resultant is along the normal
         # Sums of averages are it; those of values of second order nearly, where a root ends within a facet.
-        close = 2e-2 if name in ("flat, opens", "flat under a curved target") else 1e-12
+        close = 3e-2 if name in ("flat, opens", "flat under a curved target") else 1e-12
         force = np.abs(contact.force).max()
         assert values @ at.weight == pytest.approx(force, rel=close)
         # The same as an integral, facet by facet.
