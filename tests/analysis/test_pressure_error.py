@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.pressure_error import SHARE, pressure_error
+from abut.analysis.pressure_error import OF_SECOND_ORDER, SHARE, pressure_error
 from abut.analysis.surface_stress import normal_stress
 from abut.diagnosis.cures import cure
 from abut.mesh.make import box, rectangle
@@ -66,19 +66,21 @@ HERTZ = {
 
 @pytest.mark.parametrize("name", HERTZ)
 def test_it_is_near_the_true_error(name: str) -> None:
-    """Of contacts with two to five facets from the edge to the middle, half of it to three times it."""
+    """Of contacts with two to five facets from the edge to the middle, half of it to three times it; of those of second
+    order that are better than 2 % by then, below what is too much."""
     model, truth = HERTZ[name]
     solution = abut.solve(model())
-    error = truth(solution)
-    assert error > 0.04  # none of them is fine
-    assert 0.5 < checked(solution).value / error < 3.0
+    error, estimate = truth(solution), checked(solution).value
+    second = not any(cell in name for cell in ("quad4", "tri3", "hex8", "wedge6", "tet4"))
+    assert error > (0.003 if second else 0.04)
+    assert estimate > 0.5 * error
+    assert estimate < (3.0 * error if error > 0.02 else 0.08)
 
 
 def test_it_falls_with_the_facets() -> None:
-    """About as their size: from 3 to 12 facets to a quarter, at most by half more."""
-    coarse, fine = (checked(abut.solve(line("quad8", (n, n)))) for n in (4, 16))
-    assert fine.value < 1.5 * coarse.value * 4 / 16 * 1.15
-    assert (coarse.verdict, fine.verdict) == ("warn", "pass")
+    """As the root of the size of facets at least: next to the edge of contact stresses are those of a root."""
+    coarse, fine = (checked(abut.solve(line("quad8", (n, n)))).value for n in (4, 16))
+    assert fine < 0.5 * coarse * 1.05
 
 
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "tri3"])
@@ -129,9 +131,9 @@ def test_it_counts_where_the_pressure_is_largest() -> None:
 
 def test_the_cure_names_a_size() -> None:
     """Half of the facets in contact."""
-    solution = abut.solve(line("quad8", (4, 4)))
+    solution = abut.solve(line("quad4", (6, 6)))
     assert cure(checked(solution), solution).startswith(
-        "refine both surfaces where they touch: facets of half the size (1)"
+        "refine both surfaces where they touch: facets of half the size (0.67)"
     )
 
 
@@ -166,7 +168,7 @@ def test_bricks_of_first_order_have_none(cell: str) -> None:
 
 def test_both_differences_count() -> None:
     """Of an even pressure: one node that is off, and a stress that is off, each by a tenth."""
-    model = squares(8, 8)
+    model = squares(8, 8, "quad8")
     own = pair(model, model.contacts[0], supports(model))
     nodes = own.contactor.node_ids
     middle = nodes[np.argmin(np.abs(own.contactor.points[nodes, 0] - 0.5))]
@@ -174,10 +176,13 @@ def test_both_differences_count() -> None:
     even[nodes] = 2.0
     off = even.copy()
     off[middle] += 0.2
-    assert pressure_error(own, even, share, 2.0, None) == pytest.approx(0.0, abs=1e-12)
-    assert pressure_error(own, off, share, 2.0, None) == pytest.approx(SHARE * 0.1)
-    assert pressure_error(own, even, share, 2.0, off) == pytest.approx(SHARE * 0.1)
-    assert pressure_error(own, even, share, 2.0, 1e-9 * off) == pytest.approx(0.0, abs=1e-12)  # a rigid body has none
+    assert pressure_error(own, even, even, share, 2.0, None) == pytest.approx(0.0, abs=1e-12)
+    assert pressure_error(own, off, off, share, 2.0, None) == pytest.approx(SHARE * 0.1)
+    assert pressure_error(own, even, even, share, 2.0, off) == pytest.approx(OF_SECOND_ORDER * 0.1)
+    assert pressure_error(own, even, off, share, 2.0, even) == pytest.approx(OF_SECOND_ORDER * 0.1)
+    assert pressure_error(own, even, even, share, 2.0, 1e-9 * off) == pytest.approx(
+        0.0, abs=1e-12
+    )  # a rigid body has none
     partly = share.copy()
     partly[middle] = 0.5
-    assert pressure_error(own, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)
+    assert pressure_error(own, even, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)

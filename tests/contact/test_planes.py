@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import abut
 from abut.contact.nodal_recovery import averages
 from abut.contact.symmetry_planes import evened
-from abut.mesh.make import box, join
+from abut.mesh.make import box, join, rectangle
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import Pair, pair
 from models.pressure import bent, quarter_ball
@@ -119,10 +119,43 @@ def test_nothing_is_lost_and_nothing_negative(cell: str) -> None:
         assert np.array_equal(average, result) == cell.startswith("hex")
 
 
-def test_no_planes_in_2d_and_of_ties() -> None:
-    assert built(bent("quad4", 3)).planes is None
+def test_ends_in_2d_and_ties() -> None:
+    """In 2D the ends of a contactor where supports hold its direction but not its normal; of ties none."""
+    found = built(line_on_plane(held=True)).planes
+    assert found is not None
+    assert found.count.sum() == 1
+    (point,) = np.flatnonzero(found.count)
+    assert np.abs(found.across[point, 0]) == pytest.approx([1.0, 0.0])
+    assert not found.across[point, 1].any()
+    free = built(line_on_plane(held=False)).planes
+    assert free is not None
+    assert not free.count.any()
     tied = built(bent("tet4", 3, "tied"))
     assert tied.planes is None
+
+
+def line_on_plane(held: bool) -> abut.Model:
+    """A block on one of its own width; at x = 0 both may be held along x."""
+    mesh = join({"a": rectangle((0, 1), (0, 1), (3, 2)), "b": rectangle((0, 1), (1, 2), (2, 2))})
+    steel = abut.LinearElastic(1000.0, 0.3)
+    sides = [abut.Support(f"{body}.left", x=0.0) for body in "ab"] if held else [abut.Support("b.left", y=0.0)]
+    return abut.Model(
+        mesh, [abut.Solid(body, steel) for body in "ab"], [abut.Support("a.bottom", y=0.0), *sides],
+        contacts=[abut.Contact("a.top", "b.bottom")], plane="strain",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("cell", ["hex20", "tet10"])
+def test_normals_of_planes(cell: str) -> None:
+    """Unit normals, of both planes where two meet."""
+    own = built(blocks(cell))
+    assert own.planes is not None
+    x, across = own.contactor.points, own.planes.across
+    for point in np.flatnonzero(own.planes.count):
+        on = np.flatnonzero(np.abs(x[point, :2]) < 1e-12)
+        found = np.abs(across[point][: len(on)])
+        assert np.sort(found.argmax(axis=1)).tolist() == on.tolist()
+        assert found.max(axis=1) == pytest.approx(np.ones(len(on)))
 
 
 @pytest.mark.parametrize("contactor", ["ball", "block"])

@@ -1,5 +1,5 @@
-"""The pressure that is reported, with defaults, beside closed forms: errors at facet corners (between them it is linear) as
-shares of the peak."""
+"""The pressure that is reported, with defaults, beside closed forms: errors at facet corners as shares of the peak, and at
+all nodes of facets of second order."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from models.pressure import (
     distance,
     ellipse,
     errors,
+    everywhere,
     iterations,
     line,
     octant,
@@ -37,12 +38,31 @@ SLOW = pytest.mark.long
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "quad9", "tri6"])
 def test_hertz_line(cell: str, n: int, limit: float, contactor: str) -> None:
     """With the cylinder as contactor the formula itself, that of a half space under a parabola while a / R = 0.12, is off
-    by 0.3 to 0.4 % at its nodes, on any mesh: 0.1 % more, and 0.4 % at least, are allowed (quad4, n = 10: 1.01 %)."""
+    by 0.3 to 0.4 % at its nodes, on any mesh: 0.1 % more, and 0.45 % at least, are allowed (quad4, n = 10: 1.01 %)."""
     if contactor == "cylinder":
-        limit = max(limit + 0.001, 0.004)
+        limit = max(limit + 0.001, 0.0045)
     solution = abut.solve(line(cell, n, contactor))
     assert errors(solution, LINE, LINE_PEAK)[0] <= limit
     assert all(check.passed for check in solution.certificate)
+
+
+@pytest.mark.parametrize("contactor", SIDES)
+@pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.004)])
+@pytest.mark.parametrize("cell", ["quad8", "tri6"])
+def test_hertz_line_at_all_nodes(cell: str, n: int, limit: float, contactor: str) -> None:
+    """Mid-nodes included; the formula is off as above."""
+    found = everywhere(abut.solve(line(cell, n, contactor)), LINE, LINE_PEAK)
+    assert found[1] <= (limit if contactor == "block" else max(limit, 0.0045))
+
+
+@pytest.mark.parametrize("contactor", BODIES)
+@pytest.mark.parametrize(("cell", "mean", "most"), [("hex20", 0.013, 0.045), ("tet10", 0.02, 0.065)])
+def test_quarter_ball_at_all_nodes(cell: str, mean: float, most: float, contactor: str) -> None:
+    """4.6 facets of the ball over the radius of contact, 3.6 of the block."""
+    solution = abut.solve(quarter_ball(cell, 7, contactor))
+    found = everywhere(solution, *quarter_ball_truth(solution))
+    assert found[0] <= mean
+    assert found[1] <= most
 
 
 @pytest.mark.parametrize(("first", "last", "limit"), [(5, 12, 0.019), (13, 17, 0.015), (18, 24, 0.005)])

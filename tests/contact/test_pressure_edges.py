@@ -84,22 +84,23 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
     values = np.zeros(n)
     values[at.corners[corners]] = contact.pressure[corners]
     if name != "curved":  # flat: the resultant is along the normal
+        # Sums of averages are it; those of values of second order nearly, where a root ends within a facet.
+        close = 3e-2 if name in ("flat, opens", "flat under a curved target") else 1e-12
         force = np.abs(contact.force).max()
-        assert values @ at.weight == pytest.approx(force, rel=1e-12)
+        assert values @ at.weight == pytest.approx(force, rel=close)
         # The same as an integral, facet by facet.
         integral = np.einsum("fij,fj->", at.mass, np.where(corners, contact.pressure, 0.0))
-        assert integral == pytest.approx(force, rel=1e-12)
+        assert integral == pytest.approx(force, rel=close)
 
 
 @pytest.mark.parametrize("n", [6, 12, 24])
-def test_bias_at_a_rim(n: int) -> None:
-    """Contact that is closed at the contactor's rim and opens elsewhere: the average there lags behind by a third of the
-    pressure's change over a facet, first order; the next nodes do not. (Closed all over, that is put right.)"""
+def test_no_bias_at_a_rim(n: int) -> None:
+    """Contact that is closed at the contactor's rim and opens elsewhere: the average there would lag behind by a third of
+    the pressure's change over a facet. What is left is of second order: a twentieth of the change on 6 facets."""
     (x, p), (at, found) = along(opened(48)), along(opened(n))
-    p[-1] = np.polyval(np.polyfit(x[-5:-1], p[-5:-1], 3), x[-1])  # the fine mesh has the bias, too
     error = found - np.interp(at, x, p)
     change = p[-1] - np.interp(at[-2], x, p)
-    assert error[-1] == pytest.approx(-change / 3.0, rel=0.12)
+    assert abs(error[-1]) < 0.05 * change * 6 / n + 0.001 * p.max()
     assert np.abs(error[-3:-1]).max() < 0.05 * change + 0.002 * p.max()
 
 

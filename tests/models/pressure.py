@@ -52,6 +52,17 @@ def errors(solution: abut.Solution, radius: float, peak: float) -> tuple[float, 
     )
 
 
+def everywhere(solution: abut.Solution, radius: float, peak: float) -> tuple[float, float]:
+    """Mean and largest error at all nodes inside INSIDE a, mid-nodes included, over the peak."""
+    contact = solution.contacts[0]
+    used = contact.contactor.nodes >= 0
+    nodes, first = np.unique(contact.contactor.nodes[used], return_index=True)
+    x = contact.contactor.points[nodes]
+    error = np.abs(contact.pressure[used][first] - ellipse(radius, peak, solution.model.dim)(x)) / peak
+    inside = error[distance(x) < INSIDE * radius]
+    return float(inside.mean()), float(inside.max())
+
+
 def iterations(solution: abut.Solution) -> int:
     return len(solution.steps[-1].iterations)
 

@@ -187,9 +187,20 @@ def test_uniform_pressure_is_uniform_along_a_line(lower: str) -> None:
     assert any("projected" in note and "'above'" in note for note in solution.notes)
 
 
+def parabolas(at: np.ndarray, ends: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (n,) of the parabolas through values (m, 3) at the ends (m, 2) of facets, and their middles."""
+    result = np.empty(len(at))
+    for k, x in enumerate(at):
+        s = (2.0 * x - ends.sum(axis=1)) / (ends[:, 1] - ends[:, 0])
+        facet = int(np.argmin(np.abs(s)))
+        t = s[facet]
+        result[k] = values[facet] @ [0.5 * t * (t - 1.0), 0.5 * t * (t + 1.0), 1.0 - t**2]
+    return result
+
+
 def test_jumps_are_read_as_means() -> None:
-    """Pressures are continuous, linear between corners, also of P0. Where gaps jump, the mean is read; of facets without a
-    gap only the other counts."""
+    """Pressures are continuous, between nodes as the facet's own functions, also of P0. Where gaps jump, the mean is read;
+    of facets without a gap only the other counts."""
     model = two_blocks(
         abut.Probe("line", line=([0.5, 1], [1.5, 1]), points=7, of=["pressure", "gap"]),
         abut.Probe("set", on="upper.bottom"),
@@ -200,7 +211,7 @@ def test_jumps_are_read_as_means() -> None:
     x = contact.contactor.points[contact.contactor.nodes[:, :2]][..., 0]
     order = np.argsort(x.ravel())
     line, own = solution.probes
-    exact = np.interp(line.points[:, 0], x.ravel()[order], contact.pressure[:, :2].ravel()[order])
+    exact = parabolas(line.points[:, 0], x, contact.pressure[:, :3])
     assert line.values["pressure"] == pytest.approx(exact, rel=1e-12)
     at = dict(zip(own.points[:, 0].round(6), own.values["pressure"]))
     node = round(0.5 + 1 / 3, 6)

@@ -46,7 +46,8 @@ class Surroundings:
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
     support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
-    opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``."""
+    opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; average: (n_points,) what the
+    reported pressure was recovered from, theory (P10), by default it itself."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -55,6 +56,7 @@ class Surroundings:
     elsewhere: NDArray[np.float64] | None = None
     support: NDArray[np.float64] | None = None
     stress: NDArray[np.float64] | None = None
+    average: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -165,15 +167,16 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     smooth, _ = split_at_creases(pair.contactor)
     pressure = at_points(smooth, case.nodal)
     support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)
-    alternating = oscillation(pair, case.values, pressure, support, largest) * largest / case.matters
+    average = pressure if case.around.average is None else case.around.average
+    alternating = oscillation(pair, case.values, average, support, largest) * largest / case.matters
     yield case.check("oscillation", alternating, OSCILLATION,
         "largest alternating part of the pressure inside the contact over the largest pressure",
         pressure=case.matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
-    facets = resolution(pair, pressure, support, largest)
+    facets = resolution(pair, average, support, largest)
     yield case.check("resolution", facets if counts else 0.0, RESOLUTION,
         "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
-    off = pressure_error(pair, pressure, support, largest, case.around.stress) * largest / case.matters
+    off = pressure_error(pair, pressure, average, support, largest, case.around.stress) * largest / case.matters
     unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
     edges = edge_load(pair, case.values, case.nodal) if counts else 0.0
     yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,

@@ -20,16 +20,18 @@ from abut.analysis.statistics import (
     resultant,
 )
 from abut.contact.friction_bound import FrictionBound
-from abut.contact.geometry import full_moments, nodal_normals
+from abut.contact.geometry import full_moments, nodal_normals, side_normals, split_at_creases
 from abut.contact.nodal_recovery import (
+    ON_AXIS,
     Averages,
     at_facet_nodes,
     averages,
     carry_to_target,
-    corner_values,
     facet_node_values,
 )
+from abut.contact.point_values import Places, Recovery, recovered
 from abut.contact.pressure_space import WEAK_SUPPORT
+from abut.contact.rim import rim
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -127,11 +129,11 @@ def contact_result(
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
     raw = facet_node_values(pair.contactor, degree, state.normal)
-    nodal = raw if at is None else at_facet_nodes(at.surface, _reported(state, at))
+    shown = None if at is None else reported(state, at)
+    nodal = raw if shown is None else shown.nodal
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
-    shown = corner_values(pair.contactor, nodal)
     return ContactResult(
         name=pair.contact.name,
         contactor=_undeformed(mesh, pair.contactor),
@@ -150,24 +152,30 @@ def contact_result(
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, state.gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=_checks(state, residual, around, nodal, share),
+        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal),
+        checks=_checks(state, residual, around, nodal, share, None if shown is None else shown.average),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
         body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
         friction=None
-        if at is None
+        if shown is None
         else friction_result(
-            pair, at, state.multipliers, state.status, state.slips, state.limit, before, around.reference
+            pair, shown, state.multipliers, state.status, state.slips, state.limit, before, around.reference
         ),
     )
 
 
 def _checks(
-    state: PairState, residual: float, around: Surroundings, nodal: NDArray[np.float64], share: NDArray[np.float64]
+    state: PairState,
+    residual: float,
+    around: Surroundings,
+    nodal: NDArray[np.float64],
+    share: NDArray[np.float64],
+    average: NDArray[np.float64] | None,
 ) -> tuple[Check, ...]:
+    around = replace(around, average=average)
     pair, balanced = state.pair, friction_balance(state.pair, state.multipliers)
     largest = max(around.reference, FAINT * around.beside)
     return (
@@ -216,16 +224,39 @@ def _statistics(
     )
 
 
-def _reported(state: PairState, at: Averages) -> NDArray[np.float64]:
-    """The pressure at the points of ``at.surface``, (n_points,): averages of facet-wise coefficients, by
-    theory (P10); sharpened where ordinary continuous functions are in contact all over, theory (P12); else with those on
-    planes of symmetry mended, theory (P14)."""
+def reported(state: PairState, at: Averages) -> Recovery:
+    """The pressure at points and at the facets' nodes: from averages of facet-wise coefficients, theory (P10), values at
+    points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
+    over, theory (P12), else with those on planes of symmetry mended, theory (P14)."""
     pair, average = state.pair, at.of(state.normal)
-    if pair.tied or (state.closed.all() and pair.space.continuous and pair.space.ordinary):
+    plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
+    if smooth:
         sharp = at.sharpened(average, at.surface.points)
-        if pair.tied or sharp.min() >= 0.0:
-            return sharp
-    return average if pair.planes is None else evened(pair.contactor, at, average, pair.planes)
+        plain, smooth = (sharp, True) if pair.tied or sharp.min() >= 0.0 else (average, False)
+    if not smooth and pair.planes is not None:
+        plain = evened(pair.contactor, at, average, pair.planes)
+    places = _places(pair, at.surface, smooth)
+    return recovered(at, average, plain, places, pair.tied)
+
+
+def _places(pair: Pair, split: Surface, smooth: bool) -> Places:
+    """split: the contactor, split at its creases; smooth: closed all over."""
+    _, normals = side_normals(pair.contactor)
+    owner, n = split_at_creases(pair.contactor)[1], len(split.points)
+    border, ends = np.zeros((2, n), dtype=bool)
+    border[rim(split).ends] = True
+    across = np.zeros((n, 2, split.dim))
+    if pair.planes is not None:
+        across = pair.planes.across[owner]
+    if split.axisymmetric:
+        axis = border & (split.points[:, 0] <= ON_AXIS * split.points[split.node_ids, 0].max())
+        across[axis, 0] = (1.0, 0.0)
+    border &= ~across.any(axis=(1, 2))
+    if not smooth:
+        outer = slice(None) if pair.interior is None else ~pair.interior
+        nodes = split.nodes[outer]
+        ends[nodes[nodes >= 0]] = True
+    return Places(normals, across, border, ends & border)
 
 
 def _compression(contactor: Surface, traction: NDArray[np.float64]) -> NDArray[np.float64]:

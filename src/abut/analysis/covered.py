@@ -41,7 +41,7 @@ def covered(
             under = ~bare(pair)
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
             seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
-            planes = None if pair.contactor.dim == 2 else _planes_now(problem, kind, pair)
+            planes = _planes_now(problem, kind, pair)
             pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen), planes=planes)
             pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
         pairs.append(pair)
@@ -63,7 +63,7 @@ def covered(
     return smaller, kept, keep
 
 
-def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes | None:
+def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
     border = rim(pair.contactor)
     return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)

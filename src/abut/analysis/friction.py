@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
-from abut.contact.geometry import by_kind, function_count
-from abut.contact.nodal_recovery import Averages, at_facet_nodes, facet_node_values
+from abut.contact.geometry import by_kind, function_count, nodal_normals
+from abut.contact.nodal_recovery import facet_node_values
+from abut.contact.point_values import Recovery
 from abut.contact.smooth_friction import slip_of
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, FrictionResult
@@ -31,7 +32,7 @@ def traction_values(pair: Pair, multipliers: Vector) -> Vector:
 
 def friction_result(
     pair: Pair,
-    at: Averages,
+    recovery: Recovery,
     multipliers: Vector,
     status: NDArray[np.int8],
     slips: Vector,
@@ -39,22 +40,23 @@ def friction_result(
     earlier: FrictionResult | None = None,
     reference: float = 0.0,
 ) -> FrictionResult | None:
-    """multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit: at the end of the step; earlier:
-    of the step before, None in the first; reference: the largest pressure of the steps before; None without friction."""
+    """recovery: of the pair's pressure. multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit:
+    at the end of the step; earlier: of the step before, None in the first; reference: the largest pressure of the steps
+    before; None without friction."""
     if limit is None:
         return None
     weight, states = pair.space.weight, status[pair.normal]
     area = weight if pair.slip is None or pair.slip.area is None else pair.slip.area
     traction, slip = pair.tangential_traction(multipliers), pair.tangential_traction(slips[:, 0])
     values = traction_values(pair, multipliers)
-    shown = [at_facet_nodes(at.surface, component) for component in at.of(values).T]
     size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], states)
+    most = _limit_at_nodes(pair, recovery, bound)
     taken = np.where(states != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
     work, each = float(area @ taken), _at_nodes(pair, taken[:, None])[..., 0]
     return FrictionResult(
         coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
-        traction=np.stack(shown, axis=-1),
-        traction_limit=_limit_at_nodes(pair, at, bound),
+        traction=_within(_along(pair, recovery, values), most),
+        traction_limit=most,
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
         status=_status_at_nodes(pair, states),
@@ -78,11 +80,29 @@ def _bound(limit: FrictionBound, pressure: Vector, status: NDArray[np.int8]) -> 
     return limit.at(np.maximum(pressure, 0.0))[0]
 
 
-def _limit_at_nodes(pair: Pair, at: Averages, bound: Vector) -> Vector:
-    """The bound (n_functions,) at the facets' nodes, averaged as the traction is, (n_facets, 9)."""
+def _limit_at_nodes(pair: Pair, recovery: Recovery, bound: Vector) -> Vector:
+    """The bound (n_functions,) at the facets' nodes, recovered as the traction is, (n_facets, 9)."""
     rough = bool(np.isinf(bound).any())
-    shown = at_facet_nodes(at.surface, at.of(pair.space.transfer @ np.where(np.isfinite(bound), bound, 1.0)))
-    return np.where(shown > 0.0, np.inf, shown) if rough else shown
+    shown = recovery.field(pair.space.transfer @ np.where(np.isfinite(bound), bound, 1.0))
+    return np.where(shown > 0.0, np.inf, shown) if rough else np.maximum(shown, 0.0)
+
+
+def _along(pair: Pair, recovery: Recovery, values: Vector) -> Vector:
+    """Tractions (9 n_facets, dim) at the facets' nodes, (n_facets, 9, dim), along the surface there: components that are
+    recovered one by one leave it by a little where it is curved."""
+    traction = np.stack([recovery.field(component) for component in values.T], axis=-1)
+    if recovery.fits is None:
+        return traction
+    normal = nodal_normals(pair.contactor)
+    return np.asarray(traction - np.einsum("fkd,fkd->fk", traction, normal)[..., None] * normal)
+
+
+def _within(traction: Vector, most: Vector) -> Vector:
+    """Tractions (n_facets, 9, dim) no larger than a bound (n_facets, 9): where stick and slip meet, values that are
+    recovered one by one may be by a little."""
+    size = np.linalg.norm(traction, axis=-1)
+    over = size > most
+    return np.asarray(traction * np.where(over, most / np.where(over, size, 1.0), 1.0)[..., None])
 
 
 def _largest_share(size: Vector, bound: Vector) -> float:

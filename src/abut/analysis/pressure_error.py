@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, WHOLE, Graph
 from abut.contact.geometry import side_normals
+from abut.contact.star_fits import of_second_order
 from abut.problem.contact_pairs import Pair
 
-SHARE = 0.6  # theory (P17)
+SHARE, OF_SECOND_ORDER = 0.6, 0.8  # theory (P17)
 ON_AXIS = 1e-9  # radius over the contactor's largest
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 TRIFLE = 1e-6  # stress over pressure from which down a body does not deform
@@ -17,23 +18,31 @@ TRIFLE = 1e-6  # stress over pressure from which down a body does not deform
 Array = NDArray[np.float64]
 
 
-def pressure_error(pair: Pair, pressure: Array, share: Array, largest: float, stress: Array | None) -> float:
+def pressure_error(
+    pair: Pair, pressure: Array, average: Array, share: Array, largest: float, stress: Array | None
+) -> float:
     """Estimate of the largest error of the pressure at nodes inside contact over ``largest``, NaN where there are none.
 
-    pressure, share: (n_points,) at the corners, of the contactor split at its creases, the covered share of their supports;
-    stress: (n_points,) as from ``normal_stress``; theory (P17)."""
+    pressure, average, share: (n_points,) at the corners, of the contactor split at its creases: as reported, what that was
+    recovered from, and the covered share of their supports; stress: (n_points,) as from ``normal_stress``; theory (P17)."""
     surface, normals = side_normals(pair.contactor)
     graph = Graph.of_nodes(surface)
-    closed = (graph.degree > 0) & (pressure > CLOSED * largest)
-    inside = closed & graph.all_of(closed) & ~((share > 0.0) & (np.abs(share - 1.0) > WHOLE))
+    closed = (graph.degree > 0) & (average > CLOSED * largest)
+    partly = (share > 0.0) & (np.abs(share - 1.0) > WHOLE)
+    inside = closed & graph.all_of(closed) & ~partly
     axis, mirrored = _mirrored(pair, graph)
-    bent = _between(graph, surface.points, normals, pressure) - pressure
-    parts = [bent[inside & (~graph.rim | axis)]]
     at = inside & (~graph.rim | axis | mirrored)
+    known = np.zeros(len(pressure), dtype=bool)
     if stress is not None and np.nanmax(np.abs(stress[at]), initial=0.0) > TRIFLE * largest:
-        parts.append((stress - pressure)[at & ~np.isnan(stress)])
+        known = at & ~np.isnan(stress)
+    beside_an_end = graph.any_of(partly | (graph.rim & ~axis & ~mirrored))  # where the pressure may have no bound
+    second = known & of_second_order(surface) & ~beside_an_end
+    bent = _between(graph, surface.points, normals, pressure) - pressure
+    parts = [SHARE * bent[inside & (~graph.rim | axis) & ~second], OF_SECOND_ORDER * (pressure - average)[second]]
+    if stress is not None:
+        parts += [OF_SECOND_ORDER * (stress - pressure)[second], SHARE * (stress - pressure)[known & ~second]]
     off = np.abs(np.concatenate(parts))
-    return SHARE * float(off.max()) / largest if len(off) else float("nan")
+    return float(off.max()) / largest if len(off) else float("nan")
 
 
 def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

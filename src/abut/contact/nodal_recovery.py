@@ -175,23 +175,15 @@ def at_points(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float
     return result
 
 
-def corner_values(surface: Surface, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at the facets' nodes (n_facets, 9) as coefficients of the corners' functions, (9 n_facets,)."""
-    result = np.zeros(values.shape)
-    for kind, facets in by_kind(surface):
-        n = CELLS[kind].corners
-        result[facets, :n] = values[facets, :n]
-    return result.ravel()
-
-
 def carry_to_target(
     contactor: Surface, target: Surface, pairs: Sparse, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Pressure at the target's nodes, (n_target_facets, 9): read off the contactor at the foot of each node; zero where
     no contactor facet lies opposite, NaN where padded.
 
-    values: (9 n_contactor_facets,) coefficients of the corners' functions; pairs: (9 n_contactor_facets, n_points or
-    dim n_points) sparse ``target_part`` of the coupling: it knows which contactor facets see which target nodes.
+    values: (n_contactor_facets, 9) at the facets' nodes, between them by the facets' own functions, but not below the
+    least of the facet; pairs: (9 n_contactor_facets, n_points or dim n_points) sparse ``target_part`` of the coupling: it
+    knows which contactor facets see which target nodes.
     """
     width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
     entries = pairs.tocoo()
@@ -199,14 +191,13 @@ def carry_to_target(
     seen = np.stack(np.divmod(facet_and_point, len(target.points)), axis=1)
     best = np.full(len(target.points), np.inf)
     pressure = np.zeros(len(target.points))
-    table = values.reshape(-1, MAX_FACET_NODES)
     for code in np.unique(contactor.kinds):
         kind = BY_CODE[code].name
         rows = seen[contactor.kinds[seen[:, 0]] == code]
         xi, outside = _foot(contactor, kind, rows[:, 0], target.points[rows[:, 1]])
-        carrier = CELLS[pressure_kind(kind, 1)]
-        shape, _ = shape_functions(carrier.code, np.ascontiguousarray(xi))
-        value = np.einsum("pn,pn->p", shape, table[rows[:, 0], : carrier.nodes])
+        shape, _ = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        of_facet = values[rows[:, 0], : CELLS[kind].nodes]
+        value = np.maximum(np.einsum("pn,pn->p", shape, of_facet), of_facet.min(axis=1, initial=np.inf))
         order = np.argsort(-outside)  # the nearest to a facet's inside is written last
         inside = order[outside[order] < 0.05]
         better = outside[inside] < best[rows[inside, 1]]

@@ -22,18 +22,28 @@ APART = 0.13  # smaller over larger eigenvalue of two planes' normals at a point
 @dataclass(frozen=True)
 class Planes:
     """Where a contactor ends at planes of symmetry. count: (n_points,) how many each point lies on, 0, 1 or 2; along:
-    (n_points, dim) unit tangent of the rim at points of one plane, zero elsewhere and where the rim bends."""
+    (n_points, dim) unit tangent of the rim at points of one plane, zero elsewhere and where the rim bends; across:
+    (n_points, 2, dim) unit normals of the planes, zero where there are fewer."""
 
     count: NDArray[np.int64]
     along: NDArray[np.float64]
+    across: NDArray[np.float64]
 
 
 def planes(contactor: Surface, rim: Rim, mirrored: NDArray[np.bool_]) -> Planes:
-    """The planes from the edges of a contactor's rim that lie on one. rim: of ``contactor``, in 3D; mirrored: (m,) bool."""
+    """The planes from the edges of a contactor's rim that lie on one, in 2D from its ends. rim: of ``contactor``; mirrored:
+    (m,) bool."""
+    out = rim.out[mirrored] / np.linalg.norm(rim.out[mirrored], axis=1, keepdims=True)
+    n = len(contactor.points)
+    count, along, across = np.zeros(n, dtype=np.int64), np.zeros_like(contactor.points), np.zeros((n, 2, contactor.dim))
+    if contactor.dim == 2:
+        ends = rim.ends[mirrored, 0]
+        count[ends], across[ends, 0] = 1, out
+        return Planes(count, along, across)
     ids, ends = np.unique(rim.ends[mirrored], return_inverse=True)
     n, ends = len(ids), ends.reshape(-1, 2)
     step = contactor.points[ids[ends[:, 1]]] - contactor.points[ids[ends[:, 0]]]
-    edge, out = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (step, rim.out[mirrored]))
+    edge = step / np.linalg.norm(step, axis=1, keepdims=True)
     tangent, normals, edges = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.bincount(ends.ravel(), minlength=n)
     for end in ends.T:
         np.add.at(tangent, end, edge)
@@ -41,10 +51,14 @@ def planes(contactor: Surface, rim: Rim, mirrored: NDArray[np.bool_]) -> Planes:
     size, length = np.linalg.eigvalsh(normals), np.linalg.norm(tangent, axis=1)
     several = size[:, 1] > APART * size[:, 2]
     straight = ~several & (length >= STRAIGHT * edges)
-    count, along = np.zeros(len(contactor.points), dtype=np.int64), np.zeros_like(contactor.points)
     count[ids] = 1 + several
     along[ids[straight]] = tangent[straight] / length[straight, None]
-    return Planes(count, along)
+    for end in ends.T:  # the last edge at a point names a plane, the one that differs most from it the other
+        across[ids[end], 0] = np.where((straight | several)[end, None], out, 0.0)
+    for end in ends.T:
+        other = several[end] & (np.abs((across[ids[end], 0] * out).sum(axis=1)) < STRAIGHT)
+        across[ids[end[other]], 1] = out[other]
+    return Planes(count, along, across)
 
 
 def evened(contactor: Surface, at: Averages, average: NDArray[np.float64], of: Planes) -> NDArray[np.float64]:

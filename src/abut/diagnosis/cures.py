@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from abut.cells import CELLS
 from abut.contact.contactor_choice import FINER, Choice
 from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
@@ -136,9 +137,11 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     size = float(np.median(facet_sizes(result.contactor)[loaded]))
     ratio = size / float(np.median(facet_sizes(result.target)))
     finer = f", or {sides}" if sides and ratio > FINER else ""
+    first = result.contactor.dim == 3 and bool((result.contactor.kinds == CELLS["tri3"].code).any())
+    higher = ", and cells of second order take off more than that" if first else ""
     return (
-        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{finer}; but "
-        "round the edges of sharp bodies, where pressure has no limit"
+        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{higher}{finer}; "
+        "but round the edges of sharp bodies, where pressure has no limit"
     )
 
 

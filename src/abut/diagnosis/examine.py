@@ -15,6 +15,7 @@ from abut.diagnosis.interface import MIXED, interface, not_facing
 from abut.diagnosis.probes import probes
 from abut.diagnosis.quality import quality
 from abut.diagnosis.rigid_body_check import motions
+from abut.diagnosis.tetrahedra import tetrahedra
 from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
@@ -86,5 +87,5 @@ def _pairs(model: Model, supported: Constraints) -> tuple[list[Pair], list[Findi
         if contact.contactor != contact.target:  # a body that may come to touch itself
             findings += _facing(model, one) or [*interface(model, one, outside), *sides(model, contact)]
         if one.coupling.covered.any():
-            findings += constraints(model, one, supported)
+            findings += [*constraints(model, one, supported), *tetrahedra(model, one)]
     return built, findings

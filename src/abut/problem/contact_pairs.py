@@ -90,7 +90,7 @@ class Pair:
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
     interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
-    planes: Planes | None = None  # of symmetry, at which the contactor ends; in 3D
+    planes: Planes | None = None  # of symmetry, at which the contactor ends; None of ties
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
     slip: Slip | None = None  # with friction
     values: FrictionValues | None = None  # the same: its coefficient
@@ -290,11 +290,9 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
 
 
-def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes | None:
+def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes:
     """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
-    target ends there too. None in 2D."""
-    if contactor.dim == 2:
-        return None
+    target ends there too."""
     mirrored = ~beyond
     out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
     for end in border.ends.T:

@@ -158,7 +158,8 @@ class ContactResult:
 
     force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
     pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length. The
-    pressure is the multiplier's average over each corner's function, linear between corners: theory (P10).
+    pressure is recovered from the multiplier's averages over the corners' functions, theory (P10): on facets of first order
+    these, on those of second order values at all nodes, theory (P18).
     multiplier: (n_contactor_facets, 9) the multiplier itself, which may jump between facets and oscillate; share:
     (n_contactor_facets, 9) covered share of each point's support. max_pressure: the largest where that is at least a half.
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
