@@ -28,7 +28,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
     *("force balance", "moment balance", "penetration", "overlap", "faceting"),
-    *("tension", "complementarity", "oscillation", "resolution", "pressure error", "contactor's edges"),
+    *("tension", "complementarity", "oscillation", "resolution", "largest pressure", "pressure error", "contactor's edges"),
     *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
 
@@ -81,7 +81,7 @@ def test_ties_are_checked_for_their_integration_only() -> None:
         "response",
         "strain",
         "force balance",
-        *CONTACT[11:],
+        *CONTACT[12:],
     )
 
 
@@ -356,8 +356,8 @@ def test_written_and_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert [c["name"] for c in written["checks"]] == ["model balance", "response", "strain", *CONTACT]
     start = lines.index("certificate   value      limit")
     told = [text for text in lines[start + 1 : -1] if not text.strip().startswith("cure: ")]
-    assert len(told) == len(written["checks"]) == len(lines) - start - 3  # one cure; then only where the results are
-    assert [c["name"] for c in written["checks"] if c["verdict"] != "pass"] == ["pressure error"]
+    assert len(told) == len(written["checks"]) == len(lines) - start - 4  # two cures; then only where the results are
+    assert [c["name"] for c in written["checks"] if c["verdict"] != "pass"] == ["largest pressure", "pressure error"]
     report = (tmp_path / "out" / "report.html").read_text()
     assert "checks pass, with a warning of blocks: pressure error." in report
     assert "<span class=warn>warn</span>" in report

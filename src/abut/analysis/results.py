@@ -18,12 +18,14 @@ from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.surface_stress import normal_stress
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
+from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
@@ -31,6 +33,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
@@ -235,7 +238,7 @@ def _contacts(
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
             cells = normal_stress(model.mesh, pair.contactor, stress)
-        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells))
+        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells, _gives(model, constraints, pair)))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(
@@ -249,6 +252,13 @@ def _contacts(
         )
         for state, beside_it, one_before in zip(found, around, earlier)
     )
+
+
+def _gives(model: Model, constraints: Constraints, pair: Pair) -> float:
+    """The target's share of what both sides of a pair give way under pressure, 0 where all of it is held."""
+    rows = (model.dim * pair.target.node_ids[:, None] + np.arange(model.dim)).ravel()
+    held = not (constraints.free.indptr[rows + 1] > constraints.free.indptr[rows]).any()
+    return 0.0 if held else scales(model, pair.contactor, pair.target).share
 
 
 def _now(end: _End, pair: Pair) -> Surface:

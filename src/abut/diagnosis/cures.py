@@ -124,6 +124,14 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _largest(contact: Contact, result: ContactResult, sides: str) -> str:
+    swap = f", or {sides}" if sides else ""
+    return (
+        "the largest pressure is that of a single point: refine both surfaces there; round the edge of a body that "
+        f"presses{swap}, or read the pressure beside it"
+    )
+
+
 def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
     way = f"{sides}, or round" if sides else "round"
     return (
@@ -176,6 +184,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "oscillation": _oscillation,
     "resolution": _resolution,
     "pressure error": _pressure_error,
+    "largest pressure": _largest,
     "contactor's edges": _edges,
     "facet moments": _moments,
     "loaded area without target": _bare,

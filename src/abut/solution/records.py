@@ -123,6 +123,13 @@ class Step:
         return None if self.spring is None else self.spring / self.reference_force
 
     @property
+    def regularisation_limit(self) -> float:
+        """Of ``regularisation``: the resultant of what the solver leaves of the balance of forces at all points together, at
+        least and at most fixed shares of the reference force."""
+        left = self.iterations[-1].residual * float(np.sqrt(self.displacement.size)) if self.iterations else 0.0
+        return min(max(REGULARISATION, left), ROUNDED)
+
+    @property
     def reference_force(self) -> float:
         """What rounding is judged against, theory (V14): the largest of all resultants, of the forces between surfaces by
         area, and of the sizes of all nodal forces of stresses together; loads and pressures may cancel, these do not."""
@@ -212,7 +219,7 @@ class Solution:
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             model = [balance, response] if self.model.finite else [balance, response, strain]
             if step.regularisation is not None:
-                model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
+                model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
                 model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
