@@ -32,7 +32,8 @@ OSCILLATION = 0.08
 RESOLUTION = 0.4  # three facets to each side of the middle
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
 ERROR, NOTICED = 0.3, 0.05  # of the pressure: wrong, and worth knowing
-STANDS, STANDS_NOTICED = 0.5, 0.25  # of the largest pressure, theory (P18)
+STANDS = 0.5  # of the largest pressure: a peak beside which others are not judged, theory (P18)
+STANDS_NOTICED, AT_EDGE = 0.25, 0.1  # of the same, worth knowing inside, and where a body ends
 EDGES = 0.2  # sine of 12 degrees
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
@@ -198,7 +199,7 @@ def _of_largest(case: _Case, seen: Peaks, counts: bool) -> Check:
     where = "at an edge of a body, where that of a sharp one has no limit" if seen.at_edge else "inside"
     return Check(case.pair.contact.name, "largest pressure", seen.out if counts else 0.0, 1.0,
         f"share by which the largest pressure ({where}) stands out of what lies within a facet of the coarser side",
-        pressure=case.largest, highest=True, notice=STANDS_NOTICED)  # fmt: skip
+        pressure=case.largest, highest=True, notice=AT_EDGE if seen.at_edge else STANDS_NOTICED)  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:
