@@ -173,6 +173,13 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _carries(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets of "
+        "curved surfaces stand off each other by their bulge, which finer ones or cells of second order make smaller"
+    )
+
+
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "force balance": _balance,
     "moment balance": _balance,
@@ -196,4 +203,5 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "sticking": _friction,
     "friction work": _friction,
     "friction left out": _left_out,
+    "carries": _carries,
 }

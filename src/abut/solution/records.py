@@ -14,6 +14,7 @@ from abut.model.conditions import drives
 from abut.model.offset import smallest_offset
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
+from abut.solution.idle import idle_contacts
 from abut.solution.progress import Iteration
 from abut.solution.state import State
 
@@ -228,7 +229,8 @@ class Solution:
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
-        return (*checks, *(check for check in (self._load_steps, self._stabilisation) if check is not None))
+        whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
+        return (*checks, *idle_contacts(self.model, self.steps), *whole)
 
     @property
     def _load_steps(self) -> Check | None:
