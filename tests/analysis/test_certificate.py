@@ -27,7 +27,7 @@ from models.patch import model, two_blocks
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
-    *("force balance", "moment balance", "penetration", "overlap", "faceting"),
+    *("force balance", "moment balance", "penetration", "overlap", "faceting", "sliding"),
     *("tension", "complementarity", "oscillation", "resolution", "largest pressure", "pressure error", "contactor's edges"),
     *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
@@ -70,7 +70,7 @@ SOUND: dict[str, Callable[[], abut.Model]] = {
 def test_a_sound_run_passes(name: str) -> None:
     solution = abut.solve(SOUND[name]())
     assert failed(solution) == set()
-    assert tuple(checks(solution)) == ("model balance", "response", "strain", *CONTACT)
+    assert tuple(checks(solution)) == ("model balance", "response", "strain", "rotation", *CONTACT)
     assert all(check.meaning for check in solution.certificate)
     assert all(np.isfinite(check.value) and check.value >= 0.0 for check in solution.certificate)
 
@@ -80,8 +80,9 @@ def test_ties_are_checked_for_their_integration_only() -> None:
         "model balance",
         "response",
         "strain",
+        "rotation",
         "force balance",
-        *CONTACT[12:],
+        *CONTACT[13:],
     )
 
 
@@ -353,7 +354,7 @@ def test_written_and_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     lines = capsys.readouterr().out.splitlines()
     written = json.loads((tmp_path / "out" / "summary.json").read_text())["certificate"]
     assert written["passed"] is True
-    assert [c["name"] for c in written["checks"]] == ["model balance", "response", "strain", *CONTACT]
+    assert [c["name"] for c in written["checks"]] == ["model balance", "response", "strain", "rotation", *CONTACT]
     start = lines.index("certificate   value      limit")
     told = [text for text in lines[start + 1 : -1] if not text.strip().startswith("cure: ")]
     assert len(told) == len(written["checks"]) == len(lines) - start - 3  # one cure; then only where the results are

@@ -34,6 +34,7 @@ MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges deci
 ERROR, NOTICED = 0.3, 0.05  # of the pressure: wrong, and worth knowing
 STANDS = 0.5  # of the largest pressure: a peak beside which others are not judged, theory (P18)
 STANDS_NOTICED, AT_EDGE = 0.25, 0.1  # of the same, worth knowing inside, and where a body ends
+SLID, SLID_NOTICED = 1.0, 0.5  # facets: from one on pressure acts on the wrong one
 EDGES = 0.2  # sine of 12 degrees
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
@@ -50,7 +51,8 @@ class Surroundings:
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
     support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
     opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; gives: the
-    target's share of what both sides give way, 0 where it is held."""
+    target's share of what both sides give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in
+    facets, None where contact follows it."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -60,6 +62,7 @@ class Surroundings:
     support: NDArray[np.float64] | None = None
     stress: NDArray[np.float64] | None = None
     gives: float = 1.0
+    slid: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -82,7 +85,7 @@ def certificate(
     case = _Case.of(pair, values, nodal, share, around)
     checks = [*_balanced(case, balance(pair, values) if balanced is None else balanced)]
     if not pair.tied:
-        checks += [*_gaps(case, penetration), *_pressure(case, residual)]
+        checks += [*_gaps(case, penetration), *_slid(case), *_pressure(case, residual)]
     if pair.contact.method == "segment-to-segment":
         checks.append(
             case.check("facet moments", _moment_error(case), MOMENTS,
@@ -155,6 +158,15 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
     shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
     yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
         "pressure caused by faceting of curved surfaces, over the largest pressure", pressure=case.matters)  # fmt: skip
+
+
+def _slid(case: _Case) -> Iterator[Check]:
+    """Whether pressure still acts on the places that face each other: with small kinematics those of the outset."""
+    if case.around.slid is not None:
+        far = case.around.slid[case.loaded].max(initial=0.0)
+        yield Check(case.pair.contact.name, "sliding", float(far), SLID,
+            "motion along the surfaces where they press, over the facet size: small kinematics does not follow it",
+            notice=SLID_NOTICED)  # fmt: skip
 
 
 def _pressure(case: _Case, residual: float) -> Iterator[Check]:

@@ -14,6 +14,7 @@ from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
+from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.surface_stress import normal_stress
 from abut.cells import MAX_FACET_NODES
@@ -117,6 +118,7 @@ def step_result(
         spring=springs.force(state.unknowns) if len(springs) else None,
         strained=strained,
         landed=_landed(state),
+        turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
         energy=balance if strained else None,
     )
     return step, acting
@@ -238,7 +240,9 @@ def _contacts(
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
             cells = normal_stress(model.mesh, pair.contactor, stress)
-        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells, _gives(model, constraints, pair)))
+        gives = _gives(model, constraints, pair)
+        along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
+        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives, along))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(

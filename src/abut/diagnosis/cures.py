@@ -51,6 +51,9 @@ MODEL = {
     "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
+    "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`, which finds them; if they are meant "
+    "to be one, tie them or let them share nodes",
+    "rotation": 'kinematics = "finite": lengths change by half the square of a turn that is taken for small',
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
 }
@@ -173,6 +176,10 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
+    return 'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at the outset'
+
+
 def _carries(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
         "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets of "
@@ -204,4 +211,5 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "friction work": _friction,
     "friction left out": _left_out,
     "carries": _carries,
+    "sliding": _sliding,
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.offset import smallest_offset
+from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.idle import idle_contacts
@@ -21,6 +23,7 @@ from abut.solution.state import State
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
+TURN, TURN_NOTICED = 0.2, 0.1  # radians: lengths are wrong by half its square, 2 % and 0.5 %
 RESPONSE = 0.5  # nothing between 0 and 1
 STABILISED = 0.05  # of the work done that drags may take
 LANDED = 0.05  # what results depend on load steps by, about
@@ -101,6 +104,7 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
+    turn: float = 0.0  # largest of a body as a whole, radians, with small kinematics
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
 
@@ -218,7 +222,9 @@ class Solution:
                 "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
-            model = [balance, response] if self.model.finite else [balance, response, strain]
+            turn = Check("", "rotation", step.turn, TURN, "largest turn of a body, radians: small kinematics takes it for small",
+                         notice=TURN_NOTICED)  # fmt: skip
+            model = [balance, response] if self.model.finite else [balance, response, strain, turn]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
@@ -230,7 +236,12 @@ class Solution:
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
         whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
-        return (*checks, *idle_contacts(self.model, self.steps), *whole)
+        return (*checks, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+
+    @cached_property
+    def _apart(self) -> tuple[Check, ...]:
+        """Of bodies that lie in each other, at the end of the run."""
+        return tuple(bodies_apart(self.model, self.displacement)) if self.complete else ()
 
     @property
     def _load_steps(self) -> Check | None:
