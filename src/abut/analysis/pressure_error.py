@@ -14,7 +14,7 @@ from abut.problem.contact_pairs import Pair
 AVERAGED, STRAIGHT = 1.0 / 6.0, 1.0 / 4.0  # of half the second difference: averages, and lines between them, theory (P17)
 CHANGE = 0.4  # of the change of that from node to node, where nothing is reported between nodes, theory (P17)
 ALTERNATING = 0.75  # of what changes its sign from node to node, theory (P17)
-STRESS = 0.6  # of the difference from the stress, theory (P17)
+STRESS, STRESS_FIRST = 0.6, 0.4  # of the difference from the stress, of cells of second and first order, theory (P17)
 EVEN_MIDDLE = 1e-6  # of the largest pressure: how far values at mid-nodes of lines are off the mean of their ends
 ON_AXIS = 1e-9  # radius over the contactor's largest
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
@@ -49,7 +49,8 @@ def pressure_error(
         uneven = np.maximum(uneven, CHANGE * _change(graph, bent, within))
     parts = [((AVERAGED + (STRAIGHT if straight else 0.0)) * np.abs(bent) + uneven)[within]]
     if stress is not None and np.nanmax(np.abs(stress[within]), initial=0.0) > TRIFLE * largest:
-        parts.append(STRESS * np.abs(stress - pressure)[within & ~np.isnan(stress)])
+        first = all(CELLS[kind].degree == 1 for kind, _ in by_kind(surface))
+        parts.append((STRESS_FIRST if first else STRESS) * np.abs(stress - pressure)[within & ~np.isnan(stress)])
     off = np.concatenate(parts)
     return float(off.max()) / largest if len(off) else float("nan")
 

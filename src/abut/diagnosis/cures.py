@@ -11,6 +11,7 @@ from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
 from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
+from abut.model.locking import locking
 from abut.solution import Check, ContactResult, Solution
 
 SECOND = " (second pass)"
@@ -24,6 +25,8 @@ def cure(check: Check, solution: Solution) -> str:
     """What to change so that a failed check passes, or one that warns does no more, a sentence; empty for the others."""
     if check.passed and not check.warns:
         return ""
+    if check.name == "locking":
+        return "; ".join(one.cure for one in locking(solution.model))
     if not check.contact:
         return MODEL[check.name]
     if check.name in UNSETTLED and not solution.converged:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import drives
+from abut.model.locking import LOCKED, STIFF, locking
 from abut.model.offset import smallest_offset
 from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
@@ -236,7 +237,20 @@ class Solution:
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
         whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
-        return (*checks, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+        return (*checks, *self._locking, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+
+    @property
+    def _locking(self) -> tuple[Check, ...]:
+        """Whether cells are too stiff for their materials; none where nothing comes near it."""
+        found = locking(self.model)
+        if not found:
+            return ()
+        bodies = ", ".join(f"'{one.body}' of {one.kind}, {one.poisson:g}" for one in found)
+        return (
+            Check("", "locking", found[0].stiffness, LOCKED,
+                  f"bulk over shear modulus of fully integrated cells (a fiftieth of it of second order): {bodies}",
+                  notice=STIFF),
+        )  # fmt: skip
 
     @cached_property
     def _apart(self) -> tuple[Check, ...]:
