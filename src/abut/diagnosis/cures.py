@@ -183,6 +183,10 @@ def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
     return 'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at the outset'
 
 
+def _softening(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f'law = "complementarity", which has no such gap, or an epsilon far below {contact.epsilon:g} (by default 1e-12)'
+
+
 def _carries(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
         "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets of "
@@ -214,5 +218,6 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "friction work": _friction,
     "friction left out": _left_out,
     "carries": _carries,
+    "softening": _softening,
     "sliding": _sliding,
 }
