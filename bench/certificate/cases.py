@@ -79,7 +79,9 @@ def line(cell: str, cells: tuple[int, int], ratio: float, swap: bool) -> Case:
         mesh = join(
             {
                 "cylinder": half_disc(200.0, (0.0, 200.0), fine=fine, cells=n, cell=cell),
-                "block": rectangle((-200.0, 200.0), (-400.0, 0.0), (2 * m, m), cell, {"x": [-fine, fine], "y": [-fine, 0]}),
+                "block": rectangle(
+                    (-200.0, 200.0), (-400.0, 0.0), (2 * m, m), cell, {"x": [-fine, fine], "y": [-fine, 0]}
+                ),
             }
         )
         return abut.Model(
@@ -178,7 +180,9 @@ def fit(
         deep = max(2, round((10.0 - inner) * m / 16.0)), max(3, round(10.0 * n / 20.0))
         hub = ring((10, 20), cells=(deep[1], n), cell=cell)
         mesh = join({"hub": hub, "shaft": ring((inner, 10), cells=(deep[0], m), cell=cell)})
-        held = [abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))]
+        held = [
+            abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))
+        ]
         contact = sides("hub.inner", "shaft.outer", swap, offset=-interference)
         kind = "finite" if finite else "small"
         return abut.Model(mesh, solids(mesh, young), held, contacts=contact, plane="strain", kinematics=kind)
@@ -195,7 +199,9 @@ def hydrostatic(cell: str, cells: tuple[int, int], swap: bool) -> Case:
 
     def model() -> abut.Model:
         mesh = join({"hub": ring((2, 3), cells=(4, n), cell=cell), "shaft": ring((1, 2), cells=(4, m), cell=cell)})
-        held = [abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))]
+        held = [
+            abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))
+        ]
         loads = [abut.Pressure("hub.outer", 1.0), abut.Pressure("shaft.inner", 1.0)]
         contact = sides("hub.inner", "shaft.outer", swap)
         return abut.Model(mesh, solids(mesh, (1000.0, 1000.0)), held, loads, contact, plane="strain")
@@ -250,7 +256,9 @@ def cases() -> Iterator[Case]:
     for cell, cells, ratio, swap in product(FLAT, SIZES, RATIOS, (False, True)):
         if cells[0] * cells[1] < 200 or ratio == 1.0:
             yield line(cell, cells, ratio, swap)
-    for cell, cells, ratio, swap in product(("tri3", "quad4", "tri6", "quad8"), SIZES, (0.01, 1.0, 100.0), (False, True)):
+    for cell, cells, ratio, swap in product(
+        ("tri3", "quad4", "tri6", "quad8"), SIZES, (0.01, 1.0, 100.0), (False, True)
+    ):
         yield balls(cell, cells, ratio, swap)
     for cell, cells, swap in product(FLAT, AROUND, (False, True)):
         for ratio, interference in ((1.0, 0.02), (1.0, 1e-3), (0.01, 0.02), (100.0, 0.02)):

@@ -2,8 +2,8 @@
 
 ``python bench/certificate/run.py`` takes some of the cases (a few minutes), ``--full`` all of them, ``--part TEXT`` those
 whose names contain the text, ``--out FILE`` writes the table as CSV. The summary asks of a certificate that runs with a
-true error above 20 % are not green, that those below 3 % neither fail (1 %) nor warn (5 %), and that the estimate "pressure error"
-is the true error in the median.
+true error above 20 % are not green, that those below 3 % neither fail (1 %) nor warn (5 %), and that the
+estimate "pressure error" is the true error in the median.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def outcome(case: Case) -> Outcome:
     return Outcome(
         case.name, case.order, true_error(case, solution), next(c.value for c in lines if c.name == "pressure error"),
         (*failed, *(c.name for c in lines if not c.passed)),
-        tuple(c.name for c in lines if c.warns or c.name == "pressure error" and c.unknown),
+        tuple(c.name for c in lines if c.warns or (c.name == "pressure error" and c.unknown)),
         time.perf_counter() - begin,
     )  # fmt: skip
 
@@ -67,7 +67,7 @@ def summary(found: Sequence[Outcome]) -> None:
     print(f"true error above {WRONG:.0%}: green {share(wrong, 'green')}, warned {share(wrong, 'warn')}")
     print(f"true error below {FINE:.0%}: failed {share(fine, 'FAIL')}, warned {share(fine, 'warn')}")
     for degree in (1, 2):
-        ratios = [o.estimate / o.error for o in found if o.order == degree and TELLING < o.error and o.estimate >= 0.0]
+        ratios = [o.estimate / o.error for o in found if o.order == degree and o.error > TELLING and o.estimate >= 0.0]
         if ratios:
             low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
             print(f"order {degree}: estimate over truth {middle:.2f} in the median of {len(ratios)}, "
@@ -94,7 +94,8 @@ def main() -> None:
             table = csv.writer(file)
             table.writerow(("name", "order", "error", "estimate", "verdict", "failed", "warned"))
             table.writerows(
-                (o.name, o.order, o.error, o.estimate, o.verdict, "; ".join(o.failed), "; ".join(o.warned)) for o in found
+                (o.name, o.order, o.error, o.estimate, o.verdict, "; ".join(o.failed), "; ".join(o.warned))
+                for o in found
             )
 
 

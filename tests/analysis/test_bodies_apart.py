@@ -24,7 +24,9 @@ def line_of(solution: abut.Solution) -> abut.solution.Check | None:
 def stack(cell: str, gap: float) -> abut.Mesh:
     """Two blocks of facets of size 1/3 and 1/2 above each other."""
     if cell.startswith(("tri", "quad")):
-        return join({"a": rectangle((0, 1), (0, 1), (3, 3), cell), "b": rectangle((0.2, 0.8), (1 + gap, 2), (2, 2), cell)})
+        return join(
+            {"a": rectangle((0, 1), (0, 1), (3, 3), cell), "b": rectangle((0.2, 0.8), (1 + gap, 2), (2, 2), cell)}
+        )
     return join(
         {
             "a": box((0, 1), (0, 1), (0, 1), (3, 3, 3), cell),
@@ -35,7 +37,8 @@ def stack(cell: str, gap: float) -> abut.Mesh:
 
 @pytest.mark.parametrize("cell", CELLS)
 def test_depth_and_names(cell: str) -> None:
-    """A block whose bottom lies 0.1 in another one: depth 0.1, over facets of 1/3; one that stands off, or flush, is none."""
+    """A block whose bottom lies 0.1 in another one: depth 0.1, over facets of 1/3; one that stands off, or flush, is
+    none."""
     mesh = stack(cell, -0.1)
     (one,) = passing(mesh, mesh.points, [])
     assert set(one.bodies) == {"a", "b"}
@@ -48,7 +51,8 @@ def test_depth_and_names(cell: str) -> None:
 
 
 def test_bodies_without_a_pair() -> None:
-    """The upper block passes the lower one's top by 0.3: said with names and depth, and what to do; not where they are a pair."""
+    """The upper block passes the lower one's top by 0.3: said with names and depth, and what to do; not where they are a
+    pair."""
     built = replace(moved(0.31), contacts=[])
     solution = abut.solve(built)
     check = line_of(solution)
@@ -78,15 +82,21 @@ def test_bodies_that_overlap_in_the_mesh() -> None:
 
 @pytest.mark.parametrize("model", [lambda: fit((8, 12), "quad4"), lambda: line("quad8", (8, 6)), lambda: octant("tet4", 4),
                                    lambda: tubes((12, 16))])  # fmt: skip
-def test_contacts_are_no_such_thing(model) -> None:  # noqa: ANN001
+def test_contacts_are_no_such_thing(model) -> None:
     assert line_of(abut.solve(model())) is None
 
 
 def test_it_is_symmetric_in_large_bodies() -> None:
     """A small body wholly inside another is found by its points; beside it nothing is."""
-    mesh = join({"big": box((0, 4), (0, 4), (0, 4), (4, 4, 4), "hex8"), "pin": box((1.2, 1.8), (1.2, 1.8), (3.5, 5), (1, 1, 2))})
+    mesh = join(
+        {"big": box((0, 4), (0, 4), (0, 4), (4, 4, 4), "hex8"), "pin": box((1.2, 1.8), (1.2, 1.8), (3.5, 5), (1, 1, 2))}
+    )
     (one,) = passing(mesh, mesh.points, [])
     assert one.bodies == ("pin", "big")
     assert one.depth == pytest.approx(0.5)
-    apart = mesh.points + np.where(np.isin(np.arange(len(mesh.points)), mesh.nodes_of("pin")), 1.0, 0.0)[:, None] * [0, 0, 2]
+    apart = mesh.points + np.where(np.isin(np.arange(len(mesh.points)), mesh.nodes_of("pin")), 1.0, 0.0)[:, None] * [
+        0,
+        0,
+        2,
+    ]
     assert passing(mesh, apart, []) == ()

@@ -28,7 +28,15 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SOLID = ((2, 3, 2), (3, 2, 2))
 CONTACT = (
     *("force balance", "moment balance", "penetration", "overlap", "faceting", "sliding"),
-    *("tension", "complementarity", "oscillation", "resolution", "largest pressure", "pressure error", "contactor's edges"),
+    *(
+        "tension",
+        "complementarity",
+        "oscillation",
+        "resolution",
+        "largest pressure",
+        "pressure error",
+        "contactor's edges",
+    ),
     *("facet moments", "loaded area without target", "removed multipliers", "covered twice"),
 )
 

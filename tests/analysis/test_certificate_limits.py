@@ -18,9 +18,12 @@ def checks(solution: abut.Solution) -> dict[str, Check]:
 
 @pytest.mark.parametrize("missing", [0.0, 5e-3, 9e-3])
 def test_a_target_that_ends_a_trace_short_is_no_integration_error(missing: float) -> None:
-    """Of the contactor's last facet a share below what counts as whole has no target opposite: chords at the ends of a quarter
+    """Of the contactor's last facet a share below what counts as whole has no target opposite: chords at the ends of a
+    quarter
     model leave as much. What is missing there is that, and no error of the integrals."""
-    mesh = join({"lower": rectangle((0, 1), (0, 1), (10, 4)), "upper": rectangle((0, 1 - 0.1 * missing), (1, 2), (7, 4))})
+    mesh = join(
+        {"lower": rectangle((0, 1), (0, 1), (10, 4)), "upper": rectangle((0, 1 - 0.1 * missing), (1, 2), (7, 4))}
+    )
     built = abut.Model(
         mesh,
         [abut.Solid(body, abut.LinearElastic(1.0, 0.0)) for body in mesh.bodies],

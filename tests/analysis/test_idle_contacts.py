@@ -32,7 +32,8 @@ def test_beside_others_that_carry_it_is_said() -> None:
 
 
 def test_a_fit_that_carries_nothing_fails() -> None:
-    """Sides that stay apart by a little less than their interference: something (bulges of facets, a wrong sign) undid it."""
+    """Sides that stay apart by a little less than their interference: something (bulges of facets, a wrong sign) undid
+    it."""
     held = moved(0.0, gap=0.03)
     contacts = [replace(held.contacts[0], offset=-0.02)]
     solution = abut.solve(replace(held, contacts=contacts))

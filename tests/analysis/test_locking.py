@@ -14,7 +14,9 @@ from abut.mesh.make import box, join, rectangle
 
 def pad(cell: str, poisson: float, integration: str = "full", cells: int = 6, plane: str = "strain") -> abut.Model:
     """A tool pressed on half of a pad of nearly incompressible material."""
-    mesh = join({"pad": rectangle((0, 2), (0, 1), (2 * cells, cells), cell), "tool": rectangle((0, 0.6), (1, 1.5), (3, 2))})
+    mesh = join(
+        {"pad": rectangle((0, 2), (0, 1), (2 * cells, cells), cell), "tool": rectangle((0, 0.6), (1, 1.5), (3, 2))}
+    )
     return abut.Model(
         mesh,
         [
@@ -81,6 +83,7 @@ def test_check_warns_before_the_run() -> None:
 
 def test_in_space() -> None:
     mesh = join({"pad": box(cells=(2, 2, 2), cell="tet4")})
-    model = abut.Model(mesh, [abut.Solid("pad", abut.LinearElastic(1.0, 0.499))], [abut.Support("pad.bottom", x=0, y=0, z=0)],
-                       [abut.Pressure("pad.top", 1e-3)])  # fmt: skip
+    solids = [abut.Solid("pad", abut.LinearElastic(1.0, 0.499))]
+    held = [abut.Support("pad.bottom", x=0, y=0, z=0)]
+    model = abut.Model(mesh, solids, held, [abut.Pressure("pad.top", 1e-3)])
     assert told(model)[0] == "FAIL"

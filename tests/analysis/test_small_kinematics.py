@@ -19,7 +19,8 @@ def of(solution: abut.Solution, name: str) -> abut.solution.Check:
 
 @pytest.mark.parametrize(("facets", "verdict"), [(0.0, "pass"), (0.7, "warn"), (3.0, "FAIL")])
 def test_sliding_by_facets(facets: float, verdict: str) -> None:
-    """A cylinder pressed on a block and moved along it, without friction, by some of the facets (8 / 8): where it presses the
+    """A cylinder pressed on a block and moved along it, without friction, by some of the facets (8 / 8): where it
+    presses the
     block is decided at the outset."""
     built = line("quad4", (8, 8))
     sideways = abut.Support("cylinder.axis", x=1.0 * facets)
@@ -31,7 +32,8 @@ def test_sliding_by_facets(facets: float, verdict: str) -> None:
 
 
 def block(x: float, turn: float = 0.0, held: bool = True) -> abut.Model:
-    """A block on a plate that is held all over or at its bottom, moved by x, then turned by an angle, small as it is taken."""
+    """A block on a plate that is held all over or at its bottom, moved by x, then turned by an angle, small as it is
+    taken."""
     mesh = join({"plate": rectangle((-4, 4), (-1, 0), (16, 2)), "block": rectangle((-1, 1), (0, 2), (4, 4))})
     sides = ["plate.bottom", "plate.top"] if held else ["plate.bottom"]
     return abut.Model(

@@ -15,7 +15,8 @@ def told(solution: abut.Solution) -> str:
 
 @pytest.mark.parametrize(("epsilon", "verdict"), [(1e-12, ""), (1e-3, ""), (1.0, "warn"), (10.0, "FAIL")])
 def test_the_verdict_follows_the_peak(epsilon: float, verdict: str) -> None:
-    """Of a Hertz contact: beside complementarity the peak is lower by less than 2 % where nothing is said, by 2 to 20 % where it
+    """Of a Hertz contact: beside complementarity the peak is lower by less than 2 % where nothing is said, by 2 to 20 %
+    where it
     warns, by more where it fails."""
     right = abut.solve(ball("quad4", 10)).contacts[0].max_pressure
     solution = abut.solve(ball("quad4", 10, law="constraint-function", epsilon=epsilon))

@@ -198,6 +198,11 @@ def ball_truth(radius: float = 8.0, modulus: float = 1000.0 / (1.0 - NU**2)) -> 
 # Press fits, radii 5, 10, 20, by Lame.
 
 
+def faceted(model: abut.Model) -> abut.Model:
+    """With gaps between facets instead of smooth surfaces."""
+    return replace(model, contacts=[replace(contact, geometry="faceted") for contact in model.contacts])
+
+
 def fit(
     around: tuple[int, int], cell: str = "quad8", interference: float = 0.02, swap: bool = False, plane: str = "stress"
 ) -> abut.Model:

@@ -12,6 +12,7 @@ from abut.contact.self_contact import RANK
 from abut.contact.sides import Names, moving_sides
 from abut.problem.current import Current
 from abut.solution import Solution
+from models.certificate import faceted
 from models.clamps import DEPTH, NAMED, WHOLE, balanced, clamp, tube
 from models.folding import accordion
 from models.sliding import finite
@@ -20,7 +21,11 @@ COARSE = "pressure error"  # two or three facets from the edge of contact to its
 
 
 def closed(cell: str, sides: tuple[Names, Names] = WHOLE) -> Solution:
-    solution = abut.solve(clamp(cell, sides=sides))
+    return passing(clamp(cell, sides=sides))
+
+
+def passing(model: abut.Model) -> Solution:
+    solution = abut.solve(model)
     assert solution.converged
     assert [check.name for check in solution.certificate if not check.passed and check.name != COARSE] == []
     return solution
@@ -43,8 +48,9 @@ def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
 
 def test_extruded_by_one_cell() -> None:
     """Between two planes hex8 is quad4 in plane strain, contact included: the means of gaps through the depth are those in
-    the plane. (Quadratic facets have pressure functions of their own through the depth: 0.5 % in force.)"""
-    flat, deep = closed("quad4"), closed("hex8")
+    the plane. (Quadratic facets have pressure functions of their own through the depth: 0.5 % in force.) Bulges are left
+    out: at the ends of the depth they are found from more facets."""
+    flat, deep = (passing(faceted(clamp(cell, sides=WHOLE))) for cell in ("quad4", "hex8"))
     ids = np.flatnonzero(deep.model.mesh.points[:, 2] == 0.0)
     order = [int(np.argmin(np.abs(deep.model.mesh.points[ids, :2] - x).sum(axis=1))) for x in flat.model.mesh.points]
     assert np.abs(deep.displacement[ids][order][:, :2] - flat.displacement).max() < 1e-7

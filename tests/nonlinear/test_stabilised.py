@@ -20,8 +20,8 @@ from abut.solution import Saved, Solution
 from models.arches import FORCE, RISE, ROLLED, SPAN, THICKNESS, arch, ball
 from models.sliding import finite
 
-AGREES = 1e-3  # forces and energies of an arch whose punch may tilt by its facets, held along its whole top or free
-TRAPEZOID = 0.06  # of the energy that a jump sets free: means of forces over some ten parts of it
+AGREES = 3e-3  # forces and energies of an arch whose punch may tilt by its facets, held along its whole top or free
+TRAPEZOID = 0.07  # of the energy that a jump sets free: means of forces over some ten parts of it
 
 
 @pytest.fixture(scope="module")

@@ -194,7 +194,9 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
         "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
     yield _of_largest(case, seen, counts)
     straight = straight_between(smooth, case.nodal)
-    off = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, straight) * largest / matters
+    off = (
+        pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, straight) * largest / matters
+    )
     unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
     edges = edge_load(pair, case.values, case.nodal) if counts else 0.0
     yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,

@@ -208,7 +208,7 @@ def _softening(state: PairState) -> Iterator[Check]:
     extent = max(float(np.ptp(x, axis=0).max()), pair.size)
     value = apart / (pair.compliance * largest * extent)
     if value > SOFTENED_NOTICED:
-        text = "gap that the softened law leaves under pressure, over what the pressure presses in: it is lower by half of that"
+        text = "gap that the softened law leaves under pressure, over what that presses in: it is lower by half of that"
         yield Check(pair.contact.name, "softening", value, SOFTENED, text, pressure=largest, notice=SOFTENED_NOTICED)
 
 

@@ -50,7 +50,9 @@ def largest_turn(mesh: Mesh, displacement: Array) -> float:
     radians (its tangent). Axisymmetric bodies do not turn."""
     if mesh.axisymmetric:
         return 0.0
-    return max((_turn(mesh.points[nodes], displacement[nodes]) for nodes in map(mesh.nodes_of, mesh.bodies)), default=0.0)
+    return max(
+        (_turn(mesh.points[nodes], displacement[nodes]) for nodes in map(mesh.nodes_of, mesh.bodies)), default=0.0
+    )
 
 
 def _turn(points: Array, moved: Array) -> float:

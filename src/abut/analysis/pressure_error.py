@@ -11,7 +11,10 @@ from abut.contact.geometry import by_kind, side_normals
 from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
-AVERAGED, STRAIGHT = 1.0 / 6.0, 1.0 / 4.0  # of half the second difference: averages, and lines between them, theory (P17)
+AVERAGED, STRAIGHT = (
+    1.0 / 6.0,
+    1.0 / 4.0,
+)  # of half the second difference: averages, and lines between them, theory (P17)
 CHANGE = 0.4  # of the change of that from node to node, where nothing is reported between nodes, theory (P17)
 ALTERNATING = 0.75  # of what changes its sign from node to node, theory (P17)
 STRESS, STRESS_FIRST = 0.6, 0.4  # of the difference from the stress, of cells of second and first order, theory (P17)
@@ -28,7 +31,8 @@ def pressure_error(
     straight: bool = True,
 ) -> float:  # fmt: skip
     """Estimate of the largest error of the pressure at nodes inside contact over ``largest``, NaN where there are none.
-    carried: pressure that those at edges of bodies, which may have no limit, are taken for at most; straight: whether there are values
+    carried: pressure that those at edges of bodies, which may have no limit, are taken for at most; straight: whether
+    there are values
     between corners, on lines.
 
     pressure, share: (n_points,) at the corners, of the contactor split at its creases, the covered share of their supports;

@@ -24,6 +24,8 @@ MESH = (
     "two or three digits; the prototype's die mesh is not known, and dies of 6 to 24 facets differ by 2 %, 1 %, 0.8 %"
 )
 
+FEW = MESH + "; half down three facets touch, and the prototype's die is a polygon"
+
 
 def _die(level: int) -> Mesh:
     mesh = rectangle((-1.0, 1.0), (0.0, 1.0), (8 * 2**level, 8 * 2**level), "quad4")
@@ -108,7 +110,7 @@ BENCHMARKS = (
     Benchmark(
         "shallow-ironing", "a die pressed into a slab and drawn along it, friction 0.3", ironing, _forces,
         {
-            "force half down": Reference(0.94e8, 0.01, SOURCE, MESH),
+            "force half down": Reference(0.94e8, 0.02, SOURCE, FEW),
             "force down": Reference(3.17e8, 0.01, SOURCE, MESH),
             "force on the slab": Reference(4.04e8, 0.01, SOURCE, MESH),
             "force along the slab": Reference(

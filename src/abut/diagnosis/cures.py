@@ -54,8 +54,8 @@ MODEL = {
     "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
-    "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`, which finds them; if they are meant "
-    "to be one, tie them or let them share nodes",
+    "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`; if they are "
+    "meant to be one, tie them or let them share nodes",
     "rotation": 'kinematics = "finite": lengths change by half the square of a turn that is taken for small',
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
@@ -180,7 +180,9 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
-    return 'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at the outset'
+    return (
+        'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at first'
+    )
 
 
 def _softening(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -189,8 +191,8 @@ def _softening(contact: Contact, result: ContactResult, sides: str) -> str:
 
 def _carries(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
-        "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets of "
-        "curved surfaces stand off each other by their bulge, which finer ones or cells of second order make smaller"
+        "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets "
+        "of curved surfaces stand off each other by their bulge, which finer ones or cells of second order make smaller"
     )
 
 

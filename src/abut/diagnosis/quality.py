@@ -64,7 +64,7 @@ def too_stiff(model: Model) -> list[Finding]:
         Finding(
             "warning",
             f"body '{one.body}'",
-            f"{one.kind} cells with full integration are too stiff for Poisson's ratio {one.poisson:g}, the more the coarser",
+            f"{one.kind} cells with full integration are too stiff for Poisson's ratio {one.poisson:g}",
             one.cure,
         )
         for one in locking(model)

@@ -26,7 +26,8 @@ Joined = tuple[Rows, Rows]  # rows (cell, local facet) of two sides, (n, 2) each
 
 @dataclass(frozen=True)
 class Passing:
-    """bodies: of which the first has points inside the second; depth: of the deepest one, a length; share: that over the size of
+    """bodies: of which the first has points inside the second; depth: of the deepest one, a length; share: that over the
+    size of
     the facet that it has passed; place: (dim,) where it is."""
 
     bodies: tuple[str, str]
@@ -49,7 +50,8 @@ class _Outside:
 def passing(mesh: Mesh, points: Array, joined: Sequence[Joined]) -> tuple[Passing, ...]:
     """Bodies that lie in each other by more than a part of a facet, the deepest first, each pair of bodies once.
 
-    points: (n_points, dim) where they are; joined: sides that contacts or ties keep apart or together, which do not count."""
+    points: (n_points, dim) where they are; joined: sides that contacts or ties keep apart or together, which do not
+    count."""
     outside = _outside(mesh, points)
     sides = [(_keys(one), _keys(other)) for one, other in joined]
     names = list(mesh.bodies)
@@ -105,7 +107,8 @@ def _pieces(surface: Surface) -> tuple[Rows, Rows]:
 def _deepest(
     outside: _Outside, points: Array, a: int, b: int, box: tuple[Array, Array], sides: Sequence[tuple[Rows, Rows]]
 ) -> tuple[float, float, int] | None:
-    """Depth, over the facet's size, and number of the point of body ``a`` that is deepest in ``b``, of those in a box; None where
+    """Depth, over the facet's size, and number of the point of body ``a`` that is deepest in ``b``, of those in a box;
+    None where
     none is deep enough."""
     mine, theirs = (np.flatnonzero(outside.body == body) for body in (a, b))
     nodes = np.unique(outside.corners[mine])
@@ -130,7 +133,8 @@ def _deepest(
 def _joined(
     outside: _Outside, nodes: Rows, piece: Rows, mine: Rows, sides: Sequence[tuple[Rows, Rows]]
 ) -> NDArray[np.bool_]:
-    """Points and the pieces nearest to them, (n,) each, that are on the two sides of one contact; mine: pieces of the points' body."""
+    """Points and the pieces nearest to them, (n,) each, that are on the two sides of one contact; mine: pieces of the
+    points' body."""
     result = np.zeros(len(nodes), dtype=bool)
     for one, other in sides:
         for own, opposite in ((one, other), (other, one)):

@@ -10,14 +10,15 @@ from abut.materials.hyperelastic import at_rest
 from abut.mesh.quadrature import BBAR, REDUCED
 from abut.model.model import Model
 
-STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which full integration is some 10 % too stiff, first order
+STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which first order is some 10 % too stiff
 LOCKED = 100.0  # the same (0.495): by 20 to 30 %
 SECOND = 50.0  # cells of second order bear this many times as much, and are a few percent too stiff at most
 
 
 @dataclass(frozen=True)
 class Locking:
-    """body, kind of its cells, poisson: ratio; stiffness: bulk over shear modulus, of cells of second order over ``SECOND``, at
+    """body, kind of its cells, poisson: ratio; stiffness: bulk over shear modulus, of cells of second order over
+    ``SECOND``, at
     most ``LOCKED``; cure: a
     sentence."""
 
@@ -29,7 +30,8 @@ class Locking:
 
 
 def locking(model: Model) -> list[Locking]:
-    """Bodies of fully integrated cells whose material changes its volume hardly, the worst first; none in plane stress, which
+    """Bodies of fully integrated cells whose material changes its volume hardly, the worst first; none in plane stress,
+    which
     does not lock."""
     found = []
     for solid in model.solids if model.plane != "stress" else ():

@@ -11,13 +11,14 @@ import numpy as np
 from abut import checks
 from abut.bodies.integration import check_integration
 from abut.bodies.solids import Solids
+from abut.contact.bulge import with_bulge
 from abut.contact.sides import Sides, bodies_of, check_names, check_own, check_twice, find_sides, moving_sides, words
 from abut.errors import InputError
 from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
-from abut.model.contact import Contact
+from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
@@ -25,6 +26,7 @@ from abut.model.rotation import Rotation, check_rotations
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 from abut.model.step_ends import with_corners
+from abut.model.symmetry import held_directions
 
 PLANES = ("strain", "stress", "axisymmetric")
 
@@ -151,12 +153,17 @@ class Model:
     @cached_property
     def _sides(self) -> dict[str, Sides]:
         sliding = {c.name for c in self.contacts if self.finite and c.kind != "tied"}
-        return {
-            c.name: moving_sides(self.mesh, c.contactor, c.target)
-            if c.name in sliding
-            else find_sides(self.mesh, c.contactor, c.target, self._moved)
-            for c in self.contacts
-        }
+        held = held_directions(self.mesh, self.supports)
+        made = {}
+        for c in self.contacts:
+            both = (
+                moving_sides(self.mesh, c.contactor, c.target)
+                if c.name in sliding
+                else find_sides(self.mesh, c.contactor, c.target, self._moved)
+            )
+            curved = c.kind != "tied" and c.geometry == GEOMETRIES[0]
+            made[c.name] = (with_bulge(both[0], held), with_bulge(both[1], held)) if curved else both
+        return made
 
     @property
     def _moved(self) -> float:

@@ -21,7 +21,8 @@ def _rows(surface: Surface) -> NDArray[np.int64]:
 
 
 def bodies_apart(model: Model, displacement: NDArray[np.float64]) -> Iterator[Check]:
-    """A line that warns of bodies that lie in each other in the end, (n_points, dim) displaced, by more than a part of a facet;
+    """A line that warns of bodies that lie in each other in the end, (n_points, dim) displaced, by more than a part of a
+    facet;
     none where there are none, and for a single body."""
     if len(model.mesh.bodies) < 2:
         return

@@ -223,7 +223,8 @@ class Solution:
                 "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
-            turn = Check("", "rotation", step.turn, TURN, "largest turn of a body, radians: small kinematics takes it for small",
+            turn = Check("", "rotation", step.turn, TURN,
+                         "largest turn of a body, radians, which small kinematics takes for small",
                          notice=TURN_NOTICED)  # fmt: skip
             model = [balance, response] if self.model.finite else [balance, response, strain, turn]
             if step.regularisation is not None:
