@@ -15,7 +15,7 @@ from abut.mesh.exterior import exterior
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
-NEAREST = 6  # pieces of facets by their middles, among which the nearest one is looked for
+NEAREST = 4  # pieces of facets by their middles, among which the nearest one is looked for
 DEEP = 0.1  # of a facet's size: less is what chords of round bodies do
 INSIDE = 1e-9  # barycentric coordinate
 
@@ -146,9 +146,7 @@ def _joined(
 def _distance(x: Array, corners: Array) -> tuple[Array, Array]:
     """Distance of points (n, 1, dim) from segments or triangles (n, k, dim, dim), and depth behind them, NaN beside them."""
     first, rest = corners[:, :, 0], corners[:, :, 1:] - corners[:, :, :1]
-    gram = np.einsum("nkad,nkbd->nkab", rest, rest)
-    gram = gram + 1e-14 * np.trace(gram, axis1=2, axis2=3)[..., None, None] * np.eye(gram.shape[-1])
-    along = np.linalg.solve(gram, np.einsum("nkad,nkd->nka", rest, x - first)[..., None])[..., 0]
+    along = _coordinates(x - first, rest)
     inside = (along > -INSIDE).all(axis=-1) & (along.sum(axis=-1) < 1.0 + INSIDE)
     clipped = np.clip(along, 0.0, 1.0)
     clipped = clipped / np.maximum(clipped.sum(axis=-1, keepdims=True), 1.0)
@@ -158,3 +156,15 @@ def _distance(x: Array, corners: Array) -> tuple[Array, Array]:
     )  # fmt: skip
     height = (gap * normal).sum(axis=-1) / np.maximum(np.linalg.norm(normal, axis=-1), 1e-300)
     return np.linalg.norm(gap, axis=-1), np.where(inside, -height, np.nan)
+
+
+def _coordinates(x: Array, rest: Array) -> Array:
+    """Along the edges (n, k, dim - 1, dim) of the foot of x (n, k, dim) in their plane."""
+    size, reach = (rest**2).sum(axis=-1), np.einsum("nkad,nkd->nka", rest, x)
+    if rest.shape[2] == 1:
+        return np.asarray(reach / np.maximum(size, 1e-300))
+    both = (rest[:, :, 0] * rest[:, :, 1]).sum(axis=-1)
+    area = np.maximum(size[..., 0] * size[..., 1] - both**2, 1e-300)
+    first = (size[..., 1] * reach[..., 0] - both * reach[..., 1]) / area
+    other = (size[..., 0] * reach[..., 1] - both * reach[..., 0]) / area
+    return np.stack([first, other], axis=-1)
