@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.pressure_error import OF_SECOND_ORDER, SHARE, pressure_error
+from abut.analysis.pressure_error import ALTERNATING, AVERAGED, CHANGE, STRAIGHT, STRESS_FIRST, pressure_error
 from abut.analysis.surface_stress import normal_stress
 from abut.diagnosis.cures import cure
 from abut.mesh.make import box, rectangle
@@ -66,15 +66,13 @@ HERTZ = {
 
 @pytest.mark.parametrize("name", HERTZ)
 def test_it_is_near_the_true_error(name: str) -> None:
-    """Of contacts with two to five facets from the edge to the middle, half of it to three times it; of those of second
-    order that are better than 2 % by then, below what is too much."""
+    """Of contacts with two to five facets from the edge to the middle, a third of it to three times it: on so few the true
+    error of linear cells is that of where the edge of contact falls between nodes, which the middle does not tell."""
     model, truth = HERTZ[name]
     solution = abut.solve(model())
-    error, estimate = truth(solution), checked(solution).value
-    second = not any(cell in name for cell in ("quad4", "tri3", "hex8", "wedge6", "tet4"))
-    assert error > (0.003 if second else 0.04)
-    assert estimate > 0.5 * error
-    assert estimate < (3.0 * error if error > 0.02 else 0.08)
+    error = truth(solution)
+    assert error > 0.04  # none of them is fine
+    assert 0.3 < checked(solution).value / error < 3.0
 
 
 def test_it_falls_with_the_facets() -> None:
@@ -94,8 +92,11 @@ def test_it_is_quiet_where_the_pressure_is_even(cell: str) -> None:
 
 def test_near_a_sharp_corner_it_warns() -> None:
     """The pressure has no limit there: no mesh shows it, and nothing is wrong with the rest."""
-    values = [checked(abut.solve(plate("quad8", n, n))).value for n in (8, 16)]
-    assert all(0.05 < value < 0.2 for value in values)
+    for n in (8, 16):
+        lines = {check.name: check for check in abut.solve(plate("quad8", n, n)).certificate}
+        assert lines["largest pressure"].verdict == "warn"
+        assert "at an edge of a body" in lines["largest pressure"].meaning
+        assert lines[NAME].value < 0.2
 
 
 def test_where_it_cannot_be_known() -> None:
@@ -176,13 +177,15 @@ def test_both_differences_count() -> None:
     even[nodes] = 2.0
     off = even.copy()
     off[middle] += 0.2
-    assert pressure_error(own, even, even, share, 2.0, None) == pytest.approx(0.0, abs=1e-12)
-    assert pressure_error(own, off, off, share, 2.0, None) == pytest.approx(SHARE * 0.1)
-    assert pressure_error(own, even, even, share, 2.0, off) == pytest.approx(OF_SECOND_ORDER * 0.1)
-    assert pressure_error(own, even, off, share, 2.0, even) == pytest.approx(OF_SECOND_ORDER * 0.1)
-    assert pressure_error(own, even, even, share, 2.0, 1e-9 * off) == pytest.approx(
-        0.0, abs=1e-12
-    )  # a rigid body has none
+    assert pressure_error(own, even, share, 2.0, None) == pytest.approx(0.0, abs=1e-12)
+    alternating = ALTERNATING * np.sqrt(0.1 * 0.05)  # second differences of 0.2 at the node and -0.1 beside it, over 2
+    change = CHANGE * 0.5 * (0.1 + 0.05)
+    assert pressure_error(own, off, share, 2.0, None) == pytest.approx((AVERAGED + STRAIGHT) * 0.1 + alternating)
+    assert pressure_error(own, off, share, 2.0, None, straight=False) == pytest.approx(
+        AVERAGED * 0.1 + max(alternating, change)
+    )
+    assert pressure_error(own, even, share, 2.0, off) == pytest.approx(STRESS_FIRST * 0.1)
+    assert pressure_error(own, even, share, 2.0, 1e-9 * off) == pytest.approx(0.0, abs=1e-12)  # a rigid body has none
     partly = share.copy()
     partly[middle] = 0.5
     assert pressure_error(own, even, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)

@@ -206,3 +206,30 @@ def bar(cells: int = 8) -> abut.Model:
         [abut.Force("pin.top", (0.0, -2e4, 0.0))],
         [abut.Contact("pin.round", "sleeve.inner")],
     )
+
+
+def punch(cell: str, cells: tuple[int, int], stiff: float = 1e4) -> abut.Model:
+    """A flat punch of half width 1 with sharp edges on a wide block, ``stiff`` times as stiff, as contactor. cells: of half
+    of it, and about as many of the block over the same length, so that nodes do not meet."""
+    n, m = cells
+    lower = rectangle((-40, 40), (-40, 0), (2 * round(2.5 * m), m), cell, {"x": [-2.5, 2.5], "y": [-1, 0]})
+    mesh = join({"punch": rectangle((-1, 1), (0, 2), (2 * n, 2 * n), cell), "block": lower})
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, abut.LinearElastic(e, NU)) for body, e in zip(mesh.bodies, (1000.0 * stiff, 1000.0))],
+        [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
+        [abut.Pressure("punch.top", 1.0)],
+        [abut.Contact("punch.bottom", "block.top")],
+        plane="strain",
+    )
+
+
+def pushed_along(model: abut.Model, on: str, by: float) -> abut.Model:
+    """With the points of a support moved along x."""
+    return replace(model, supports=[replace(s, x=by) if s.on == on else s for s in model.supports])
+
+
+def nearly_incompressible(model: abut.Model) -> abut.Model:
+    """With a Poisson's ratio of 0.49999 all over."""
+    solids = [replace(s, material=abut.LinearElastic(s.material.young, 0.49999)) for s in model.solids]
+    return replace(model, solids=solids)

@@ -48,6 +48,9 @@ from models.certificate_odd import (
     held_load,
     light_fit,
     moved,
+    nearly_incompressible,
+    punch,
+    pushed_along,
     sheets,
     sleeve,
     stack,
@@ -110,6 +113,11 @@ def under_head(x: np.ndarray) -> np.ndarray:
     return (x[:, 0] > 1.15) & (x[:, 0] < 1.85)
 
 
+UNDER_PUNCH = local(
+    lambda x: 2.0 / np.pi / np.sqrt(np.maximum(1.0 - x[:, 0] ** 2, 0.36)), lambda x: np.abs(x[:, 0]) < 0.8
+)
+
+
 STIFF, STIFFER = (1e4, 1e3), (1e6, 1e3)
 STRIP_PEAK = float(np.sqrt(38.4 * 105e3 / (np.pi * 0.5)))  # Hertz, 38.4 a length, E* = 105e3, R = 0.5
 FIT = fit_pressure()
@@ -158,6 +166,8 @@ SOUND_RUNS = (
         along(squares(40, 40, "quad8", (100.0, 1.0)), away_from_ends)),
     Run("block with sharp corners, contactor hangs over", lambda: plate("quad8", 8, 6),
         along(plate("quad8", 20, 14), under)),
+    Run("flat stiff punch, matching", lambda: punch("quad8", (12, 12)), UNDER_PUNCH),
+    Run("flat stiff punch, coarser than the block", lambda: punch("quad8", (8, 16)), UNDER_PUNCH),
     Run("unloading to a tenth", lambda: stack(0.1), even(0.5)),
     Run("unloading to nothing", lambda: stack(0.0), lambda s: s.contacts[0].max_pressure / 5.0),
     Run("tied blocks", lambda: stack(kind="tied"), even(5.0)),
@@ -214,6 +224,18 @@ UNSOUND_RUNS = (
     Run("load on a held surface", held_load, outside, ("response",)),
     Run("a part that never arrives", lambda: moved(0.005), outside, ("response",)),
     Run("bolt's head on a coarse plate", lambda: washer(False, 6), along(washer(False, 60), under_head), KINKS),
+    Run("flat stiff punch 10 times as fine, tri6", lambda: punch("tri6", (50, 5)), UNDER_PUNCH, KINKS),
+    Run("flat stiff punch 10 times as fine, quad4", lambda: punch("quad4", (50, 5)), UNDER_PUNCH, KINKS),
+    Run("flat stiff punch 5 times as fine, tri3", lambda: punch("tri3", (25, 5)), UNDER_PUNCH, KINKS),
+    Run("flat stiff punch twice as fine, quad8", lambda: punch("quad8", (10, 5)), UNDER_PUNCH, KINKS),
+    Run("slid by three facets, small kinematics", lambda: pushed_along(line("quad4", (8, 8)), "cylinder.axis", 3.0), outside,
+        ("sliding",)),
+    Run("cells that lock", lambda: nearly_incompressible(line("quad4", (10, 10))),
+        outside, ("locking",)),
+    Run("a softened constraint function", lambda: ball("quad4", 10, law="constraint-function", epsilon=10.0), ball_truth(),
+        ("softening",)),
+    Run("an interference that never closes", lambda: replace(moved(0.0, gap=0.03), contacts=[
+        abut.Contact("lower.top", "upper.bottom", offset=-0.02)]), outside, ("carries",)),
     Run("stopped after one iteration", lambda: replace(ball("quad4", 6), solve=abut.SolveOptions(max_iterations=1)),
         ball_truth(), ("complementarity",)),
 )  # fmt: skip

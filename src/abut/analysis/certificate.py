@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from abut.analysis.edge_load import edge_load
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
-from abut.analysis.pressure_error import pressure_error
+from abut.analysis.peaks import Peaks, peaks_of
+from abut.analysis.pressure_error import pressure_error, straight_between
 from abut.analysis.resolution import resolution
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
@@ -31,6 +32,9 @@ OSCILLATION = 0.08
 RESOLUTION = 0.4  # three facets to each side of the middle
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
 ERROR, NOTICED = 0.3, 0.05  # of the pressure: wrong, and worth knowing
+STANDS = 0.5  # of the largest pressure: a peak beside which others are not judged, theory (P24)
+STANDS_NOTICED, AT_EDGE = 0.25, 0.1  # of the same, worth knowing inside, and where a body ends
+SLID, SLID_NOTICED = 1.0, 0.5  # facets: from one on pressure acts on the wrong one
 EDGES = 0.2  # sine of 12 degrees
 BARE = 0.5
 REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what was meant
@@ -47,7 +51,9 @@ class Surroundings:
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
     support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
     opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; average: (n_points,) what the
-    reported pressure was recovered from, theory (P10), by default it itself."""
+    reported pressure was recovered from, theory (P10), by default it itself; gives: the target's share of what both sides
+    give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in facets, None where contact follows
+    it."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -57,6 +63,8 @@ class Surroundings:
     support: NDArray[np.float64] | None = None
     stress: NDArray[np.float64] | None = None
     average: NDArray[np.float64] | None = None
+    gives: float = 1.0
+    slid: NDArray[np.float64] | None = None
 
 
 def certificate(
@@ -79,7 +87,7 @@ def certificate(
     case = _Case.of(pair, values, nodal, share, around)
     checks = [*_balanced(case, balance(pair, values) if balanced is None else balanced)]
     if not pair.tied:
-        checks += [*_gaps(case, penetration), *_pressure(case, residual)]
+        checks += [*_gaps(case, penetration), *_slid(case), *_pressure(case, residual)]
     if pair.contact.method == "segment-to-segment":
         checks.append(
             case.check("facet moments", _moment_error(case), MOMENTS,
@@ -154,6 +162,15 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
         "pressure caused by faceting of curved surfaces, over the largest pressure", pressure=case.matters)  # fmt: skip
 
 
+def _slid(case: _Case) -> Iterator[Check]:
+    """Whether pressure still acts on the places that face each other: with small kinematics those of the outset."""
+    if case.around.slid is not None:
+        far = case.around.slid[case.loaded].max(initial=0.0)
+        yield Check(case.pair.contact.name, "sliding", float(far), SLID,
+            "motion along the surfaces where they press, over the facet size: small kinematics does not follow it",
+            notice=SLID_NOTICED)  # fmt: skip
+
+
 def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     """What is wrong with the pressure itself, and how many facets carry it."""
     pair, largest = case.pair, case.largest
@@ -168,23 +185,37 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     pressure = at_points(smooth, case.nodal)
     support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)
     average = pressure if case.around.average is None else case.around.average
-    alternating = oscillation(pair, case.values, average, support, largest) * largest / case.matters
-    yield case.check("oscillation", alternating, OSCILLATION,
+    seen = peaks_of(pair, smooth, case.loaded, average, support, case.around.gives)
+    matters = max(min(largest, seen.carried / STANDS), LESSER * case.around.beside)
+    alternating = oscillation(pair, case.values, average, support, largest) * largest
+    yield case.check("oscillation", max(alternating, seen.hole) / matters, OSCILLATION,
         "largest alternating part of the pressure inside the contact over the largest pressure",
-        pressure=case.matters)  # fmt: skip
+        pressure=matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, average, support, largest)
     yield case.check("resolution", facets if counts else 0.0, RESOLUTION,
         "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
-    off = pressure_error(pair, pressure, average, support, largest, case.around.stress) * largest / case.matters
+    yield _of_largest(case, seen, counts)
+    straight = straight_between(smooth, case.nodal)
+    estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, straight, average)
+    off = estimate * largest / matters
     unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
     edges = edge_load(pair, case.values, case.nodal) if counts else 0.0
     yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,
         "estimated local error of the reported pressure inside the contact, over the largest pressure",
-        pressure=case.matters, highest=True, notice=NOTICED, unknown=unknown)  # fmt: skip
+        pressure=matters, highest=True, notice=NOTICED, unknown=unknown)  # fmt: skip
     yield Check(pair.contact.name, "contactor's edges", edges, EDGES,
         "sine of the angle between the sides where an edge of the contactor presses, mean by force",
         unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
+
+
+def _of_largest(case: _Case, seen: Peaks, counts: bool) -> Check:
+    """Whether the largest pressure is one that its surroundings carry, or that of a point or two, which no mesh gives right:
+    said, no more, since forces and stresses farther off may be right all the same."""
+    where = "at an edge of a body, where that of a sharp one has no limit" if seen.at_edge else "inside"
+    return Check(case.pair.contact.name, "largest pressure", seen.out if counts else 0.0, 1.0,
+        f"share by which the largest pressure ({where}) stands out of what lies within a facet of the coarser side",
+        pressure=case.largest, highest=True, notice=AT_EDGE if seen.at_edge else STANDS_NOTICED)  # fmt: skip
 
 
 def _cover(case: _Case) -> Iterator[Check]:
@@ -251,4 +282,8 @@ def _moment_error(case: _Case) -> float:
         return 0.0
     exact = full_moments(pair.contactor, pair.coupling.degree)
     miss = np.abs(pair.coupling.weight.reshape(exact.shape) - exact) / case.areas[:, None]
-    return float(miss[whole].max())
+    ends = np.zeros(len(pair.contactor.points), dtype=bool)
+    ends[rim(pair.contactor).ends] = True
+    beyond = (ends[np.maximum(nodes, 0)] & (nodes >= 0)).any(axis=1)  # a target that ends there by chords of its own
+    miss -= np.where(beyond, np.abs(case.cover - 1.0), 0.0)[:, None]
+    return max(float(miss[whole].max()), 0.0)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
 from abut.analysis.statistics import (
+    LOADED,
     forces_on_bodies,
     loaded_part,
     nodal_forces,
@@ -35,7 +36,7 @@ from abut.contact.rim import rim
 from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
-from abut.model import METHODS
+from abut.model import LAWS, METHODS
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check, ContactResult, PressureStatistics, Resultant
 from abut.solution.state import OPEN
@@ -116,6 +117,7 @@ class PairState:
 
 EDGE = 0.05  # share of the force that functions with hardly any support may carry
 LITTLE = 0.8 * WEAK_SUPPORT  # the iterations that end a step may move the edge a little
+SOFTENED, SOFTENED_NOTICED = 0.3, 0.02  # gap of a softened law over the indentation: a Hertz peak loses half of that
 FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
 
 
@@ -182,6 +184,7 @@ def _checks(
         *certificate(pair, state.values, nodal, state.penetration, residual, share, around, balanced),
         *friction_checks(pair, state.multipliers, state.status, state.slips, state.limit, largest),
         *(() if around.support is None else _edge_check(state, around.support)),
+        *_softening(state),
     )
 
 
@@ -197,6 +200,24 @@ def _edge_check(state: PairState, support: NDArray[np.float64]) -> Iterator[Chec
             pair.contact.name, "force at the target's edge", float(force[weak].sum() / force.sum()), EDGE, text,
             pressure=float(state.pressure[~weak].max(initial=0.0)),
         )  # fmt: skip
+
+
+def _softening(state: PairState) -> Iterator[Check]:
+    """How far a softened law keeps the sides apart where they press, beside what they press in over the extent of contact:
+    theory (L15). A line from what is worth knowing on."""
+    pair = state.pair
+    force = np.maximum(state.pressure, 0.0) * state.weight
+    largest = float(state.pressure.max(initial=0.0))
+    if pair.contact.law != LAWS[1] or pair.tied or not largest > 0.0 or pair.compliance == 0.0:
+        return
+    apart = float(force @ np.maximum(state.gap / state.weight, 0.0)) / float(force.sum())
+    loaded = pair.space.node[(state.pressure > LOADED * largest) & (pair.space.node >= 0)]
+    x = pair.contactor.points[loaded] if len(loaded) else pair.contactor.points[pair.contactor.node_ids]
+    extent = max(float(np.ptp(x, axis=0).max()), pair.size)
+    value = apart / (pair.compliance * largest * extent)
+    if value > SOFTENED_NOTICED:
+        text = "gap that the softened law leaves under pressure, over what that presses in: it is lower by half of that"
+        yield Check(pair.contact.name, "softening", value, SOFTENED, text, pressure=largest, notice=SOFTENED_NOTICED)
 
 
 def _undeformed(mesh: Mesh, surface: Surface) -> Surface:

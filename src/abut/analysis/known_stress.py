@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut.bodies.recovery import Equations
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, full_moments, split_at_creases
-from abut.contact.nodal_recovery import carry_to_target, corner_values
+from abut.contact.nodal_recovery import carry_to_target
 from abut.fields import evaluate
 from abut.mesh.patches import Patches
 from abut.mesh.surface import Surface
@@ -130,8 +130,7 @@ def _add_contact(skin: _Skin, pair: Pair, contact: ContactResult) -> None:
 
 def _carried(pair: Pair, values: Vector) -> Vector:
     """Values (n_facets, 9) at the nodes of the contactor's facets at those of the target's."""
-    shown = corner_values(pair.contactor, values)
-    return np.nan_to_num(carry_to_target(pair.contactor, pair.target, pair.coupling.target_part, shown))
+    return np.nan_to_num(carry_to_target(pair.contactor, pair.target, pair.coupling.target_part, values))
 
 
 def _add_supports(model: Model, skin: _Skin) -> None:

@@ -29,7 +29,7 @@ def oscillation(
     inside = _inside(nodes, pressure > CLOSED * largest)
     if pair.space.continuous and pair.space.name not in (DUAL, DUAL_P1):  # of those coefficients are reported
         inside &= _inside(nodes, _inside(nodes, _carrying(nodes, surface, values, largest)))
-    worst = _alternating(nodes, pressure, inside, _excluded(nodes, share), largest)
+    worst = _alternating(nodes, pressure, inside, excluded(nodes, share), largest)
     if not pair.space.continuous:
         facets = Graph.of_facets(surface)
         total = pair.coupling.weight.reshape(-1, MAX_FACET_NODES).sum(axis=1)
@@ -44,7 +44,8 @@ def oscillation(
 
 
 class Graph:
-    """Who neighbours whom. matrix: (n, n) symmetric, ones; used: (n,) which take part; rim: (n,) on the surface's border."""
+    """Who neighbours whom. matrix: (n, n) symmetric, ones; degree: (n,) number of neighbours; rim: (n,) on the surface's
+    border."""
 
     def __init__(self, ends: NDArray[np.int64], n: int, rim: NDArray[np.bool_]) -> None:
         i, j = np.r_[ends[:, 0], ends[:, 1]], np.r_[ends[:, 1], ends[:, 0]]
@@ -56,6 +57,13 @@ class Graph:
     def mean(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mean of the neighbours' values, 0 for none."""
         return np.asarray(self.matrix @ values) / np.maximum(self.degree, 1.0)
+
+    def largest(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Largest of the neighbours' values, -inf for none."""
+        result, some = np.full(len(values), -np.inf), self.degree > 0
+        if some.any():
+            result[some] = np.maximum.reduceat(values[self.matrix.indices], self.matrix.indptr[:-1][some])
+        return result
 
     def all_of(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether all neighbours have the flag; no for none."""
@@ -92,7 +100,7 @@ class Graph:
         return Graph(edges.astype(np.int64), len(surface), np.zeros(len(surface), dtype=bool))
 
 
-def _excluded(graph: Graph, share: NDArray[np.float64]) -> NDArray[np.bool_]:
+def excluded(graph: Graph, share: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Points at the contactor's rim or of partly covered facets, and their neighbours: the pressure of a body with corners
     is singular there, and no mesh shows that without a swing."""
     near = graph.rim.copy()

@@ -6,11 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, WHOLE, Graph
-from abut.contact.geometry import side_normals
-from abut.contact.star_fits import of_second_order
+from abut.cells import CELLS
+from abut.contact.geometry import by_kind, side_normals
+from abut.mesh.surface import Surface
 from abut.problem.contact_pairs import Pair
 
-SHARE, OF_SECOND_ORDER = 0.6, 0.8  # theory (P17)
+AVERAGED, STRAIGHT = (
+    1.0 / 6.0,
+    1.0 / 4.0,
+)  # of half the second difference: averages, and lines between them, theory (P17)
+CHANGE = 0.4  # of the change of that from node to node, where nothing is reported between nodes, theory (P17)
+ALTERNATING = 0.75  # of what changes its sign from node to node, theory (P17)
+STRESS, STRESS_FIRST = 0.6, 0.4  # of the difference from the stress, of cells of second and first order, theory (P17)
+EVEN_MIDDLE = 1e-6  # of the largest pressure: how far values at mid-nodes of lines are off the mean of their ends
 ON_AXIS = 1e-9  # radius over the contactor's largest
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 TRIFLE = 1e-6  # stress over pressure from which down a body does not deform
@@ -19,30 +27,68 @@ Array = NDArray[np.float64]
 
 
 def pressure_error(
-    pair: Pair, pressure: Array, average: Array, share: Array, largest: float, stress: Array | None
-) -> float:
+    pair: Pair, pressure: Array, share: Array, largest: float, stress: Array | None, carried: float = np.inf,
+    straight: bool = True, average: Array | None = None,
+) -> float:  # fmt: skip
     """Estimate of the largest error of the pressure at nodes inside contact over ``largest``, NaN where there are none.
 
     pressure, average, share: (n_points,) at the corners, of the contactor split at its creases: as reported, what that was
-    recovered from, and the covered share of their supports; stress: (n_points,) as from ``normal_stress``; theory (P17)."""
+    recovered from (by default it itself), and the covered share of their supports; stress: (n_points,) as from
+    ``normal_stress``; carried: pressure that those at edges of bodies, which may have no limit, are taken for at most;
+    straight: whether values between corners lie on lines; theory (P17)."""
     surface, normals = side_normals(pair.contactor)
     graph = Graph.of_nodes(surface)
-    closed = (graph.degree > 0) & (average > CLOSED * largest)
+    closed = (graph.degree > 0) & ((pressure if average is None else average) > CLOSED * largest)
     partly = (share > 0.0) & (np.abs(share - 1.0) > WHOLE)
     inside = closed & graph.all_of(closed) & ~partly
     axis, mirrored = _mirrored(pair, graph)
-    at = inside & (~graph.rim | axis | mirrored)
-    known = np.zeros(len(pressure), dtype=bool)
-    if stress is not None and np.nanmax(np.abs(stress[at]), initial=0.0) > TRIFLE * largest:
-        known = at & ~np.isnan(stress)
-    beside_an_end = graph.any_of(partly | (graph.rim & ~axis & ~mirrored))  # where the pressure may have no bound
-    second = known & of_second_order(surface) & ~beside_an_end
-    bent = _between(graph, surface.points, normals, pressure) - pressure
-    parts = [SHARE * bent[inside & (~graph.rim | axis) & ~second], OF_SECOND_ORDER * (pressure - average)[second]]
-    if stress is not None:
-        parts += [OF_SECOND_ORDER * (stress - pressure)[second], SHARE * (stress - pressure)[known & ~second]]
-    off = np.abs(np.concatenate(parts))
+    edge = (graph.rim & ~axis & ~mirrored) | partly
+    pressure = np.where(edge, np.minimum(pressure, carried), pressure)
+    within = inside & (~graph.rim | axis | mirrored)
+    planes = _planes(pair, len(graph.rim))
+    bent = np.where(within, _between(graph, surface.points, normals, pressure, *planes) - pressure, 0.0)
+    uneven = ALTERNATING * _alternating(graph, bent)
+    if not straight:
+        uneven = np.maximum(uneven, CHANGE * _change(graph, bent, within))
+    parts = [((AVERAGED + (STRAIGHT if straight else 0.0)) * np.abs(bent) + uneven)[within]]
+    if stress is not None and np.nanmax(np.abs(stress[within]), initial=0.0) > TRIFLE * largest:
+        first = all(CELLS[kind].degree == 1 for kind, _ in by_kind(surface))
+        parts.append((STRESS_FIRST if first else STRESS) * np.abs(stress - pressure)[within & ~np.isnan(stress)])
+    off = np.concatenate(parts)
     return float(off.max()) / largest if len(off) else float("nan")
+
+
+def _change(graph: Graph, bent: Array, within: NDArray[np.bool_]) -> Array:
+    """Half the distance of values from the mean of those of the neighbours ``within``, (n_points,)."""
+    count = np.asarray(graph.matrix @ within.astype(float))
+    mean = np.asarray(graph.matrix @ bent) / np.maximum(count, 1.0)  # zero elsewhere
+    return np.asarray(np.where(count > 0.0, 0.5 * np.abs(bent - mean), 0.0))
+
+
+def _alternating(graph: Graph, bent: Array) -> Array:
+    """What changes its sign from node to node, (n_points,): the root of the products with the neighbours."""
+    edges = graph.matrix.tocoo()
+    product = np.maximum(-bent[edges.row] * bent[edges.col], 0.0)
+    result = np.zeros(len(bent))
+    np.maximum.at(result, edges.row, product)
+    return np.asarray(np.sqrt(result))
+
+
+def straight_between(surface: Surface, nodal: Array) -> bool:
+    """Whether there are mid-nodes and reported values (n_facets, 9) there lie on the lines between corners."""
+    some = False
+    largest = np.nanmax(np.abs(nodal), initial=0.0)
+    for kind, facets in by_kind(surface):
+        cell = CELLS[kind]
+        if cell.degree < 2:
+            continue
+        n, some = cell.corners, True
+        ends = [(0, 1)] if cell.dim == 1 else [(i, (i + 1) % n) for i in range(n)]
+        for k, (i, j) in enumerate(ends):
+            middle = nodal[facets, n + k] - 0.5 * (nodal[facets, i] + nodal[facets, j])
+            if np.abs(middle).max(initial=0.0) > EVEN_MIDDLE * largest:
+                return False
+    return some
 
 
 def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -57,15 +103,29 @@ def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.b
     return axis & graph.rim & (graph.degree > 0), plane & graph.rim
 
 
-def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Array:
+def _planes(pair: Pair, n: int) -> tuple[NDArray[np.int64], Array]:
+    """On how many planes of symmetry each point lies, (n,), and the contactor's tangent along one, (n, dim), or zero."""
+    count, along = np.zeros(n, dtype=np.int64), np.zeros((n, pair.contactor.dim))
+    if pair.planes is not None:
+        count[: len(pair.planes.count)], along[: len(pair.planes.along)] = pair.planes.count, pair.planes.along
+    return count, along
+
+
+def _between(
+    graph: Graph, points: Array, normals: Array, values: Array, planes: NDArray[np.int64], along: Array
+) -> Array:
     """Values (n_points,) that a plane through those of the neighbours has at each point, fitted with the weight of the
-    inverse square of the distance along the surface; the value at a single one; 0 at points without neighbours."""
+    inverse square of the distance along the surface; the value at a single one; 0 at points without neighbours. On planes of
+    symmetry, ``planes`` (n_points,) of them, neighbours off them count with their mirror images, so that the plane rises
+    ``along`` (n_points, dim) at most."""
     edges = graph.matrix.tocoo()
     used, i = np.unique(edges.row, return_inverse=True)
     j = edges.col
     away = points[j] - points[used[i]]
     away -= (away * normals[used[i]]).sum(axis=1, keepdims=True) * normals[used[i]]
-    close = 1.0 / np.maximum((away**2).sum(axis=1), 1e-300)
+    close = 2.0 ** np.maximum(planes[used[i]] - planes[j], 0) / np.maximum((away**2).sum(axis=1), 1e-300)
+    tangent = along[used[i]]
+    away = np.where(planes[used[i], None] > 0, (away * tangent).sum(axis=1, keepdims=True) * tangent, away)
 
     def total(of_edges: Array) -> Array:
         columns = [np.bincount(i, column, len(used)) for column in of_edges.reshape(len(i), -1).T]
@@ -77,7 +137,11 @@ def _between(graph: Graph, points: Array, normals: Array, values: Array) -> Arra
     apart = away - centre[i]
     metric = total(close[:, None, None] * apart[:, :, None] * apart[:, None])
     rate = total((close * (values[j] - mean[i]))[:, None] * apart)
-    slope = np.einsum("nab,nb->na", np.linalg.pinv(metric, rcond=EVEN, hermitian=True), rate)
+    spread = np.bincount(i, minlength=len(used))  # that of one neighbour is rounding beside it
+    size, axes = np.linalg.eigh(metric)
+    known = size > EVEN * spread[:, None]
+    along = np.einsum("nda,nd->na", axes, rate)
+    slope = np.einsum("nda,na->nd", axes, np.where(known, along / np.where(known, size, 1.0), 0.0))
     result = np.zeros(len(points))
     result[used] = mean - (slope * centre).sum(axis=1)
     return result

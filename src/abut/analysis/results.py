@@ -15,6 +15,7 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.known_stress import known_stress
+from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
@@ -22,12 +23,14 @@ from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
+from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
+from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.finite_bodies import FiniteBodies
@@ -35,6 +38,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
+from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
@@ -123,6 +127,7 @@ def step_result(
         spring=springs.force(state.unknowns) if len(springs) else None,
         strained=strained,
         landed=_landed(state),
+        turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
         energy=balance if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
     )
@@ -245,7 +250,11 @@ def _contacts(
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
             cells = normal_stress(model.mesh, pair.contactor, stress)
-        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells))
+        gives = _gives(model, constraints, pair)
+        along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
+        around.append(
+            Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
+        )
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(
@@ -259,6 +268,13 @@ def _contacts(
         )
         for state, beside_it, one_before in zip(found, around, earlier)
     )
+
+
+def _gives(model: Model, constraints: Constraints, pair: Pair) -> float:
+    """The target's share of what both sides of a pair give way under pressure, 0 where all of it is held."""
+    rows = (model.dim * pair.target.node_ids[:, None] + np.arange(model.dim)).ravel()
+    held = not (constraints.free.indptr[rows + 1] > constraints.free.indptr[rows]).any()
+    return 0.0 if held else scales(model, pair.contactor, pair.target).share
 
 
 def _now(end: _End, pair: Pair) -> Surface:

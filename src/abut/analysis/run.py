@@ -108,7 +108,7 @@ class Run:
     def march(self, first: State, done: Sequence[Saved] = ()) -> None:
         """Solve the steps that are left, each told and kept as it ends. done: those before."""
         problem, observe, solve = self.assembled.problem, self.told.observe, self.model.solve
-        times = [t for t in solve.ends if not self.steps or t > first.time * (1.0 + 1e-12)]
+        times = [t for t in self.model.ends if not self.steps or t > first.time * (1.0 + 1e-12)]
         count = len(self.steps) + len(times)
 
         def begins(number: int, time: float) -> None:

@@ -203,7 +203,7 @@ def _by_deformation(solution: Solution) -> Iterator[Remedy]:
         )
     if not model.contacts:
         yield Remedy(
-            f"solve.steps = {4 * len(model.solve.ends)}",
+            f"solve.steps = {4 * len(model.ends)}",
             "steps are halved six times at most; a load that no deformation balances stays out of reach",
         )
 

@@ -12,6 +12,7 @@ from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
 from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
+from abut.model.locking import locking
 from abut.solution import Check, ContactResult, Solution
 from abut.solution.stress_error import ContactStressError
 
@@ -28,6 +29,8 @@ def cure(check: Check, solution: Solution) -> str:
         return ""
     if check.name == "stress error":
         return _stress_error(solution)
+    if check.name == "locking":
+        return "; ".join(one.cure for one in locking(solution.model))
     if not check.contact:
         return MODEL[check.name]
     if check.name in UNSETTLED and not solution.converged:
@@ -57,6 +60,9 @@ MODEL = {
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have "
     "no limit",
+    "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`; if they are "
+    "meant to be one, tie them or let them share nodes",
+    "rotation": 'kinematics = "finite": lengths change by half the square of a turn that is taken for small',
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
 }
@@ -145,6 +151,14 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _largest(contact: Contact, result: ContactResult, sides: str) -> str:
+    swap = f", or {sides}" if sides else ""
+    return (
+        "the largest pressure is that of a single point: refine both surfaces there; round the edge of a body that "
+        f"presses{swap}, or read the pressure beside it"
+    )
+
+
 def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
     way = f"{sides}, or round" if sides else "round"
     return (
@@ -186,6 +200,23 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at first'
+    )
+
+
+def _softening(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f'law = "complementarity", which has no such gap, or an epsilon far below {contact.epsilon:g} (by default 1e-12)'
+
+
+def _carries(contact: Contact, result: ContactResult, sides: str) -> str:
+    return (
+        "check signs and units of what should bring the bodies together, and `offset` (an interference is negative); facets "
+        "of curved surfaces stand off each other by their bulge, which finer ones or cells of second order make smaller"
+    )
+
+
 OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "force balance": _balance,
     "moment balance": _balance,
@@ -197,6 +228,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "oscillation": _oscillation,
     "resolution": _resolution,
     "pressure error": _pressure_error,
+    "largest pressure": _largest,
     "contactor's edges": _edges,
     "facet moments": _moments,
     "loaded area without target": _bare,
@@ -208,4 +240,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "sticking": _friction,
     "friction work": _friction,
     "friction left out": _left_out,
+    "carries": _carries,
+    "softening": _softening,
+    "sliding": _sliding,
 }

@@ -13,7 +13,7 @@ from abut.diagnosis.finding import Finding, Motion, Report, from_error, in_order
 from abut.diagnosis.friction import friction
 from abut.diagnosis.interface import MIXED, interface, not_facing
 from abut.diagnosis.probes import probes
-from abut.diagnosis.quality import quality
+from abut.diagnosis.quality import quality, too_stiff
 from abut.diagnosis.rigid_body_check import motions
 from abut.diagnosis.tetrahedra import tetrahedra
 from abut.diagnosis.units import units
@@ -27,7 +27,7 @@ from abut.problem.finite_pairs import finite_pair
 
 def check(model: Model) -> Report:
     """Examine a model without solving it. What depends on something that is itself in error is left out."""
-    findings, doubts = [*quality(model.mesh), *probes(model)], units(model)
+    findings, doubts = [*quality(model.mesh), *probes(model), *too_stiff(model)], units(model)
     shown: list[Motion] = []
     try:
         supported = supports(model)

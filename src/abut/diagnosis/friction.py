@@ -49,7 +49,7 @@ def _alone(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> lis
         ends = loads(model).at_ends(model)
     except AbutError:  # said elsewhere
         return []
-    for number, (load, time) in enumerate(zip(ends, model.solve.ends), start=1):
+    for number, (load, time) in enumerate(zip(ends, model.ends), start=1):
         at, force = weights(model.histories, time), constraints.free.T @ load
         motion = restraint(model.mesh, constraints, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
         given = _given(pairs, at)

@@ -11,6 +11,8 @@ from abut.mesh.facets import bodies_at
 from abut.mesh.integrals import chunks
 from abut.mesh.mesh import Mesh
 from abut.mesh.shapes import cell_shapes
+from abut.model import Model
+from abut.model.locking import locking
 
 POOR, BAD = 0.2, 0.02  # smallest scaled Jacobian (1 is best) from which on a cell is advised against, and warned of
 LONG = 100.0  # longest over shortest edge of a cell
@@ -54,6 +56,19 @@ def quality(mesh: Mesh) -> list[Finding]:
             )
         )
     return findings
+
+
+def too_stiff(model: Model) -> list[Finding]:
+    """Bodies whose cells lock: a warning for each."""
+    return [
+        Finding(
+            "warning",
+            f"body '{one.body}'",
+            f"{one.kind} cells with full integration are too stiff for Poisson's ratio {one.poisson:g}",
+            one.cure,
+        )
+        for one in locking(model)
+    ]
 
 
 def _bodies(mesh: Mesh, cells: NDArray[np.int64]) -> str:

@@ -58,7 +58,7 @@ def _unheld(model: Model, restrained: Restraint) -> list[Finding]:
     try:
         unit = sp.identity(constraints.free.shape[1], format="csr")
         springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, unit, ends)
-        factors = [weights(model.histories, time) for time in model.solve.ends]
+        factors = [weights(model.histories, time) for time in model.ends]
         require_held(restrained.helped_by(springs.gram), ends, factors)
     except SingularModelError as error:
         return [from_error(error, "bodies")]

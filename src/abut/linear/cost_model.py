@@ -111,7 +111,7 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
         pairs=len(pairs),
         bodies=len(model.mesh.bodies),
         cutting=sum(map(_cutting, pairs)),
-        steps=len(model.solve.ends),
+        steps=len(model.ends),
         stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
     )
 

@@ -26,6 +26,7 @@ from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
+from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
 
 PLANES = ("strain", "stress", "axisymmetric")
@@ -135,6 +136,16 @@ class Model:
         friction = (contact.friction_amplitude for contact in self.contacts)
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid]))
+
+    @cached_property
+    def ends(self) -> tuple[float, ...]:
+        """Time at the end of each load step: those of ``solve``, and where the way matters (friction, materials that are not
+        linear) the corners of all histories, which a step across would never see."""
+        given = self.solve.ends
+        rubs = any(contact.frictional for contact in self.contacts)
+        if not rubs and all(material.constant for material in self.materials.values()):
+            return given
+        return with_corners(given, self.histories)
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""

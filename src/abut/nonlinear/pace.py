@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from abut.model.conditions import History
+from abut.model.step_ends import named_times
 
 FIRST = 0.1  # of the way to the next goal
 EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
@@ -13,7 +14,6 @@ HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
 LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
 LEAST = 0.5  # by how much at most
 SMALLEST = 1.0 / 4096.0  # of the way to the next goal
-STRAIGHT = 1e-9  # change of slope over the slope that is none
 SAME = 1e-12  # times that differ by less are the same
 
 
@@ -108,27 +108,10 @@ class Pace:
         return min(self._share * self._leg, self._longest)
 
 
-def _named(histories: Sequence[History]) -> tuple[list[float], list[float]]:
-    """Times between the ends at which what is prescribed has a point of its table, and those of them where its direction
-    changes."""
-    named, turns = set(), set()
-    for history in histories:
-        points = () if history is None else history.points
-        for i, (time, factor) in enumerate(points):
-            if not 0.0 < time < 1.0:
-                continue
-            named.add(time)
-            before = 0.0 if i == 0 else (factor - points[i - 1][1]) / (time - points[i - 1][0])
-            after = 0.0 if i == len(points) - 1 else (points[i + 1][1] - factor) / (points[i + 1][0] - time)
-            if abs(after - before) > STRAIGHT * max(abs(before), abs(after)):
-                turns.add(time)
-    return sorted(named), sorted(turns)
-
-
 def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
     """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this; times
     are met, each in one step if it can be."""
-    named, turns = _named(histories)
+    named, turns = named_times(histories)
     if times:
         goals = [time for time in sorted({*named, *times}) if time <= times[-1]]
         return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)

@@ -65,7 +65,7 @@ def assemble(
         note(text)
     restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)
     forces = [constraints.free.T @ force for force in loaded.at_ends(model)]
-    first = restrained.at(weights(model.histories, model.solve.ends[0]))
+    first = restrained.at(weights(model.histories, model.ends[0]))
     require_balance(first, forces[0], " in step 1" if len(forces) > 1 else "")
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)

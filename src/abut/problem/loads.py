@@ -43,7 +43,7 @@ class Loads:
     def at_ends(self, model: Model) -> list[NDArray[np.float64]]:
         """The nodal forces (dim n_points,) at the end of every load step, on undeformed bodies."""
         forces = self.forces if self.following is None else self.forces + self.following
-        return [forces @ weights(model.histories, time) for time in model.solve.ends]
+        return [forces @ weights(model.histories, time) for time in model.ends]
 
 
 def loads(model: Model) -> Loads:

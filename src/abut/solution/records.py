@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,12 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.conditions import drives
+from abut.model.locking import LOCKED, STIFF, locking
 from abut.model.offset import smallest_offset
+from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
+from abut.solution.idle import idle_contacts
 from abut.solution.progress import Iteration
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
@@ -21,6 +25,7 @@ from abut.solution.stress_error import StressError
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
+TURN, TURN_NOTICED = 0.2, 0.1  # radians: lengths are wrong by half its square, 2 % and 0.5 %
 RESPONSE = 0.5  # nothing between 0 and 1
 STABILISED = 0.05  # of the work done that drags may take
 STRESS_ERROR = 1.0  # then what elements and nodes differ by is as large as the stresses that nodes show
@@ -103,6 +108,7 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
+    turn: float = 0.0  # largest of a body as a whole, radians, with small kinematics
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
@@ -125,6 +131,13 @@ class Step:
     def regularisation(self) -> float | None:
         """Force that constrains free rigid-body modes, over the reference force."""
         return None if self.spring is None else self.spring / self.reference_force
+
+    @property
+    def regularisation_limit(self) -> float:
+        """Of ``regularisation``: the resultant of what the solver leaves of the balance of forces at all points together, at
+        least and at most fixed shares of the reference force."""
+        left = self.iterations[-1].residual * float(np.sqrt(self.displacement.size)) if self.iterations else 0.0
+        return min(max(REGULARISATION, left), ROUNDED)
 
     @property
     def reference_force(self) -> float:
@@ -214,9 +227,12 @@ class Solution:
                 "loads plus reactions, over the size of the forces",
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
-            model = [balance, response] if self.model.finite else [balance, response, strain]
+            turn = Check("", "rotation", step.turn, TURN,
+                         "largest turn of a body, radians, which small kinematics takes for small",
+                         notice=TURN_NOTICED)  # fmt: skip
+            model = [balance, response] if self.model.finite else [balance, response, strain, turn]
             if step.regularisation is not None:
-                model.append(Check("", "free rigid-body modes", step.regularisation, REGULARISATION,
+                model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
                 model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
@@ -231,7 +247,26 @@ class Solution:
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
-        return (*checks, *(check for check in (self._load_steps, self._stabilisation) if check is not None))
+        whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
+        return (*checks, *self._locking, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+
+    @property
+    def _locking(self) -> tuple[Check, ...]:
+        """Whether cells are too stiff for their materials; none where nothing comes near it."""
+        found = locking(self.model)
+        if not found:
+            return ()
+        bodies = ", ".join(f"'{one.body}' of {one.kind}, {one.poisson:g}" for one in found)
+        return (
+            Check("", "locking", found[0].stiffness, LOCKED,
+                  f"bulk over shear modulus of fully integrated cells (a fiftieth of it of second order): {bodies}",
+                  notice=STIFF),
+        )  # fmt: skip
+
+    @cached_property
+    def _apart(self) -> tuple[Check, ...]:
+        """Of bodies that lie in each other, at the end of the run."""
+        return tuple(bodies_apart(self.model, self.displacement)) if self.complete else ()
 
     @property
     def _load_steps(self) -> Check | None:

@@ -1,0 +1,60 @@
+"""Cells that are too stiff for materials which hardly change their volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from abut.cells import CELLS
+from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import at_rest
+from abut.mesh.quadrature import BBAR, REDUCED
+from abut.model.model import Model
+
+STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which first order is some 10 % too stiff
+LOCKED = 100.0  # the same (0.495): by 20 to 30 %
+SECOND = 50.0  # cells of second order bear this many times as much, and are a few percent too stiff at most
+
+
+@dataclass(frozen=True)
+class Locking:
+    """body, kind of its cells, poisson: ratio; stiffness: bulk over shear modulus, of cells of second order over
+    ``SECOND``, at
+    most ``LOCKED``; cure: a
+    sentence."""
+
+    body: str
+    kind: str
+    poisson: float
+    stiffness: float
+    cure: str
+
+
+def locking(model: Model) -> list[Locking]:
+    """Bodies of fully integrated cells whose material changes its volume hardly, the worst first; none in plane stress,
+    which
+    does not lock."""
+    found = []
+    for solid in model.solids if model.plane != "stress" else ():
+        material = at_rest(solid.material)
+        if solid.integration != "full" or not isinstance(material, LinearElastic):
+            continue
+        nu = material.poisson
+        ratio = 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
+        for kind in {kind for kind, _, _ in model.mesh.cells_of(solid.body)}:
+            cell = CELLS[kind]
+            simplex = cell.corners == cell.dim + 1
+            if simplex and cell.degree == 2:  # whose linear stresses leave volume enough freedom
+                continue
+            stiffness = min(ratio / SECOND, LOCKED) if cell.degree == 2 else ratio
+            if stiffness > STIFF:
+                found.append(Locking(solid.body, kind, nu, stiffness, _cure(solid.body, kind)))
+    return sorted(found, key=lambda one: -one.stiffness)
+
+
+def _cure(body: str, kind: str) -> str:
+    if kind in BBAR:
+        return f"integration = \"b-bar\" for body '{body}'"
+    if kind in REDUCED:
+        return f"integration = \"reduced\" for body '{body}'"
+    better = {2: "quad8 or tri6", 3: "hex20 or tet10"}[CELLS[kind].dim]
+    return f"mesh body '{body}' with {better} cells, quadrilaterals and hexahedra with integration = \"reduced\""
