@@ -188,11 +188,8 @@ COARSE = ("resolution", "overlap", "oscillation")
 KINKS = ("oscillation",)
 CHORDS = ("faceting", "oscillation", "overlap")
 UNSOUND_RUNS = (
-    Run("Hertz line quad8, one facet on each side", lambda: line("quad8", (1, 1)), line_truth(), COARSE),
-    Run("Hertz ball quad8, two facets in contact", lambda: ball("quad8", 2), ball_truth(), COARSE),
-    Run("Hertz octant hex20, two facets in contact", lambda: octant("hex20", 2), ball_truth(), COARSE),
-    Run("Hertz octant hex27, two facets in contact", lambda: octant("hex27", 2), ball_truth(), COARSE),
-    Run("Hertz octant tet10, two facets in contact", lambda: octant("tet10", 2), ball_truth(), COARSE),
+    # Of second order two facets in contact are off by 5 to 18 % only: no longer wrong, though "resolution" fails.
+    Run("Hertz ball quad4, two facets in contact", lambda: ball("quad4", 2), ball_truth(), COARSE),
     Run("stiff contactor 4 times as fine, quad4", lambda: line("quad4", (16, 4), STIFF), line_truth(STIFF), KINKS),
     Run("stiff contactor twice as fine, quad4", lambda: line("quad4", (12, 6), STIFF), line_truth(STIFF), KINKS),
     Run("rigid-like contactor 4 times as fine, quad8", lambda: line("quad8", (24, 6), STIFFER), line_truth(STIFFER), KINKS),
