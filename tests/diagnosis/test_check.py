@@ -78,7 +78,7 @@ def blocks(upper: abut.Mesh | None = None, material: abut.LinearElastic = STEEL,
         mesh,
         [abut.Solid("lower", STEEL), abut.Solid("upper", material)],
         supports=[abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.02)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", name="blocks")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", name="blocks")],
     )
     return replace(model, **options)  # type: ignore[arg-type]
 
@@ -97,7 +97,7 @@ def test_what_a_deck_is_read_as(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_wrong_side_of_a_body() -> None:
     """The surfaces that do face each other are named."""
-    report = check(blocks(contacts=[abut.Contact("upper.bottom", "lower.bottom", name="blocks")]))
+    report = check(blocks(contacts=[abut.Contact(contactor="upper.bottom", target="lower.bottom", name="blocks")]))
     assert "normals of 'upper.bottom' and 'lower.bottom' point the same way" in said(report, "error")
     assert "'upper.bottom' (contactor) and 'lower.top' (target)" in said(report, "error")
     assert report.status == 2
@@ -115,7 +115,7 @@ def test_bodies_far_apart_and_gaps_that_nothing_closes() -> None:
 def test_offsets_that_come_with_time_close_gaps(offset: float, factor: float, closes: bool) -> None:
     """Offset times the amplitude's factor counts where it closes the gap of 0.5 most; the supports move by 0.02."""
     course = abut.Amplitude(((0.0, 0.0), (0.5, factor), (1.0, 0.0)))
-    contact = abut.Contact("upper.bottom", "lower.top", offset=offset, amplitude=course)
+    contact = abut.Contact(contactor="upper.bottom", target="lower.top", offset=offset, amplitude=course)
     report = check(blocks(box(x=(2, 8), y=(2, 8), z=(10.5, 15), cells=(5, 5, 3)), contacts=[contact]))
     assert closes != any("nothing closes the gap" in finding.what for finding in report.findings)
 
@@ -167,7 +167,7 @@ def test_supports_on_a_contactor() -> None:
 
 
 def test_symmetry_planes_across_a_tie_are_no_over_constraint() -> None:
-    model = blocks(contacts=[abut.Contact("upper.bottom", "lower.top", kind="tied")])
+    model = blocks(contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", kind="tied")])
     across = [*model.supports, abut.Support("upper.left", x=0), abut.Support("upper.front", y=0)]
     assert check(replace(model, supports=across)).status == 0
 
@@ -212,7 +212,7 @@ def test_loads_that_contact_cannot_balance(on: str, force: float, stands: bool) 
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         supports=[abut.Support("lower.bottom", x=0, y=0, z=0)],
         loads=[abut.Force(f"upper.{on}", (0.0, 0.0, force))],
-        contacts=[abut.Contact("upper.foot", "lower.top")],
+        contacts=[abut.Contact(contactor="upper.foot", target="lower.top")],
     )
     report = check(model)
     if stands:

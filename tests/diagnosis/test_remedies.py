@@ -41,7 +41,7 @@ def model(
             abut.Solid(body, abut.LinearElastic(E, 0.3)) for body, E in zip(("upper", "lower"), young)
         ],
         supports=[abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.01)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", name="c", **contact)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", name="c", **contact)],
     )  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def ball(**solve: Any) -> abut.Model:
         plane="strain",
         solids=[abut.Solid("ball", abut.LinearElastic(1.0, 0.3)), abut.Solid("block", abut.LinearElastic(1.0, 0.3))],
         supports=[abut.Support("block.bottom", x=0, y=0), abut.Support("ball.flat", x=0, y=-0.02)],
-        contacts=[abut.Contact("ball.round", "block.top")],
+        contacts=[abut.Contact(contactor="ball.round", target="block.top")],
         solve=abut.SolveOptions(**solve),
     )
 
@@ -215,8 +215,8 @@ def pulled(force: float, **more: Any) -> abut.Model:
         ],
         loads=[abut.Force("block.right", (force, 0.0), amplitude=then)],
         contacts=[
-            abut.Contact("block.bottom", "plate.top", name="under", friction=0.2),
-            abut.Contact("block.top", "lid.bottom", name="over", friction=0.2),
+            abut.Contact(contactor="block.bottom", target="plate.top", name="under", friction=0.2),
+            abut.Contact(contactor="block.top", target="lid.bottom", name="over", friction=0.2),
         ],
         solve=abut.SolveOptions(times=[0.5, 0.75, 1.0]),
     )  # fmt: skip

@@ -132,8 +132,10 @@ def contact_result(
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
-    return ContactResult(
+    second = (pair.contactor, forces[ids]) if pair.contact.turned else (pair.target, others[target_ids])
+    result = ContactResult(
         name=pair.contact.name,
+        named=pair.contact.named,
         contactor=_undeformed(mesh, pair.contactor),
         target=_undeformed(mesh, pair.target),
         force=amount.force,
@@ -156,12 +158,24 @@ def contact_result(
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
-        body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
+        body_forces=forces_on_bodies(*second, mesh.bodies),
         friction=None
         if at is None
         else friction_result(
             pair, at, state.multipliers, state.status, state.slips, state.limit, before, around.reference
         ),
+    )
+    return _on_second(result) if pair.contact.turned else result
+
+
+def _on_second(result: ContactResult) -> ContactResult:
+    """The same where the contactor is the side that is named second: resultants are those on the one named first."""
+    of_all, friction = result.resultant, result.friction
+    return replace(
+        result,
+        force=-result.force,
+        resultant=replace(of_all, force=-of_all.force, moment=-of_all.moment),
+        friction=friction if friction is None else replace(friction, force=-friction.force),
     )
 
 

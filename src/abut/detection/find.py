@@ -44,7 +44,7 @@ class FoundContact:
     def contact(self, **options: Any) -> Contact:
         """The contact of a model; ``options`` as for ``abut.Contact``."""
         name = options.pop("name", "") or f"{self.bodies[0]}-{self.bodies[1]}{_patch(self.contactor)}"
-        return Contact(self.contactor, self.target, name=name, **options)
+        return Contact(contactor=self.contactor, target=self.target, name=name, chosen=self.reason, **options)
 
     @property
     def note(self) -> str:

@@ -21,6 +21,7 @@ from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
     BodyForce,
+    Contact,
     Force,
     Gravity,
     Integration,
@@ -79,7 +80,8 @@ def job_table(model: Model, mesh: str) -> Json:
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "probes"):
-        records = [_load(record) if name == "loads" else _plain(record) for record in getattr(model, name)]
+        of = {"loads": _load, "contacts": _contact}.get(name, _plain)
+        records = [of(record) for record in getattr(model, name)]
         if records:
             table[name] = records
     options = _plain(model.solve)
@@ -92,6 +94,22 @@ def _load(load: Load) -> Json:
     if isinstance(load, BodyForce):
         raise InputError("a job file holds no body force; use gravity")
     return {"kind": KINDS[type(load)], **_plain(load)}
+
+
+def _contact(contact: Contact) -> Json:
+    """As the user named its sides; those that were found keep what was chosen."""
+    table = _plain(contact)
+    names: Json = {"name": table.pop("name")}
+    for key in ("first", "second", "contactor", "target", "chosen"):
+        table.pop(key, None)
+    if contact.first:
+        return {**names, "surfaces": _value(contact.named, "surfaces"), **table}
+    return {
+        **names,
+        "contactor": _value(contact.contactor, "contactor"),
+        "target": _value(contact.target, "target"),
+        **table,
+    }
 
 
 def _plain(record: Any) -> Json:

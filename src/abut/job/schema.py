@@ -266,6 +266,7 @@ class IntegrationTable(Table):
 # The model's own record says what is allowed and what is the default.
 class ContactTable(Table):
     name: str = Contact.name
+    surfaces: list[str | list[str]] = []
     contactor: str | list[str] = ""
     target: str | list[str] = ""
     auto: bool = False

@@ -187,7 +187,7 @@ def _contacts(solution: Solution) -> str:
         ]
         for c in solution.contacts
     ]
-    head = ["contact", "force on the contactor", "largest pressure", "area", "penetration", "active", "covered"]
+    head = ["contact", "force on the side named first", "largest pressure", "area", "penetration", "active", "covered"]
     text = _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
     rubbing = friction_rows(solution)
     return text + (_table(HEAD, rubbing, "Friction") if rubbing else "")
@@ -203,11 +203,11 @@ def _statistics(solution: Solution) -> str:
         "largest where less than half covered": [number(c.statistics.partly_covered) for c in solution.contacts],
         "centre of pressure": [centre(c) for c in solution.contacts],
         "moment about the origin": [moment(c) for c in solution.contacts],
-        "force on bodies of the target": [on_bodies(c) for c in solution.contacts],
+        "force on bodies of the side named second": [on_bodies(c) for c in solution.contacts],
     }
     shown = {head: cells for head, cells in columns.items() if not set(cells) <= {"none", ""}}
     return _table(
-        list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the contactor"
+        list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the side named first"
     )
 
 
