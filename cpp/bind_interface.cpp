@@ -25,10 +25,12 @@ static nb::dict couple_surfaces(Matrix<double> points_c, Vector<std::uint8_t> ki
                                 Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                 Vector<std::int32_t> subdivide_t, int degree, bool vectorial, bool keep_points,
                                 bool gap_samples, bool axisymmetric, double reach, double largest_gap, double rounding,
-                                bool hidden, Matrix<double> kin_c, Matrix<double> kin_t) {
+                                bool hidden, Matrix<double> kin_c, Matrix<double> kin_t, Matrix<double> bulge_c,
+                                Matrix<double> bulge_t) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
   add_kin(contactor, kin_c), add_kin(target, kin_t);
+  add_bulge(contactor, bulge_c), add_bulge(target, bulge_t);
   contactor.normals = normals.data();
   const RuleTable rule_table = table(rules);
   const std::size_t dim = contactor.dim, facets = contactor.facets, width = vectorial ? dim : 1;
@@ -87,8 +89,8 @@ void bind_interface(nb::module_ &m) {
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("vectorial"), nb::arg("keep_points"),
         nb::arg("gap_samples"), nb::arg("axisymmetric"), nb::arg("reach"), nb::arg("largest_gap"), nb::arg("rounding"),
-        nb::arg("hidden"), nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(),
-        "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
+        nb::arg("hidden"), nb::arg("kin_c").noconvert(), nb::arg("kin_t").noconvert(), nb::arg("bulge_c").noconvert(),
+        nb::arg("bulge_t").noconvert(), "Cuts the contactor by the target and integrates; see abut.contact.coupling.");
 }
 
 } // namespace abut

@@ -11,6 +11,15 @@ inline SurfaceView view(Matrix<double> points, Vector<std::uint8_t> kinds, Matri
   return {int(points.shape(1)), points.data(), kinds.shape(0), kinds.data(), nodes.data()};
 }
 
+// How far the smooth surface lies outside of each facet; nothing where the array is empty.
+inline void add_bulge(SurfaceView &surface, Matrix<double> bulge) {
+  if (!bulge.shape(0))
+    return;
+  if (bulge.shape(0) != surface.facets || bulge.shape(1) != MAX_FACET_NODES)
+    throw nb::value_error("bulge must be (facets, MAX_FACET_NODES)");
+  surface.bulge = bulge.data();
+}
+
 // What the facets of a surface are to others of their body; nothing where the array is empty.
 inline void add_kin(SurfaceView &surface, Matrix<double> kin) {
   if (!kin.shape(0))

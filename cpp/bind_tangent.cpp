@@ -18,12 +18,14 @@ static nb::dict couple_tangent(Matrix<double> points_c, Vector<std::uint8_t> kin
                                Vector<std::int32_t> order_t, Vector<std::int32_t> subdivide_c,
                                Vector<std::int32_t> subdivide_t, int degree, bool axisymmetric, double reach,
                                double largest_gap, double rounding, bool hidden, Matrix<double> kin_c,
-                               Matrix<double> kin_t, Matrix<double> pressure, Tensor3<double> traction,
-                               Matrix<double> turned, Matrix<std::int32_t> normal_numbers, int target_offset,
-                               std::size_t n_points, bool tangential) {
+                               Matrix<double> kin_t, Matrix<double> bulge_c, Matrix<double> bulge_t,
+                               Matrix<double> pressure, Tensor3<double> traction, Matrix<double> turned,
+                               Matrix<std::int32_t> normal_numbers, int target_offset, std::size_t n_points,
+                               bool tangential) {
   SurfaceView contactor = view(points_c, kinds_c, nodes_c);
   SurfaceView target = view(points_t, kinds_t, nodes_t);
   add_kin(contactor, kin_c), add_kin(target, kin_t);
+  add_bulge(contactor, bulge_c), add_bulge(target, bulge_t);
   contactor.normals = normals.data();
   const RuleTable rule_table = table(rules);
   const std::size_t dim = contactor.dim, rows = MAX_FACET_NODES * contactor.facets;
@@ -95,9 +97,9 @@ void bind_tangent(nb::module_ &m) {
         nb::arg("order_c").noconvert(), nb::arg("order_t").noconvert(), nb::arg("subdivide_c").noconvert(),
         nb::arg("subdivide_t").noconvert(), nb::arg("degree"), nb::arg("axisymmetric"), nb::arg("reach"),
         nb::arg("largest_gap"), nb::arg("rounding"), nb::arg("hidden"), nb::arg("kin_c").noconvert(),
-        nb::arg("kin_t").noconvert(), nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(),
-        nb::arg("turned").noconvert(), nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"),
-        nb::arg("n_points"), nb::arg("tangential"),
+        nb::arg("kin_t").noconvert(), nb::arg("bulge_c").noconvert(), nb::arg("bulge_t").noconvert(),
+        nb::arg("pressure").noconvert(), nb::arg("traction").noconvert(), nb::arg("turned").noconvert(),
+        nb::arg("normal_numbers").noconvert(), nb::arg("target_offset"), nb::arg("n_points"), nb::arg("tangential"),
         "The coupling and its derivatives by points and nodal normals; see abut.contact.coupling_tangent.");
   m.def("slip_tangent", &slip_tangent, nb::arg("points_c").noconvert(), nb::arg("nodes_c").noconvert(),
         nb::arg("normals").noconvert(), nb::arg("points_t").noconvert(), nb::arg("nodes_t").noconvert(),

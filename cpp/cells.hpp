@@ -34,6 +34,8 @@ constexpr bool quadratic(int kind) { return NODES[kind] != CORNERS[kind]; }
 // The linear type with the same corners.
 constexpr std::array<Kind, KIND_COUNT> LINEAR{LINE2, LINE2, TRI3, TRI3, QUAD4, QUAD4,  QUAD4,
                                               TET4,  TET4,  HEX8, HEX8, HEX8,  WEDGE6, WEDGE6};
+// The facet type of second order with the same corners: its own where it has middle nodes.
+constexpr std::array<Kind, 7> QUADRATIC{LINE3, LINE3, TRI6, TRI6, QUAD8, QUAD8, QUAD9};
 
 namespace detail {
 

@@ -54,7 +54,8 @@ struct Sight3 {
 
   Sight3(const Contactor3 &facet, const double *xi, const double *eta) : c(facet) { begin(xi, eta); }
   void begin(const double *xi, const double *eta) { own.begin(xi), other.begin(eta); }
-  // Looks from the contactor at p along its normal; returns the gap, or infinity where nothing is seen: theory (S2).
+  // Looks from the contactor at p along its normal; returns the gap between the smooth surfaces, or
+  // infinity where nothing is seen: theory (S2), (S14).
   double look(const Facet &t, Point2 p) {
     if (!c.locate(p, own))
       return HUGE_VAL;
@@ -65,7 +66,8 @@ struct Sight3 {
       c.facet.normal(own.xi, n);
     if (!project(t, x, n, other))
       return HUGE_VAL;
-    return (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1] + (other.x[2] - x[2]) * n[2];
+    return (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1] + (other.x[2] - x[2]) * n[2] -
+           c.facet.bulge_at(own.xi) - t.bulge_at(other.xi);
   }
   void find_shapes(const Facet &t) { c.facet.values(own.xi, nc), t.values(other.xi, nt); }
 };

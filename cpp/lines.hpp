@@ -44,7 +44,7 @@ inline double sees(const Facet &c, const double *v) {
 struct Sight2 {
   const Facet &c;
   Spot<3> other;
-  double x[3], tangent[2][3], n[3], gap = 0;
+  double x[3], tangent[2][3], n[3], gap = 0; // between the smooth surfaces
   double nc[MAX_FACET_NODES], nt[MAX_FACET_NODES];
 
   explicit Sight2(const Facet &own, double eta = 0) : c(own) { begin(eta); }
@@ -58,7 +58,7 @@ struct Sight2 {
     const double along[2] = {-n[1], n[0]};
     if (!project_line(t, x, along, other))
       return false;
-    gap = (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1];
+    gap = (other.x[0] - x[0]) * n[0] + (other.x[1] - x[1]) * n[1] - c.bulge_at(place) - t.bulge_at(other.xi);
     c.values(place, nc), t.values(other.xi, nt);
     return true;
   }

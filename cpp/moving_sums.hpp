@@ -107,7 +107,9 @@ private:
     if (rubs_)
       lever_.aim(normal_);
     see(place, normal, y);
+    apart_ = value_[GAP].v;
     find_force(at, normal, h, dh);
+    bulge(at);
   }
 
   void find_pressures(const double *xi, double *h, double (*dh)[3]) {
@@ -140,6 +142,31 @@ private:
       for (int a = 0; a < D; ++a)
         for (int s = 0; s < SEEDS; ++s)
           value_[ETA + b].d[s] += inverse[b][a] * rest[a].d[s];
+  }
+
+  // Takes the bulges of both facets off the gap; forces act on the facets themselves: theory (T8).
+  void bulge(const MovingPoint &at) {
+    double n[MAX_FACET_NODES], dn[MAX_FACET_NODES][3];
+    auto each = [&](const Facet &facet, const double *xi, auto add) {
+      if (!facet.bulge)
+        return;
+      const int kind = QUADRATIC[facet.kind];
+      shape(kind, xi, n, dn);
+      for (int i = CORNERS[kind]; i < NODES[kind]; ++i)
+        add(facet.bulge[i], i);
+    };
+    Number &gap = value_[GAP];
+    each(*c_, at.xi, [&](double height, int i) {
+      gap.v -= height * n[i];
+      for (int b = 0; b < D - 1; ++b)
+        gap.d[XI + b] -= height * dn[i][b];
+    });
+    each(*facet_, at.eta, [&](double height, int i) {
+      gap.v -= height * n[i];
+      for (int b = 0; b < D - 1; ++b)
+        for (int s = 0; s < SEEDS; ++s)
+          gap.d[s] -= height * dn[i][b] * value_[ETA + b].d[s];
+    });
   }
 
   // Of the matrix whose columns are the target's slopes and the normal.
@@ -294,7 +321,7 @@ private:
       for (int i = 0; i < c_->nodes; ++i)
         add_row(width_, area * nc_[i], along, &own_operator_[(k * c_->nodes + i) * width_]);
       if (rubs_)
-        lever_.add_operator(area * g, normal_, width_, &own_operator_[k * c_->nodes * width_]);
+        lever_.add_operator(area * apart_, normal_, width_, &own_operator_[k * c_->nodes * width_]);
       for (int j = 0; j < facet_->nodes; ++j)
         add_row(width_, -area * nt_[j], along, &other_operator_[(k * facet_->nodes + j) * width_]);
     }
@@ -390,7 +417,7 @@ private:
   std::vector<double> own_, block_, couple_, row_[ROWS + Lever<D>::FORCES], own_operator_, other_operator_;
   double own_load_[MAX_FACET_NODES * D], other_load_[MAX_FACET_NODES * D];
   Number value_[ROWS + Lever<D>::FORCES];
-  double normal_[D];
+  double normal_[D], apart_ = 0; // the facets themselves along the normal, without their bulges
   double other_slope_[2][3];
   double nc_[MAX_FACET_NODES], dnc_[MAX_FACET_NODES][3], nt_[MAX_FACET_NODES], dnt_[MAX_FACET_NODES][3];
   double h_[MAX_FACET_NODES], dh_[MAX_FACET_NODES][2];

@@ -38,6 +38,7 @@ struct Facet {
   Polynomial<3> position, direction; // of x and normals
   bool affine = false;               // the map from the reference domain is affine: one Newton step inverts it
   double bend = 0;                   // a Newton step of size s leaves an error below bend s^2: see `bend_of`
+  const double *bulge = nullptr;     // at the nodes of the `QUADRATIC` type, or none: theory (S14)
 
   void values(const double *xi, double *n) const { facet_values(kind, xi, n); }
 
@@ -45,6 +46,17 @@ struct Facet {
   void normal(const double *xi, double *n) const {
     direction.at(xi, n);
     normalize(n, dim);
+  }
+
+  // How far the smooth surface lies outside of the facet.
+  double bulge_at(const double *xi) const {
+    if (!bulge)
+      return 0;
+    double n[MAX_FACET_NODES], sum = 0;
+    facet_values(QUADRATIC[kind], xi, n);
+    for (int i = CORNERS[kind]; i < NODES[QUADRATIC[kind]]; ++i)
+      sum += bulge[i] * n[i];
+    return sum;
   }
 
   bool triangle() const { return kind == TRI3 || kind == TRI6; }

@@ -20,6 +20,7 @@ Facet SurfaceView::facet(std::size_t f) const {
   if (out.affine)
     out.position.terms = 3;
   out.bend = bend_of(out);
+  out.bulge = bulge ? bulge + MAX_FACET_NODES * f : nullptr;
   return out;
 }
 

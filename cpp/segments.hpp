@@ -23,6 +23,7 @@ struct SurfaceView {
   const std::int32_t *nodes;       // facets x MAX_FACET_NODES
   const double *normals = nullptr; // facets x MAX_FACET_NODES x dim, contactor only
   const double *kin = nullptr;     // facets x KIN, of surfaces that may touch themselves
+  const double *bulge = nullptr;   // facets x MAX_FACET_NODES: how far the smooth surface lies outside of each facet
   Facet facet(std::size_t f) const;
   const std::int32_t *facet_nodes(std::size_t f) const { return nodes + MAX_FACET_NODES * f; }
 };

@@ -11,7 +11,8 @@ import scipy.sparse as sp
 from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
-from abut.contact.geometry import Smoothing, nodal_normals, smoothing
+from abut.cells import CELLS
+from abut.contact.geometry import Smoothing, by_kind, facet_sizes, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
 from abut.errors import InputError
 from abut.mesh.surface import Surface
@@ -63,18 +64,19 @@ def load(contactor: Surface, seed: int = 3) -> tuple[Array, Array]:
     return rng.uniform(0.5, 1.0, n), rng.uniform(-1.0, 1.0, (n, contactor.dim))
 
 
-def force(coupling: Coupling, contactor: Surface, n_points: int, pressure: Array, traction: Array) -> Array:
+def force(coupling: Coupling, sides: tuple[Surface, Surface], pressure: Array, traction: Array) -> Array:
     """Sum over the integration points of couple: p N + (I - N N) t, times N_C - N_T, and what takes up the couple."""
-    points = coupling.points
+    points, contactor = coupling.points, sides[0]
     assert points is not None
+    x = np.concatenate([side.points for side in sides])
     n, t = points.normal, points.pressure @ traction
     value = (points.pressure @ pressure)[:, None] * n + t - n * (t * n).sum(axis=1, keepdims=True)
     dim = n.shape[1]
     entries = points.gap_operator.tocoo()
     shape = entries.data * n[entries.row, entries.col % dim]  # summed over the components: shape functions
-    result = np.zeros((n_points, dim))
+    result = np.zeros((len(x), dim))
     np.add.at(result, entries.col // dim, shape[:, None] * (points.weight[:, None] * value)[entries.row])
-    result[: len(contactor.points)] += couples(contactor, points, t)
+    result[: len(contactor.points)] += couples(contactor, points, t, points.gap_operator @ x.ravel())
     return result.ravel()
 
 
@@ -96,7 +98,7 @@ def values(
         replace(target, points=target.points + move[n:]),
     )
     result = couple(*moved, degree, replace(options, keep_points=True), across=across)
-    return result.gap, result.weight, force(result, moved[0], len(move), *load(contactor))
+    return result.gap, result.weight, force(result, moved, *load(contactor))
 
 
 def error(
@@ -135,6 +137,31 @@ def test_lines(contactor: str, target: str, axisymmetric: bool) -> None:
 @pytest.mark.parametrize("contactor", FACES)
 def test_faces(contactor: str, target: str) -> None:
     assert error(faces((contactor, target)), degree=2) < TOLERANCE
+
+
+def bulged(surface: Surface, seed: int) -> Surface:
+    """With bulges of a tenth of a facet: coefficients of the middle nodes."""
+    size = 0.1 * facet_sizes(surface).mean()
+    bulge = np.zeros((len(surface), 9))
+    for kind, facets in by_kind(surface):
+        corners = CELLS[kind].corners
+        middles = slice(corners, corners + (1 if surface.dim == 2 else corners))
+        shape = bulge[facets, middles].shape
+        bulge[facets, middles] = np.random.default_rng(seed).uniform(0.3, 1.0, shape) * size
+    return replace(surface, bulge=bulge)
+
+
+@pytest.mark.parametrize(
+    "pair", [*(lines((a, b)) for a in LINES for b in LINES), *(faces((a, b)) for a in FACES for b in FACES)]
+)
+def test_bulges(pair: tuple[Surface, Surface]) -> None:
+    """They change the gap alone: forces, weights and what takes up couples stay those of the facets."""
+    flat, bulgy = pair, (bulged(pair[0], 8), bulged(pair[1], 9))
+    assert error(bulgy, seed=7) < TOLERANCE
+    seen = [couple(*each, 1, replace(FIXED, keep_points=True)) for each in (flat, bulgy)]
+    assert abs(seen[0].operator - seen[1].operator).max() == 0.0
+    assert (seen[1].gap <= seen[0].gap).all()
+    assert (seen[1].gap < seen[0].gap).any()
 
 
 @pytest.mark.parametrize("degree", [0, 1])

@@ -17,8 +17,8 @@ EDGES = {  # corner by corner
 }
 
 
-def couples(contactor: Surface, at: IntegrationPoints, traction: Array) -> Array:
-    """(n_points of the contactor, dim); traction: (n, dim) at the integration points."""
+def couples(contactor: Surface, at: IntegrationPoints, traction: Array, apart: Array) -> Array:
+    """(n_points of the contactor, dim); at the integration points traction: (n, dim), apart: (n,) between the facets."""
     result = np.zeros_like(contactor.points)
     for kind, facets in by_kind(contactor):
         share = np.array(EDGES[CELLS[kind].corners])
@@ -27,6 +27,6 @@ def couples(contactor: Surface, at: IntegrationPoints, traction: Array) -> Array
         edges = np.einsum("ie,nia->nea", share, contactor.points[nodes])
         frame = np.concatenate([edges, at.normal[here][:, None]], axis=1)
         dual = np.linalg.inv(frame).transpose(0, 2, 1)[:, :-1]
-        size = (at.weight * at.gap)[here][:, None] * np.einsum("nea,na->ne", dual, traction[here])
+        size = (at.weight * apart)[here][:, None] * np.einsum("nea,na->ne", dual, traction[here])
         np.add.at(result, nodes, np.einsum("ie,ne,na->nia", share, size, at.normal[here]))
     return result

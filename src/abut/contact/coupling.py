@@ -247,6 +247,8 @@ def cutting_arguments(
         "rounding": no_gap(contactor, target, options.adjust),
         "hidden": options.hidden,
         **_kin(part, target),
+        "bulge_c": _bulge(part),
+        "bulge_t": _bulge(target),
     }
 
 
@@ -259,6 +261,10 @@ def _kin(contactor: Surface, target: Surface) -> Json:
         "kin_c": np.ascontiguousarray(mine) if both else none,
         "kin_t": np.ascontiguousarray(other) if both else none,
     }
+
+
+def _bulge(surface: Surface) -> NDArray[np.float64]:
+    return np.zeros((0, MAX_FACET_NODES)) if surface.bulge is None else np.ascontiguousarray(surface.bulge)
 
 
 def _among_all(raw: Json, facets: NDArray[np.int64], n: int) -> Json:

@@ -17,6 +17,7 @@ from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import non_negative
 from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degree
+from abut.contact.bulge import at_reference
 from abut.contact.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.contact.pressure_space import PressureSpace, facet_functions
 from abut.mesh.surface import Surface
@@ -139,4 +140,5 @@ def _meet(
     else:
         facing = np.einsum("pd,pd->p", np.cross(tangents[:, :, 0], tangents[:, :, 1]), normals) < 0.0
     shape, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+    along = along - np.where(inside, at_reference(target, kind, facets, xi), 0.0)
     return shape, along, inside & facing & regular

@@ -23,6 +23,9 @@ class Surface:
     kin: (n_facets, 10) where the surface may touch itself (``abut.contact.self_contact``): number of the body, rank (of
             two facets the lower is the contactor), and of the undeformed body middle, normal, how far its other side may
             be, thickness.
+    bulge: (n_facets, 9) how far the smooth surface lies outside of each facet, a length: coefficients of the functions of
+            middle nodes of the facet of second order with the same corners (``abut.contact.bulge``); None where it is flat.
+            They belong to the facets, wherever these move.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 
@@ -35,6 +38,7 @@ class Surface:
     axisymmetric: bool = False
     parts: NDArray[np.int64] | None = None
     kin: NDArray[np.float64] | None = None
+    bulge: NDArray[np.float64] | None = None
 
     @property
     def dim(self) -> int:
@@ -55,6 +59,7 @@ class Surface:
             local=self.local[facets],
             parts=None if self.parts is None else self.parts[facets],
             kin=None if self.kin is None else self.kin[facets],
+            bulge=None if self.bulge is None else self.bulge[facets],
         )
 
     def __len__(self) -> int:

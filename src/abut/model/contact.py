@@ -15,6 +15,7 @@ KINDS = ("contact", "tied")
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
+GEOMETRIES = ("curved", "faceted")
 RULES = ("gauss", "newton-cotes")
 SIDES = ("first", "second", "contactor", "target")
 STATED = {"decides": False}  # of fields that say how the sides were named, and do not decide the solution
@@ -53,8 +54,10 @@ class Contact:
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
     that of friction by its square root);
-    ``method``: the node-to-segment ones are for comparison only. ``law``: "complementarity", "constraint-function" or
-    a law of your own (``abut.contact.laws.Law``). ``friction``: Coulomb's coefficient, an expression of x, y and z
+    ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
+    "faceted" does not; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only.
+    ``law``: "complementarity", "constraint-function" or a law of your own (``abut.contact.laws.Law``). ``friction``:
+    Coulomb's coefficient, an expression of x, y and z
     ("0.1 + 0.2*x") or a function of position, points (n, dim) -> (n,), both taken in the undeformed mesh, pairs of pressure
     and coefficient, linear between and constant outside, or "rough" for surfaces that never slip while they touch; times
     ``friction_amplitude``, constant where that is left out. With friction the result depends on the order of the loads, and
@@ -81,6 +84,7 @@ class Contact:
     amplitude: History = None
     friction: Friction = 0.0
     friction_amplitude: History = None
+    geometry: str = "curved"
     contactor: Names = field(default="", kw_only=True)
     target: Names = field(default="", kw_only=True)
     chosen: str = field(default="", kw_only=True, compare=False, metadata=STATED)
@@ -95,6 +99,7 @@ class Contact:
         if isinstance(self.law, str) or not isinstance(self.law, Law):
             checks.choice(self.law, f"{where}: law", LAWS)
         checks.choice(self.method, f"{where}: method", METHODS)
+        checks.choice(self.geometry, f"{where}: geometry", GEOMETRIES)
         if self.method != METHODS[0] and (self.kind, self.law, self.pressure) != ("contact", LAWS[0], "auto"):
             raise InputError(
                 f"{where}: method {self.method} is a reference for comparison: it knows only kind contact, law "

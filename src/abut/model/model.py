@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.bodies.integration import check_integration
 from abut.bodies.solids import Solids
+from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
 from abut.contact.sides import (
     Names,
@@ -29,7 +30,7 @@ from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, Equation, History, Load, Rigid, Support
 from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
-from abut.model.contact import Contact
+from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
@@ -37,6 +38,7 @@ from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
+from abut.model.symmetry import held_directions
 
 PLANES = ("strain", "stress", "axisymmetric")
 
@@ -160,7 +162,13 @@ class Model:
 
     @cached_property
     def _sides(self) -> dict[str, Sides]:
-        return {c.name: self._surfaces(c, c.contactor, c.target) for c in self.contacts}
+        held = held_directions(self.mesh, self.supports)
+        made = {}
+        for c in self.contacts:
+            both = self._surfaces(c, c.contactor, c.target)
+            curved = c.kind != "tied" and c.geometry == GEOMETRIES[0]
+            made[c.name] = (with_bulge(both[0], held), with_bulge(both[1], held)) if curved else both
+        return made
 
     def _surfaces(self, contact: Contact, contactor: Names, target: Names) -> Sides:
         if self.finite and contact.kind != "tied":

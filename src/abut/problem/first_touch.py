@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
+from abut.contact.bulge import bulge_at
 from abut.contact.geometry import facet_sizes
 from abut.mesh.surface import Surface
 from abut.problem.slip_points import SlipPoints
@@ -34,6 +35,8 @@ def apart(points: SlipPoints, sides: Sides) -> Array:
     across = -_unit(_interpolated(points.own, sides.normals[own]))
     facing = _unit(_interpolated(points.other, sides.target_normals[other]))
     between = _at(sides.contactor, own, points.own) - _at(sides.target, other, points.other)
+    over = bulge_at(sides.contactor, own, points.own) + bulge_at(sides.target, other, points.other)
+    between = between - over[:, None] * across
     bends, target_bends = _bend(sides.contactor, sides.normals)[own], _bend(sides.target, sides.target_normals)[other]
     share = (ROLLING * (bends + 2.0 * target_bends) / (bends + target_bends))[:, None]
     moved = _turned_along(between, _unit(share * across + (1.0 - share) * facing), across)

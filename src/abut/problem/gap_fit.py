@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut._core import couple_surfaces
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import sound_facets
+from abut.contact.bulge import bulge_at
 from abut.contact.coupling import CouplingOptions, cutting_arguments
 from abut.contact.geometry import Smoothing, by_kind, corner_functions, nodal_normals
 from abut.mesh.surface import Surface
@@ -122,7 +123,9 @@ def _rigid_gaps(sides: MovedSides, sight: Sight, normals: Array) -> tuple[Array,
         y = np.einsum("qk,qkd->qd", at.other, target.points[other[at.target_facet]] - start[at.facet, None])
         normal = -np.einsum("qk,qkd->qd", at.own, normals[at.facet])
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        return np.asarray((x * normal).sum(axis=1) - np.einsum("qa,qab,qb->q", y, turn[at.facet], normal))
+        apart = (x * normal).sum(axis=1) - np.einsum("qa,qab,qb->q", y, turn[at.facet], normal)
+        over = bulge_at(contactor, at.facet, at.own) + bulge_at(target, at.target_facet, at.other)
+        return np.asarray(apart - over)
 
     return gaps(sight.points), gaps(sight.samples)
 

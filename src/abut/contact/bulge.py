@@ -1,0 +1,247 @@
+"""The smooth surface over flat facets: how far it bulges out over each chord, theory (S14) to (S16)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.cells import CELLS, MAX_FACET_NODES
+from abut.contact.geometry import area_vectors, by_kind, split_at_creases, straight
+from abut.mesh.surface import Surface
+from abut.types import Sparse
+
+COMPANION = {"line2": "line3", "tri3": "tri6", "quad4": "quad8"}  # of second order with the same corners
+ROUNDING = 1e-9  # of an edge's length: lower bulges are rounding of the coordinates
+ON_CHORD = 0.1  # of the bulge: middle nodes of a second order facet that lie lower stand on its chord
+NO_SPREAD = 1e-8  # of the largest eigenvalue of a fit: facets side by side in a row say nothing across it
+ENOUGH = 6  # neighbours of a point from which on they determine a surface of second order
+TURNS = 4  # repetitions of the fit, of which each makes the error of steep slopes smaller by their square
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Held:
+    """Directions (n, dim, unit) in which points (n,) of a mesh are held: planes of symmetry, where a surface continues as
+    its mirror image."""
+
+    points: NDArray[np.int64]
+    directions: Array
+
+
+def with_bulge(surface: Surface, held: Held | None = None) -> Surface:
+    """The surface with its ``bulge``: None where it is flat everywhere."""
+    if not len(surface):
+        return surface
+    split, owner = split_at_creases(surface)
+    normals = _vertex_normals(split, owner, held)
+    bulge = np.zeros((len(surface), MAX_FACET_NODES))
+    for kind, facets in by_kind(surface):
+        corners = CELLS[kind].corners
+        for edge in range(1 if surface.dim == 2 else corners):
+            a, b = (split.nodes[facets, (edge + i) % corners] for i in range(2))
+            height = _sagitta(split.points[b] - split.points[a], normals[a], normals[b])
+            if CELLS[kind].degree == 2:
+                middle = split.points[split.nodes[facets, corners + edge]]
+                height = _over_chord(
+                    height, middle - 0.5 * (split.points[a] + split.points[b]), normals[a] + normals[b]
+                )
+            bulge[facets, corners + edge] = height
+        if CELLS[kind].nodes == MAX_FACET_NODES:
+            bulge[facets, 8] = 0.5 * bulge[facets, 4:8].sum(axis=1)
+    return replace(surface, bulge=bulge) if bulge.any() else surface
+
+
+def bulge_at(surface: Surface, facet: NDArray[np.int64], shapes: Array) -> Array:
+    """How far the smooth surface lies outside of facets (n,) where their shape functions have the values (n, 9), (n,)."""
+    result = np.zeros(len(facet))
+    if surface.bulge is None:
+        return result
+    for kind, _ in by_kind(surface):
+        at = np.flatnonzero(surface.kinds[facet] == CELLS[kind].code)
+        n, height = shapes[at], surface.bulge[facet[at]]
+        corners = CELLS[kind].corners
+        if CELLS[kind].degree == 2:
+            functions = n[:, corners:]
+        elif CELLS[kind].dim == 1 or corners == 3:
+            functions = 4.0 * n[:, :corners] * n[:, (np.arange(corners) + 1) % corners]
+        else:
+            along = n[:, :4] + n[:, [1, 2, 3, 0]]  # what is left of the way to the edge opposite
+            functions = 4.0 * along * along[:, [1, 2, 3, 0]] * along[:, [3, 0, 1, 2]]
+        result[at] = (functions * height[:, corners : corners + functions.shape[1]]).sum(axis=1)
+    return result
+
+
+def at_reference(surface: Surface, kind: str, facets: NDArray[np.int64], xi: Array) -> Array:
+    """The same on facets (n,) of one kind at reference points (n, dim of the facet)."""
+    if surface.bulge is None:
+        return np.zeros(len(facets))
+    cell = CELLS[COMPANION.get(kind, kind)]
+    values, _ = shape_functions(cell.code, np.ascontiguousarray(xi))
+    middles = slice(cell.corners, cell.nodes)
+    return np.asarray((values[:, middles] * surface.bulge[facets, middles]).sum(axis=1))
+
+
+def _sagitta(edge: Array, normal: Array, other: Array) -> Array:
+    """Height (n,) of arcs over their chords ``edge`` (n, dim) between unit normals at both ends: theory (S15). The harmonic
+    mean of both slopes is that of an arc where they agree, and none where the surface bends at one end only, as the flat
+    beside a fillet does."""
+    length = np.linalg.norm(edge, axis=1)
+    one, two = -(normal * edge).sum(axis=1) / length, (other * edge).sum(axis=1) / length
+    both = one * two > 0.0
+    slope = np.where(both, 2.0 * one * two / np.where(both, one + two, 1.0), 0.0)
+    height = 0.5 * length * slope / (1.0 + np.sqrt(np.maximum(1.0 - slope**2, 0.0)))
+    return np.where(np.abs(height) > ROUNDING * length, height, 0.0)
+
+
+def _over_chord(height: Array, middle: Array, normal: Array) -> Array:
+    """What is missing at middle nodes that lie at ``middle`` (n, dim) from those of the chords; nothing where the facet is
+    curved itself."""
+    there = (middle * normal).sum(axis=1) / np.linalg.norm(normal, axis=1)
+    return np.where(np.abs(there) <= ON_CHORD * np.abs(height), height - there, 0.0)
+
+
+def _vertex_normals(split: Surface, owner: NDArray[np.int64], held: Held | None) -> Array:
+    """Unit normals (n_points, dim) of the smooth surface at the corners of a surface that is split at its creases, zero at
+    other points: theory (S16)."""
+    plain = straight(split)
+    unit = area_vectors(plain).sum(axis=1)
+    unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-300)
+    facet, local = np.nonzero(plain.nodes >= 0)
+    shape = len(plain.points), len(plain)
+    around = sp.csr_matrix((np.ones(len(facet)), (plain.nodes[facet, local], facet)), shape=shape)
+    rim, neighbours = _rim_points(plain), np.diff((around @ around.T).tocsr().indptr) - 1
+    few = np.zeros(len(plain.points), dtype=bool)
+    few[rim] = True
+    few |= (neighbours < ENOUGH) & (plain.dim == 3)
+    keep = sp.diags((~few).astype(float))
+    ring = (keep @ around + sp.diags(few.astype(float)) @ (around @ (around.T @ around))).tocsr()
+    ring.eliminate_zeros()
+    normals = _fitted(plain, ring, unit)
+    if held is not None:
+        _mirror(normals, plain, owner[rim], rim, held)
+    if plain.axisymmetric:
+        on_axis = plain.points[:, 0] <= ROUNDING * np.abs(plain.points[:, 0]).max()
+        normals[on_axis, 0] = 0.0
+    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))
+
+
+def _rim_points(plain: Surface) -> NDArray[np.int64]:
+    """Corners at which a surface ends (or was split)."""
+    if plain.dim == 2:
+        ids, count = np.unique(plain.nodes[plain.nodes >= 0], return_counts=True)
+        return ids[count == 1].astype(np.int64)
+    pairs = []
+    for kind, facets in by_kind(plain):
+        n = CELLS[kind].corners
+        nodes = plain.nodes[facets, :n].astype(np.int64)
+        pairs.append(np.sort(np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2))
+    edges, count = np.unique(np.concatenate(pairs), axis=0, return_counts=True)
+    return np.unique(edges[count == 1])
+
+
+def _fitted(plain: Surface, ring: Sparse, unit: Array) -> NDArray[np.float64]:
+    """Normals at the points of a surface of straight facets, which in the plane square to the mean of those around turn
+    linearly, so that in the middles of the edges around they are square to these. ring: (n_points, n_facets) which facets
+    lie around; unit: (n_facets, dim) their normals."""
+    n, dim = plain.points.shape
+    at = ring.tocoo()
+    mean = np.asarray(ring.astype(bool).astype(float) @ unit)
+    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+    frame = _tangents(mean)
+    size = np.maximum(
+        np.sqrt(_row_mean(ring, ((plain.points[at.row] - _middles(plain)[at.col]) ** 2).sum(axis=1))), 1e-300
+    )
+    row, along, place, up = _edges_around(plain, at, frame, mean, size)
+    close = 1.0 / np.maximum((place**2).sum(axis=1), 1e-12)
+    terms = [along, along * place] if dim == 2 else [
+        along, along * place, (along[:, 0] * place[:, 1] + along[:, 1] * place[:, 0])[:, None]
+    ]  # fmt: skip
+    design = np.hstack(terms)
+    m = design.shape[1]
+    gather = sp.csr_matrix((close, (row, np.arange(len(row)))), shape=(n, len(row)))
+    products = gather @ (design[:, :, None] * design[:, None, :]).reshape(len(row), m * m)
+    inverse = np.linalg.pinv(products.reshape(n, m, m), rcond=NO_SPREAD, hermitian=True)
+    lean, fit = np.zeros((n, dim - 1)), np.zeros((n, m))
+    for _ in range(TURNS):
+        slope = _slopes(fit[row], place)
+        upright = np.sqrt(np.maximum(1.0 - (slope**2).sum(axis=1), 0.0))
+        fit = np.einsum("nab,nb->na", inverse, gather @ (design * (up * upright)[:, None]))
+    lean = fit[:, : dim - 1]
+    upright = np.sqrt(np.maximum(1.0 - (lean**2).sum(axis=1), 0.0))
+    return np.asarray(upright[:, None] * mean - np.einsum("na,nad->nd", lean, frame))
+
+
+def _slopes(fit: Array, place: Array) -> Array:
+    """g + H x of coefficients (n, m) at places (n, dim - 1)."""
+    if place.shape[1] == 1:
+        return fit[:, :1] + fit[:, 1:] * place
+    return fit[:, :2] + fit[:, 2:4] * place + fit[:, 4:] * place[:, ::-1]
+
+
+def _edges_around(
+    plain: Surface, at: Sparse, frame: Array, mean: Array, size: Array
+) -> tuple[NDArray[np.int64], Array, Array, Array]:
+    """The edges of the facets around each point: its number, and in its frame (dim - 1 tangents, normal) the edge's unit
+    vector along the tangents, its middle over ``size``, and the unit vector's rise along the normal."""
+    rows, ends = [], []
+    for kind, facets in by_kind(plain):
+        pick = np.isin(at.col, facets)
+        corners = CELLS[kind].corners
+        nodes = plain.nodes[at.col[pick], :corners].astype(np.int64)
+        for edge in range(1 if plain.dim == 2 else corners):
+            rows.append(at.row[pick].astype(np.int64))
+            ends.append(nodes[:, [edge, (edge + 1) % corners]])
+    row, x = np.concatenate(rows), plain.points[np.concatenate(ends)]
+    step, middle = x[:, 1] - x[:, 0], x.mean(axis=1) - plain.points[row]
+    step = step / np.maximum(np.linalg.norm(step, axis=1, keepdims=True), 1e-300)
+    along, place = (np.einsum("nad,nd->na", frame[row], v) for v in (step, middle))
+    return row, along, place / size[row, None], (mean[row] * step).sum(axis=1)
+
+
+def _tangents(normal: Array) -> NDArray[np.float64]:
+    """Unit vectors (n, dim - 1, dim) square to unit vectors (n, dim)."""
+    if normal.shape[1] == 2:
+        return np.stack([normal[:, 1], -normal[:, 0]], axis=1)[:, None]
+    axis = np.eye(3)[np.abs(normal).argmin(axis=1)]
+    one = np.cross(axis, normal)
+    one /= np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300)
+    return np.stack([one, np.cross(normal, one)], axis=1)
+
+
+def _middles(plain: Surface) -> NDArray[np.float64]:
+    """Means of the facets' corners, (n_facets, dim)."""
+    used = plain.nodes >= 0
+    return np.asarray(
+        (plain.points[np.maximum(plain.nodes, 0)] * used[..., None]).sum(axis=1) / used.sum(axis=1)[:, None]
+    )
+
+
+def _row_mean(ring: Sparse, values: Array) -> NDArray[np.float64]:
+    """Mean of values at the entries of each row."""
+    at = ring.tocoo()
+    count = np.bincount(at.row, minlength=ring.shape[0])
+    return np.asarray(np.bincount(at.row, values, ring.shape[0]) / np.maximum(count, 1))
+
+
+def _mirror(normals: Array, plain: Surface, points: NDArray[np.int64], rim: NDArray[np.int64], held: Held) -> None:
+    """Normals where a surface ends at a plane of symmetry lie in it: those that lean out of it by less than facets turn.
+    rim: (m,) where it ends, as points of the split surface; points: (m,) the same of the mesh."""
+    turn = np.zeros(len(normals))
+    unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    used = plain.nodes >= 0
+    at = unit[np.maximum(plain.nodes, 0)]
+    mean = (at * used[..., None]).sum(axis=1) / used.sum(axis=1)[:, None]
+    far = np.where(used, np.linalg.norm(at - mean[:, None], axis=2), 0.0).max(axis=1)
+    np.maximum.at(turn, plain.nodes[used], np.broadcast_to(far[:, None], used.shape)[used])
+    order = np.argsort(held.points, kind="stable")
+    first, last = (np.searchsorted(held.points[order], points, side) for side in ("left", "right"))
+    for k in range(int((last - first).max(initial=0))):
+        here = rim[first + k < last]
+        direction = held.directions[order[(first + k)[first + k < last]]]
+        lean = (normals[here] * direction).sum(axis=1)
+        leans = np.abs(lean) <= turn[here]
+        normals[here[leans]] -= lean[leans, None] * direction[leans]
