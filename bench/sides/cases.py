@@ -28,7 +28,7 @@ PUNCHED = 0.8  # of a flat punch's half width: at its edge the pressure has no l
 @dataclass(frozen=True)
 class Case:
     """kind: of the problem; cells: of both sides; ratio: of moduli, first side over second; sizes: facets of both sides over
-    the same length; model: without roles; error: of a solution, over the largest pressure, at facet corners or at all nodes."""
+    the same length; model: without roles; error: of a solution, over the largest pressure, at corners or at all nodes."""
 
     kind: str
     cells: tuple[str, str]
@@ -163,7 +163,7 @@ def rings(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
 
 
 def punch(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
-    """A flat punch with sharp edges, 1e4 times as stiff as the block (``ratio`` counts for nothing): 1 / (pi (1 - x^2)^1/2)."""
+    """A flat punch with sharp edges, 1e4 times as stiff as the block (whatever ``ratio`` is): 1 / (pi (1 - x^2)^1/2)."""
 
     def model() -> abut.Model:
         n, m = sizes

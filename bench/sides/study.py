@@ -84,7 +84,7 @@ def line_of(row: Row) -> list[str]:
         if any(CELLS[cell].degree == 2 for cell in case.cells):
             numbers += f" ({100 * row.everywhere[side]:.1f})"
         text.append(numbers + (" *" if row.chosen == side else ""))
-    return text + [row.why]
+    return [*text, row.why]
 
 
 HEADER = ["problem", "cells", "ratio", "facets", "first", "second", "abut's choice (*)"]

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from abut.cells import CELLS
 from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
-from abut.cells import CELLS
 from abut.contact.geometry import Smoothing, by_kind, facet_sizes, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
 from abut.errors import InputError

@@ -336,7 +336,7 @@ def test_a_job_with_lists_and_bodies(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert {"contact_lid_0002.vtu", "contact_base_0002.vtu", "probe_under.csv", "report.html"} <= {
         p.name for p in results.iterdir()
     }
-    assert "force on the bodies of the target: inner" in capsys.readouterr().out
+    assert "force on the bodies of 'inner' and 'outer': inner" in capsys.readouterr().out
     assert "inner" in (results / "report.html").read_text()
     assert main(["check", str(tmp_path / "job.toml")]) == 0
     model = load_job(tmp_path / "job.toml").model

@@ -99,7 +99,7 @@ def test_wrong_side_of_a_body() -> None:
     """The surfaces that do face each other are named."""
     report = check(blocks(contacts=[abut.Contact(contactor="upper.bottom", target="lower.bottom", name="blocks")]))
     assert "normals of 'upper.bottom' and 'lower.bottom' point the same way" in said(report, "error")
-    assert "'upper.bottom' (contactor) and 'lower.top' (target)" in said(report, "error")
+    assert "face each other are 'lower.top' and 'upper.bottom': use them" in said(report, "error")
     assert report.status == 2
 
 
@@ -147,8 +147,8 @@ def test_the_softer_side_should_be_the_contactor() -> None:
     assert "swap contactor and target" in said(check(stiff), "advice")
     assert check(stiff).status == 0
     assert check(blocks(material=SOFT)).count("advice") == 0
-    coarse = blocks(box(x=(2, 8), y=(2, 8), z=(10, 15), cells=(1, 1, 1)))
-    assert "times coarser than its target" in said(check(coarse), "advice")
+    fine = blocks(box(x=(2, 8), y=(2, 8), z=(10, 15), cells=(12, 12, 1)))
+    assert "times finer than its target" in said(check(fine), "advice")
 
 
 def test_contradicting_supports() -> None:
@@ -254,7 +254,7 @@ def test_pairs_are_written_out(tmp_path: Path, capsys: pytest.CaptureFixture[str
     job, out = tmp_path / "job.toml", tmp_path / "pairs.toml"
     job.write_text(TEXT.replace('contactor = "upper.bottom"\ntarget = "lower.top"', "auto = true"))
     assert main(["check", str(job), "--write-pairs", str(out)]) == 0
-    assert "found: 'auto:upper-lower'" in capsys.readouterr().out
+    assert "found: 'auto:lower-upper'" in capsys.readouterr().out
     assert load_job(out).model.contacts == load_job(job).model.contacts
     assert main(["check", str(out), "--write-pairs", str(tmp_path / "again.toml")]) == 2
     assert "nothing to write out" in capsys.readouterr().err

@@ -106,7 +106,8 @@ def stacked() -> abut.Model:
         ],
         rigid=[abut.Rigid("back", x=0.05, y=0.0, rx=0.0, rz=0.0, amplitude=THEN)], equations=equal,
         contacts=[
-            abut.Contact(contactor="pad.bottom", target="slab.top", friction=0.2), abut.Contact(contactor="slab.bottom", target="ground.top", friction=0.6),
+            abut.Contact(contactor="pad.bottom", target="slab.top", friction=0.2),
+                abut.Contact(contactor="slab.bottom", target="ground.top", friction=0.6),
         ], solve=TWO_STEPS,
     )  # fmt: skip
 

@@ -60,6 +60,7 @@ def ball(cells: int = 2) -> abut.Model:
             abut.Support("low.bottom", x=0, y=0, z=0), abut.Support("up.top", y=0),
             abut.Support("up.top", z=-PRESSED, amplitude=press), abut.Support("up.top", x=ROLLED, amplitude=roll),
         ],
-        contacts=[abut.Contact(contactor="ball", target="low.top", friction=0.3), abut.Contact(contactor="ball", target="up.bottom", friction=0.3)],
+        contacts=[abut.Contact(contactor="ball", target="low.top", friction=0.3),
+            abut.Contact(contactor="ball", target="up.bottom", friction=0.3)],
         kinematics="finite",
     )  # fmt: skip

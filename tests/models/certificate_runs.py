@@ -162,7 +162,8 @@ SOUND_RUNS = (
     Run("hub on a long shaft", lambda: sleeve(False, "quad8"), beside_fine_sleeve),
     Run("hub on less than two facets of its shaft", lambda: sleeve(True, "quad4", (3, 8)), beside_fine_sleeve),
     Run("sheet under a cover", sheets, worst(even(1.0), rests)),
-    Run("a sheet, and the cover behind it", lambda: sheets(abut.Contact(contactor="base.top", target=["sheet.bottom", "cover.bottom"])),
+    Run("a sheet, and the cover behind it", lambda: sheets(
+        abut.Contact(contactor="base.top", target=["sheet.bottom", "cover.bottom"])),
         worst(even(1.0), rests)),
 )  # fmt: skip
 
@@ -197,7 +198,8 @@ UNSOUND_RUNS = (
         outside, ("oscillation",)),
     Run("P0 checkerboard of the tour", lambda: two_blocks("P0"), falsely_open, ("oscillation",)),
     Run("a layer behind pulled through the one in front", lambda: sheets(
-        abut.Contact(contactor="base.top", target="sheet.bottom"), abut.Contact(contactor="base.top", target="cover.bottom", offset=-0.063)),
+        abut.Contact(contactor="base.top", target="sheet.bottom"),
+            abut.Contact(contactor="base.top", target="cover.bottom", offset=-0.063)),
         rests, ("covered twice",)),
     Run("Young's modulus in GPa", lambda: units(tubes((24, 24))), outside, ("strain",)),
     Run("motion in metres", lambda: moved(0.03, unit=1e-3), outside, ("response",)),

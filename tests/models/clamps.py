@@ -52,7 +52,8 @@ def clamp(
     return abut.Model(
         mesh, [abut.Solid("body", RUBBER)],
         [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.03, y=-GAP - closing), *between],
-        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="jaws", **contact)], plane=None if solid else "strain", kinematics="finite",
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="jaws", **contact)],
+        plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
 
 
@@ -114,7 +115,8 @@ def tube(
     between = [abut.Support("bottom", z=0.0), abut.Support("top", z=0.0)] if solid else []
     middle = [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.0, y=-2.0 * INNER - closing)]
     return abut.Model(
-        mesh, [abut.Solid("body", RUBBER)], [*middle, *between], contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="inside", **contact)],
+        mesh, [abut.Solid("body", RUBBER)], [*middle, *between],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="inside", **contact)],
         plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
 

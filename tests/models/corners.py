@@ -35,7 +35,8 @@ def pin_in_cradle(friction: float, above: float = 0.0) -> abut.Model:
     return abut.Model(
         replace(mesh, points=points), [abut.Solid("pin", STEEL), abut.Solid("cradle", STEEL)],
         [abut.Support("cradle.bottom", x=0.0, y=0.0)], [abut.BodyForce((0.0, -WEIGHT), on="pin")],
-        contacts=[abut.Contact(contactor=TREAD, target="cradle.top", friction=friction)], plane="strain", kinematics="finite",
+        contacts=[
+            abut.Contact(contactor=TREAD, target="cradle.top", friction=friction)], plane="strain", kinematics="finite",
     )  # fmt: skip
 
 

@@ -48,7 +48,8 @@ def punch() -> abut.Model:
     })  # fmt: skip
     return abut.Model(
         mesh, [abut.Solid("strip", RUBBER)], [abut.Support("strip.bottom", x=0.0, y=0.0)],
-        rigid=[abut.Rigid("punch", x=0.2, y=-0.06)], contacts=[abut.Contact(contactor="strip.top", target="punch", friction=0.2)],
+        rigid=[abut.Rigid("punch", x=0.2, y=-0.06)],
+        contacts=[abut.Contact(contactor="strip.top", target="punch", friction=0.2)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 

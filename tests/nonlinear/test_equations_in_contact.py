@@ -80,7 +80,8 @@ def test_periodic_strips(cell: str, friction: float) -> None:
     model = abut.Model(
         mesh, [abut.Solid("lower", STEM), abut.Solid("upper", STEM)],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.4)], plane="strain",
-        kinematics="finite", equations=equations, contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
+        kinematics="finite", equations=equations,
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
     solution = abut.solve(model)
     assert solution.converged

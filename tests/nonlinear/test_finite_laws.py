@@ -180,7 +180,8 @@ def rest(law: Any) -> abut.Model:
         make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
         solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
         supports=[abut.Support("lower.bottom", y=0), abut.Support("lower.left", x=0), abut.Support("upper.left", x=0)],
-        loads=[abut.Pressure("upper.top", 3.0)], contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", law=law)],
+        loads=[abut.Pressure("upper.top", 3.0)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", law=law)],
     )  # fmt: skip
 
 

@@ -231,7 +231,8 @@ def test_a_rigid_back_on_a_free_pad(condensed: bool, law: str, monkeypatch: pyte
     model = abut.Model(
         mesh, [abut.Solid("block", abut.LinearElastic(1e3, 0.0)), abut.Solid("pad", abut.LinearElastic(1e3, 0.0))],
         [abut.Support("block.bottom", x=0, y=0)], [abut.Force("back.top", (0.0, -2.0))],
-        [abut.Contact(contactor="block.top", target="pad.bottom", law=law)], plane="strain", rigid=[abut.Rigid("back", x=0.0)],
+        [abut.Contact(contactor="block.top", target="pad.bottom", law=law)],
+        plane="strain", rigid=[abut.Rigid("back", x=0.0)],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
     tolerance = EXACT if law == "complementarity" else 1e-6  # smoothed

@@ -249,9 +249,9 @@ def _failure(solution: Solution, directory: Path) -> str:
 
 
 def _print_result(solution: Solution, directory: Path) -> None:
+    from abut.contact.sides import words
     from abut.diagnosis.advice import remedies
     from abut.diagnosis.cures import cure
-    from abut.contact.sides import words
     from abut.report.contact_words import force, lines
 
     if not (solution.converged and solution.complete):

@@ -24,7 +24,7 @@ FINER = 1.25  # ratio of facet sizes from which on one side counts as finer than
 MARGIN = 1.1  # by which shares must pass their limits for the choice to be clear: they are measured
 SAME_SIZE = 1e-3  # relative difference of sizes that is none
 TWICE = 2.0  # ratio of facet sizes that is worth a word
-FLAT = np.cos(np.deg2rad(1.0))  # facets all within that of one plane are flat
+CLOSE = 0.05  # of the sum of two facets' sizes: gaps within that of the smallest one lie where contact begins
 NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they face each other
 
 REASONS = {
@@ -40,13 +40,12 @@ REASONS = {
 class Side:
     """What the choice looks at, of those facets of a surface that face the other one.
 
-    modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets, a length; covered: share of their area
-    that lies opposite the other side; flat: whether they lie in one plane."""
+    modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets where contact begins, a length; covered:
+    share of the area of all of them that lies opposite the other side."""
 
     modulus: float
     size: float
     covered: float
-    flat: bool
 
 
 @dataclass(frozen=True)
@@ -72,23 +71,15 @@ class Choice:
         return self.reason
 
 
-def side(
-    size: NDArray[np.float64],
-    area: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    opposite: float,
-    modulus: float,
-) -> Side:
-    """Measure a side by those of its facets that face the other one: size, area (n,), mean unit normal (n, dim).
+def side(size: NDArray[np.float64], area: NDArray[np.float64], opposite: float, modulus: float) -> Side:
+    """Measure a side. size: (n,) of its facets where contact begins; area: (m,) of all that face the other side, as if plane
+    where the surface is axisymmetric; opposite: how much of that area lies opposite the other side."""
+    return Side(modulus, float(np.median(size)), min(opposite / float(area.sum()), 1.0))
 
-    opposite: how much of their area lies opposite the other side. Areas are those of the section where the surface is
-    axisymmetric."""
-    return Side(
-        modulus=modulus,
-        size=float(np.median(size)),
-        covered=min(opposite / float(area.sum()), 1.0),
-        flat=bool((normal @ normal[0]).min() > FLAT),
-    )
+
+def where_contact_begins(gap: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points are hardly further apart than the nearest ones. gap, sizes: (n,) sum of both facets' sizes, lengths."""
+    return np.asarray(gap - gap.min() <= CLOSE * sizes)
 
 
 def choose(one: Side, other: Side) -> Choice:

@@ -16,8 +16,8 @@ from scipy.spatial import cKDTree
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import non_negative
-from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.contact.bulge import at_reference
+from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.contact.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.contact.pressure_space import PressureSpace, facet_functions
 from abut.mesh.surface import Surface

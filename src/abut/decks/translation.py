@@ -221,8 +221,8 @@ def _history(course: Course) -> tuple[float, Amplitude | None]:
 
 
 def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
-    """Of a tie the slave is the contactor, as the deck says, unless it is rigid, as elements in ``hard`` are: what lies beyond
-    the slave stays free. Of contact abut chooses."""
+    """Of a tie the slave is the contactor, as the deck says, unless it is rigid, as elements in ``hard`` are: what the slave
+    leaves out stays free. Of contact abut chooses."""
     slave, master = groups.surface(pair.slave), groups.surface(pair.master)
     for name, side in ((slave, pair.slave), (master, pair.master)):
         if deck.surfaces[side].nodes is not None:

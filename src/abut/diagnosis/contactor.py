@@ -11,7 +11,6 @@ from abut.errors import InputError
 from abut.model import Contact, Model
 
 CURES = {
-    "rigid": "swap contactor and target: the side that can move should carry the pressure",
     "softer": "swap contactor and target: the softer side should carry the pressure",
     "covered": "swap contactor and target, or end the facets of the contactor where the target ends",
     "coarser": "swap contactor and target: the coarser side should carry the pressure",
@@ -25,7 +24,8 @@ def sides(model: Model, contact: Contact) -> list[Finding]:
     moduli = f"E/(1-nu^2) {first.modulus:.3g} (contactor) and {other.modulus:.3g}"
     summary = f"{moduli}, facets {first.size:.3g} and {other.size:.3g}"
     choice = choose(first, other)
-    if choice.clear and choice.contactor == 1 and swap(model, contact, choice):
+    held = choice.rule == "rigid"  # the check of constraints says it
+    if choice.clear and choice.contactor == 1 and not held and swap(model, contact, choice):
         what = f"contactor {words(contact.contactor)} {_against(choice, first, other)} ({summary})"
         return [Finding("advice", where, what, f"{CURES[choice.rule]}, or give surfaces = [...] and let abut choose")]
     return [Finding("info", where, summary)]
@@ -50,7 +50,6 @@ def swap(model: Model, contact: Contact, choice: Choice | None = None) -> str:
 def _against(choice: Choice, side: Side, other: Side) -> str:
     """What speaks against the contactor, after its name."""
     return {
-        "rigid": "is held by supports",
         "softer": "is the stiffer side",
         "covered": f"has only {side.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",

@@ -67,9 +67,7 @@ def _penetration(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _overlap(contact: Contact, result: ContactResult, sides: str) -> str:
-    coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-    finer = f", or {sides}" if sides and coarse > FINER else ""
-    return f"refine both surfaces where they touch, until contact is two facets wide{finer}"
+    return "refine both surfaces where they touch, until contact is two facets wide"
 
 
 def _faceting(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -116,10 +114,8 @@ def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
 def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     loaded = np.nanmax(result.pressure, axis=1) > LOADED * result.max_pressure
     size = float(np.median(facet_sizes(result.contactor)[loaded]))
-    ratio = size / float(np.median(facet_sizes(result.target)))
-    finer = f", or {sides}" if sides and ratio > FINER else ""
     return (
-        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{finer}; but "
+        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error; but "
         "round the edges of sharp bodies, where pressure has no limit"
     )
 

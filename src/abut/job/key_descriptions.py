@@ -157,9 +157,10 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "ContactTable": {
         "name": "a name of your choice; left out: both surfaces, A-B",
-        "surfaces": "the two sides, [A, B], each a surface or body, or a list of them: abut chooses which one is the contactor, and "
-        "says so; forces are those on A",
-        "contactor": "in place of surfaces, with target: the side that carries the pressure (slave), whatever abut would choose",
+        "surfaces": "the two sides, [A, B], each a surface or body, or a list of them: abut chooses which one is the "
+        "contactor, and says so; forces are those on A",
+        "contactor": "in place of surfaces, with target: the side that carries the pressure (slave), whatever abut would "
+        "choose",
         "target": "the side opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "

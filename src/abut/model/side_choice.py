@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.contactor_choice import NEAR, Side, choose, side
+from abut.contact.contactor_choice import NEAR, Side, choose, side, where_contact_begins
 from abut.contact.coupling import CouplingOptions, couple, default_reach
-from abut.contact.geometry import area_vectors, facet_sizes, full_moments, mean_normals, straight
+from abut.contact.geometry import facet_sizes, full_moments, straight
 from abut.contact.sides import Sides, words
 from abut.errors import InputError
 from abut.materials.material import Material
@@ -32,8 +32,8 @@ def decided(contact: Contact, measures: tuple[Side, Side], finite: bool) -> Cont
     if finite and callable(contact.friction):
         if np.isinf(measures[0].modulus):
             raise InputError(
-                f"contact '{contact.name}': friction varies with position and goes with the points of {words(contact.first)}, "
-                "named first, which is rigid: name the other one first"
+                f"contact '{contact.name}': friction varies with position and goes with the points of "
+                f"{words(contact.first)}, named first, which is rigid: name the other one first"
             )
         return contact.with_choice(0, OF_FRICTION)
     choice = choose(*measures)
@@ -51,15 +51,19 @@ def measured(
     at = couple(flat[0], flat[1], 0, options).points
     if at is None or not len(at.gap):
         facing, opposite = [np.arange(len(surface)) for surface in flat], np.inf
+        first = facing
     else:
-        near = np.abs(at.gap) <= NEAR * (sizes[0][at.facet] + sizes[1][at.target_facet])
+        both = sizes[0][at.facet] + sizes[1][at.target_facet]
+        near = np.abs(at.gap) <= NEAR * both
         near |= not near.any()
-        facing = [np.unique(at.facet[near]), np.unique(at.target_facet[near])]
+        facing = [np.unique(of[near]) for of in (at.facet, at.target_facet)]
         opposite = float(at.weight[near].sum())
+        begins = np.flatnonzero(near)[where_contact_begins(at.gap[near], both[near])]
+        first = [np.unique(of[begins]) for of in (at.facet, at.target_facet)]
     moduli = [_modulus(mesh, materials, held, surface, facets) for surface, facets in zip(surfaces, facing)]
     one, other = (
-        side(size[f], full_moments(surface, 0)[f, 0], _normals(surface)[f], opposite, modulus)
-        for surface, size, f, modulus in zip(flat, sizes, facing, moduli)
+        side(size[f], full_moments(surface, 0)[around, 0], opposite, modulus)
+        for surface, size, f, around, modulus in zip(flat, sizes, first, facing, moduli)
     )
     return one, other
 
@@ -95,12 +99,3 @@ def _modulus(
     if held[nodes[nodes >= 0]].all():
         return np.inf
     return contact_modulus(softest(mesh, materials, surface.cells))
-
-
-def _normals(surface: Surface) -> NDArray[np.float64]:
-    """One for each facet, (n_facets, dim); of each by itself where one has no area, so that its nodes have no normals."""
-    try:
-        return mean_normals(surface)
-    except InputError:
-        normal = area_vectors(surface).sum(axis=1)
-    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))

@@ -82,8 +82,8 @@ class PressureStatistics:
 
 @dataclass(frozen=True)
 class Resultant:
-    """Resultant of the nodal forces of a contact on the side named first, in undeformed coordinates; with finite kinematics in
-    deformed ones.
+    """Resultant of the nodal forces of a contact on the side named first, in undeformed coordinates; with finite kinematics
+    in deformed ones.
 
     force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the full circumference; moment: (1,)
     or (3,) about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the
@@ -108,9 +108,10 @@ class FrictionResult:
     sticking_area, slipping_area: as ``ContactResult.area``.
     work, total_work: that friction takes, force times length, in this step and in all; work_per_area, total_work_per_area:
     (n_contactor_facets, 9) the same at the nodes.
-    force: (dim,) resultant of the traction on the side named first; force_by_area: of its size wherever it points, the integral
-    of the size of the traction over the area; force_limit: what that can be at most, the integral of the coefficient times
-    the pressure, infinite for "rough"; all of the full circumference in axisymmetric models, per unit thickness in 2D.
+    force: (dim,) resultant of the traction on the side named first; force_by_area: of its size wherever it points, the
+    integral of the size of the traction over the area; force_limit: what that can be at most, the integral of the
+    coefficient times the pressure, infinite for "rough"; all of the full circumference in axisymmetric models, per unit
+    thickness in 2D.
     largest_share: the largest traction over the coefficient times the pressure at one point, 1 where anything slips; NaN
     where nothing is pressed, and for "rough".
     """
