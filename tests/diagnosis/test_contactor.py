@@ -97,6 +97,8 @@ SIDE = Side(modulus=1.0, size=1.0, covered=1.0)
         ({"modulus": 1.2}, {"covered": 0.5}, 0, "covered"),
         ({"modulus": 1.2, "covered": 0.5}, {"covered": 0.5}, 1, "softer"),  # both are: softness decides
         ({"size": 1.05}, {}, 0, "coarser"),
+        ({"size": 1.05, "covered": 0.8}, {}, 1, "covered"),
+        ({"size": 1.5, "covered": 0.8}, {}, 0, "coarser"),
         ({"size": 1.0 / 40.0}, {}, 1, "coarser"),
         ({"size": 1.0 / 40.0}, {"modulus": 1.2}, 0, "softer"),
     ],

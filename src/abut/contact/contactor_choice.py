@@ -7,7 +7,9 @@ what the user has named.
 3. But not a side that is mostly bare while the other is covered: its pressure would stand on facets of which a small part
    only lies opposite anything.
 4. Among equals the coarser side: the other one follows what its pressure can show, where a finer contactor would show the
-   corners of its target.
+   corners of its target. Where sizes hardly differ, the one that is less bare.
+
+``bench/sides`` has the study that this comes from, docs/verification/pressure.md its numbers.
 """
 
 from __future__ import annotations
@@ -96,6 +98,8 @@ def choose(one: Side, other: Side) -> Choice:
             return Choice(number, "covered", sides[1 - number].covered * MARGIN < BARE)
     coarse = int(other.size > one.size * (1.0 + SAME_SIZE))
     ratio = sides[coarse].size / sides[1 - coarse].size
+    if ratio < FINER and sides[coarse].covered < sides[1 - coarse].covered - BARER:
+        return Choice(1 - coarse, "covered", False)
     return Choice(coarse, "coarser" if ratio > 1.0 + SAME_SIZE else "alike", ratio > TWICE)
 
 
