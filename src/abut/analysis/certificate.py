@@ -13,6 +13,7 @@ from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution
+from abut.contact.contactor_choice import Side
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
@@ -46,7 +47,8 @@ class Surroundings:
     pairs, now and before; overlap: (n_facets,) largest of each at a point, over its size; free: (dim,) axes along which a
     side may shift, all by default; elsewhere: (n_facets, 2) shares of each facet that other contacts cover, and load;
     support: (n_functions,) int H_k over all of the contactor where the sides may meet anywhere, so that what has no target
-    opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``."""
+    opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; sides: as the choice of the
+    contactor sees them, None where it has no part in it."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -55,6 +57,7 @@ class Surroundings:
     elsewhere: NDArray[np.float64] | None = None
     support: NDArray[np.float64] | None = None
     stress: NDArray[np.float64] | None = None
+    sides: tuple[Side, Side] | None = None
 
 
 def certificate(

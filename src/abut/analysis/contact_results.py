@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
+from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
     forces_on_bodies,
     loaded_part,
@@ -132,6 +133,7 @@ def contact_result(
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
     shown = corner_values(pair.contactor, nodal)
+    carried = carry_to_target(pair.contactor, pair.target, coupling.target_part, shown)
     second = (pair.contactor, forces[ids]) if pair.contact.turned else (pair.target, others[target_ids])
     result = ContactResult(
         name=pair.contact.name,
@@ -152,8 +154,8 @@ def contact_result(
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, state.gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, shown),
-        checks=_checks(state, residual, around, nodal, share),
+        target_pressure=carried,
+        checks=(*_checks(state, residual, around, nodal, share), *sides_check(pair, around.sides, nodal, carried)),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],

@@ -235,7 +235,8 @@ def _contacts(
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
             cells = normal_stress(model.mesh, pair.contactor, stress)
-        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells))
+        sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
+        around.append(Surroundings(reference, beside, overlap, free, elsewhere, support, cells, sides))
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(

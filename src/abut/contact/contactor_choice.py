@@ -103,5 +103,11 @@ def choose(one: Side, other: Side) -> Choice:
     return Choice(coarse, "coarser" if ratio > 1.0 + SAME_SIZE else "alike", ratio > TWICE)
 
 
+def shows_facets(contactor: Side, target: Side) -> bool:
+    """Whether a contactor may touch the facets of its target one by one: it is finer, and the rule takes the other side."""
+    choice = choose(contactor, target)
+    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and target.size > FINER * contactor.size
+
+
 def _bare(side: Side, other: Side) -> bool:
     return side.covered < BARE and side.covered < other.covered - BARER

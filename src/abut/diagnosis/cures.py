@@ -128,6 +128,10 @@ def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
     )
 
 
+def _sides(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f"{sides or 'refine the target'}, or give surfaces = [...] in place of contactor and target: abut chooses"
+
+
 def _moments(contact: Contact, result: ContactResult, sides: str) -> str:
     return "leave `integration` out; on curved facets refine, or let both sides have the same facets"
 
@@ -173,6 +177,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "resolution": _resolution,
     "pressure error": _pressure_error,
     "contactor's edges": _edges,
+    "sides": _sides,
     "facet moments": _moments,
     "loaded area without target": _bare,
     "force at the target's edge": _bare,

@@ -154,7 +154,11 @@ class Model:
 
     def measured(self, contact: Contact) -> tuple[Side, Side]:
         """Contactor and target of one of the contacts as the choice between them sees them."""
-        return measured(self.mesh, self.materials, self._held, self.sides(contact))
+        return self._measured[contact.name]
+
+    @cached_property
+    def _measured(self) -> dict[str, tuple[Side, Side]]:
+        return {c.name: measured(self.mesh, self.materials, self._held, self.sides(c)) for c in self.contacts}
 
     @cached_property
     def _held(self) -> NDArray[np.bool_]:
