@@ -17,7 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
-from abut.report.chart import Chart
+from abut.report.chart import Beside, Chart
 from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
@@ -33,8 +33,8 @@ SCRIPTS = ("plots.js", "parts.js", "arrows.js", "view.js", "report.js")
 STYLES = ("libraries.css", "report.css")
 
 
-def page(solution: Solution, origin: Origin) -> str:
-    """The whole report as text of an HTML file."""
+def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> str:
+    """The whole report as text of an HTML file. beside: another solution of the same problem, compared with this one."""
     picture = scene(solution)
     data = {
         "scene": picture.data,
@@ -43,6 +43,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "lines": _lines(solution, origin),
         "probes": _charts(charts(solution)),
         "paths": _charts(paths(solution)),
+        "beside": _charts(beside.charts if beside else ()),
     }
     parts = {
         "title": escape(origin.title),
@@ -53,6 +54,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "comparison": _comparison(solution, origin),
         "trouble": _trouble(solution),
         "probes": _probes(solution),
+        "beside": "" if beside is None else _beside(beside),
         "contacts": _contacts(solution) + _rigid(solution),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
@@ -218,6 +220,13 @@ def _rigid(solution: Solution) -> str:
     ]
     head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
     return _table(head, rows) if rows else ""
+
+
+def _beside(beside: Beside) -> str:
+    return (
+        f"<section><h2>{escape(beside.title)}</h2><p>{escape(beside.text)}</p>{_table(beside.head, beside.rows)}"
+        '<div class="plots" id="beside"></div></section>'
+    )
 
 
 def _probes(solution: Solution) -> str:
