@@ -119,14 +119,16 @@ def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: 
 @pytest.mark.parametrize("contactor", ["lower", "upper"])
 @pytest.mark.parametrize(("cell", "first"), [("tri3", 10), ("quad4", 6)])
 def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
-    """A ball on a softer one, axisymmetric, cells of first order: no hole and no peak on the axis."""
+    """A ball on a softer one, axisymmetric, cells of first order: no hole and no peak on the axis. A little more with the
+    stiffer and finer side as contactor, the wrong one."""
+    limit = 0.1 if contactor == "lower" else 0.12
     for n in (first, 16, 24, 40):
         solution = abut.solve(balls(cell, n, contactor))
         x, p = at_corners(solution.contacts[0])
         axis = np.argsort(x[:, 0])[:3]
-        assert np.abs(p - ellipse(BALLS, BALLS_PEAK, 2)(x))[axis].max() <= 0.1 * BALLS_PEAK
-        assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.1
-    assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.03
+        assert np.abs(p - ellipse(BALLS, BALLS_PEAK, 2)(x))[axis].max() <= limit * BALLS_PEAK
+        assert errors(solution, BALLS, BALLS_PEAK)[0] <= limit
+    assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.3 * limit
 
 
 @pytest.mark.parametrize("cells", [12, 16, 20, 28])

@@ -159,15 +159,15 @@ THREE = [pair("pin.round", f"{body}.inner", name=body) for body in ("eye", "arm1
 
 
 def test_a_pin_in_eye_and_fork() -> None:
-    """One surface in three pairs; the same split by hand; one contact with all three: forces to rounding (where the pin
-    spins to nobody knows)."""
+    """One surface in three pairs and one contact with all three: forces to rounding (where the pin spins to nobody knows).
+    The same split by hand: but for the bulges of facets next to the cuts, where the surface ends."""
     three = abut.solve(clevis(*THREE))
     hand = abut.solve(clevis(*(pair(f"at {b}", f"{b}.inner", name=b) for b in ("eye", "arm1", "arm2"))))
     one = abut.solve(clevis(pair("pin", ["eye", "arm1", "arm2"])))
     forces = {contact.name: contact.force for contact in three.contacts}
     size = np.abs(forces["eye"]).max()
     for contact in hand.contacts:
-        assert contact.force == pytest.approx(forces[contact.name], abs=1e-7 * size)
+        assert contact.force == pytest.approx(forces[contact.name], abs=1e-3 * size)
         assert one.contacts[0].body_forces[contact.name] == pytest.approx(-forces[contact.name], abs=1e-7 * size)
     assert forces["arm1"][0] == pytest.approx(-0.5 * forces["eye"][0], rel=2e-2)  # symmetric but for the spin
 

@@ -48,7 +48,7 @@ def test_more_steps_leave_less_open_and_the_certificate_says_so() -> None:
     model = arched(FRICTION, slide=0.0)
     one, many = (abut.solve(replace(model, solve=abut.SolveOptions(steps=n))) for n in (1, 16))
     few, fine = (next(c for c in each.certificate if c.name == "load steps") for each in (one, many))
-    assert few.value > 0.02
+    assert few.value > 0.015
     assert fine.passed
     assert fine.value < 0.2 * few.value
     half = replace(one, steps=tuple(replace(step, landed=(0.1 * (step is one.steps[0]), 1.0)) for step in one.steps))

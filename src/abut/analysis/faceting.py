@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
+from abut.contact.bulge import bulge_at, with_bulge
 from abut.contact.coupling import GapSamples
 from abut.contact.function_places import at_samples
 from abut.contact.geometry import by_kind, nodal_normals
-from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
+from abut.model.contact import GEOMETRIES
 from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 
@@ -24,41 +25,12 @@ ROUND = 1e-9  # of the facet size: less roundness than that is none
 
 @dataclass(frozen=True)
 class Misfit:
-    """The true gap minus that between facets, a length: ``point`` (n_sights,) where the contactor looks; ``node``
-    (n_points,) its mean under the pressure function that sits there, NaN where there is none."""
+    """The gap of the other geometry minus the pair's own, between smooth surfaces and between facets, a length: ``point``
+    (n_sights,) where the contactor looks; ``node`` (n_points,) its mean under the pressure function that sits there, NaN
+    where there is none."""
 
     point: NDArray[np.float64]
     node: NDArray[np.float64]
-
-
-def bulge(surface: Surface, facet: NDArray[np.int32], shapes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far a smooth surface through the nodes with their normals rises above linear facets, (n,), a length, outward;
-    0 on quadratic facets, which follow it by themselves.
-
-    facet: (n,) numbers, shapes: (n, 9) shape functions. Exact on circles, cylinders and spheres: theory (L11). At the end
-    of a line the normal is known from one side only; there the other end stands for both.
-    """
-    linear = np.zeros(len(surface), dtype=bool)
-    for kind, facets in by_kind(surface):
-        linear[facets] = CELLS[kind].degree == 1
-    height = np.zeros(len(facet))
-    if not linear.any():
-        return height
-    try:
-        normals = nodal_normals(surface)
-    except InputError:  # a target may have points without a normal: how it bulges there nobody knows
-        return height
-    corners = range(int((surface.nodes[linear] >= 0).sum(axis=1).max()))
-    nodes = np.maximum(surface.nodes[facet], 0)
-    rim = _rim(surface) if surface.dim == 2 else np.zeros(len(surface.points), dtype=bool)
-    at = np.zeros((len(facet), surface.dim))
-    for a in corners:
-        at += shapes[:, a, None] * surface.points[nodes[:, a]]
-    for a in corners:
-        rise = np.einsum("kd,kd->k", normals[facet, a], surface.points[nodes[:, a]] - at)
-        other = rim[nodes[:, 1 - a]] if surface.dim == 2 else False
-        height += np.where(rim[nodes[:, a]], 0.0, np.where(other, 1.0, 0.5)) * shapes[:, a] * rise
-    return np.where(linear[facet], height, 0.0)
 
 
 def misfit(pair: Pair) -> Misfit | None:
@@ -66,9 +38,10 @@ def misfit(pair: Pair) -> Misfit | None:
     at = pair.coupling.gap_samples
     if at is None or not len(at.gap):
         return None
-    point = -bulge(pair.contactor, at.facet, at.contactor_shapes) - bulge(
-        pair.target, at.target_facet, at.target_shapes
-    )
+    faceted = pair.contact.geometry == GEOMETRIES[1]
+    own, other = (with_bulge(side) if faceted else side for side in (pair.contactor, pair.target))
+    point = bulge_at(own, at.facet, at.contactor_shapes) + bulge_at(other, at.target_facet, at.target_shapes)
+    point = -point if faceted else point
     if np.abs(point).max() <= ROUND * pair.size:
         return None
     moments = _moments(pair, at, point)
@@ -121,13 +94,14 @@ def free_axes(model: Model, constraints: Constraints, pair: Pair) -> NDArray[np.
 
 
 def faceting(pair: Pair, nodal: NDArray[np.float64], closed: float, free: NDArray[np.bool_]) -> float:
-    """Pressure that the misfit makes where it is carried: theory (L12), an estimate.
+    """Pressure that gaps between facets make instead of those between smooth surfaces, where it is carried: theory (L12), an
+    estimate; none where gaps are those of the smooth surfaces.
 
     nodal: (n_facets, 9) pressure, of which what exceeds ``closed`` counts as contact; free: (dim,) axes along
     which a side may shift. What such a shift takes up is left out, and so is the rim, where normals are known from one
     side only, unless contact is nowhere else.
     """
-    of = misfit(pair)
+    of = misfit(pair) if pair.contact.geometry == GEOMETRIES[1] else None
     if of is None or pair.compliance == 0.0:
         return 0.0
     surface, known = pair.contactor, np.isfinite(of.node)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -55,7 +56,7 @@ def with_bulge(surface: Surface, held: Held | None = None) -> Surface:
     return replace(surface, bulge=bulge) if bulge.any() else surface
 
 
-def bulge_at(surface: Surface, facet: NDArray[np.int64], shapes: Array) -> Array:
+def bulge_at(surface: Surface, facet: NDArray[np.integer[Any]], shapes: Array) -> Array:
     """How far the smooth surface lies outside of facets (n,) where their shape functions have the values (n, 9), (n,)."""
     result = np.zeros(len(facet))
     if surface.bulge is None:
@@ -120,7 +121,13 @@ def _vertex_normals(split: Surface, owner: NDArray[np.int64], held: Held | None)
     keep = sp.diags((~few).astype(float))
     ring = (keep @ around + sp.diags(few.astype(float)) @ (around @ (around.T @ around))).tocsr()
     ring.eliminate_zeros()
-    normals = _fitted(plain, ring, unit)
+    ring.sum_duplicates()
+    mean = np.asarray(ring.sign() @ unit)
+    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+    bent = _bent(ring, unit, mean)
+    normals = mean.copy()
+    if len(bent):
+        normals[bent] = _fitted(plain, bent, ring[bent], mean[bent])
     if held is not None:
         _mirror(normals, plain, owner[rim], rim, held)
     if plain.axisymmetric:
@@ -143,19 +150,23 @@ def _rim_points(plain: Surface) -> NDArray[np.int64]:
     return np.unique(edges[count == 1])
 
 
-def _fitted(plain: Surface, ring: Sparse, unit: Array) -> NDArray[np.float64]:
-    """Normals at the points of a surface of straight facets, which in the plane square to the mean of those around turn
-    linearly, so that in the middles of the edges around they are square to these. ring: (n_points, n_facets) which facets
-    lie around; unit: (n_facets, dim) their normals."""
-    n, dim = plain.points.shape
-    at = ring.tocoo()
-    mean = np.asarray(ring.astype(bool).astype(float) @ unit)
-    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+def _bent(ring: Sparse, unit: Array, mean: Array) -> NDArray[np.int64]:
+    """Points around which facets do not lie in one plane."""
+    row = np.repeat(np.arange(ring.shape[0]), np.diff(ring.indptr))
+    turned = (np.abs(unit[ring.indices] - mean[row]) > ROUNDING).any(axis=1)
+    return np.unique(row[turned])
+
+
+def _fitted(plain: Surface, points: NDArray[np.int64], ring: Sparse, mean: Array) -> NDArray[np.float64]:
+    """Normals (n, dim) at points (n,) of a surface of straight facets, which in the plane square to the ``mean`` (n, dim) of
+    those around turn linearly, so that in the middles of the edges around they are square to these. ring: (n, n_facets)
+    which facets lie around."""
+    n, dim = mean.shape
+    at, x = ring.tocoo(), plain.points[points]
     frame = _tangents(mean)
-    size = np.maximum(
-        np.sqrt(_row_mean(ring, ((plain.points[at.row] - _middles(plain)[at.col]) ** 2).sum(axis=1))), 1e-300
-    )
-    row, along, place, up = _edges_around(plain, at, frame, mean, size)
+    far = ((x[at.row] - _middles(plain)[at.col]) ** 2).sum(axis=1)
+    size = np.maximum(np.sqrt(np.bincount(at.row, far, n) / np.bincount(at.row, minlength=n)), 1e-300)
+    row, along, place, up = _edges_around(plain, at, x, frame, mean, size)
     close = 1.0 / np.maximum((place**2).sum(axis=1), 1e-12)
     terms = [along, along * place] if dim == 2 else [
         along, along * place, (along[:, 0] * place[:, 1] + along[:, 1] * place[:, 0])[:, None]
@@ -165,7 +176,7 @@ def _fitted(plain: Surface, ring: Sparse, unit: Array) -> NDArray[np.float64]:
     gather = sp.csr_matrix((close, (row, np.arange(len(row)))), shape=(n, len(row)))
     products = gather @ (design[:, :, None] * design[:, None, :]).reshape(len(row), m * m)
     inverse = np.linalg.pinv(products.reshape(n, m, m), rcond=NO_SPREAD, hermitian=True)
-    lean, fit = np.zeros((n, dim - 1)), np.zeros((n, m))
+    fit = np.zeros((n, m))
     for _ in range(TURNS):
         slope = _slopes(fit[row], place)
         upright = np.sqrt(np.maximum(1.0 - (slope**2).sum(axis=1), 0.0))
@@ -183,10 +194,10 @@ def _slopes(fit: Array, place: Array) -> Array:
 
 
 def _edges_around(
-    plain: Surface, at: Sparse, frame: Array, mean: Array, size: Array
+    plain: Surface, at: Sparse, points: Array, frame: Array, mean: Array, size: Array
 ) -> tuple[NDArray[np.int64], Array, Array, Array]:
-    """The edges of the facets around each point: its number, and in its frame (dim - 1 tangents, normal) the edge's unit
-    vector along the tangents, its middle over ``size``, and the unit vector's rise along the normal."""
+    """The edges of the facets around each of the points (n, dim): its number, and in its frame (dim - 1 tangents, normal)
+    the edge's unit vector along the tangents, its middle over ``size``, and the unit vector's rise along the normal."""
     rows, ends = [], []
     for kind, facets in by_kind(plain):
         pick = np.isin(at.col, facets)
@@ -196,7 +207,7 @@ def _edges_around(
             rows.append(at.row[pick].astype(np.int64))
             ends.append(nodes[:, [edge, (edge + 1) % corners]])
     row, x = np.concatenate(rows), plain.points[np.concatenate(ends)]
-    step, middle = x[:, 1] - x[:, 0], x.mean(axis=1) - plain.points[row]
+    step, middle = x[:, 1] - x[:, 0], 0.5 * (x[:, 0] + x[:, 1]) - points[row]
     step = step / np.maximum(np.linalg.norm(step, axis=1, keepdims=True), 1e-300)
     along, place = (np.einsum("nad,nd->na", frame[row], v) for v in (step, middle))
     return row, along, place / size[row, None], (mean[row] * step).sum(axis=1)
@@ -218,13 +229,6 @@ def _middles(plain: Surface) -> NDArray[np.float64]:
     return np.asarray(
         (plain.points[np.maximum(plain.nodes, 0)] * used[..., None]).sum(axis=1) / used.sum(axis=1)[:, None]
     )
-
-
-def _row_mean(ring: Sparse, values: Array) -> NDArray[np.float64]:
-    """Mean of values at the entries of each row."""
-    at = ring.tocoo()
-    count = np.bincount(at.row, minlength=ring.shape[0])
-    return np.asarray(np.bincount(at.row, values, ring.shape[0]) / np.maximum(count, 1))
 
 
 def _mirror(normals: Array, plain: Surface, points: NDArray[np.int64], rim: NDArray[np.int64], held: Held) -> None:

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import NEAR
 from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
@@ -53,14 +54,15 @@ class Facing:
 
 
 def outside(mesh: Mesh, names: Sequence[str]) -> Outside:
-    """The exterior facets of the bodies ``names``, with straight edges, and as if plane where the mesh is axisymmetric: the
-    search needs no more, and is much quicker so."""
+    """The exterior facets of the bodies ``names``, with straight edges and their bulges, and as if plane where the mesh is
+    axisymmetric: the search needs no more, and is much quicker so."""
     number = np.full(mesh.n_cells, -1, dtype=np.int64)
     for i, name in enumerate(names):
         number[mesh.bodies[name]] = i
     rows = exterior(mesh)
     rows = rows[number[rows[:, 0]] >= 0]
-    surface = straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
+    plain = straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
+    surface = replace(with_bulge(replace(plain, parts=number[rows[:, 0]])), parts=None)
     normal = mean_normals(surface)
     area = full_moments(surface, 0)[:, 0]
     member = np.zeros((len(names), len(mesh.points)), dtype=np.int32)
@@ -94,8 +96,8 @@ def seen_by(all_of: Outside, contactor: NDArray[np.int64], target: NDArray[np.in
     """Facets of the target's body that a contactor, and so its pressure, sees within the reach of the two, and does not lie
     deep inside of."""
     body = np.flatnonzero(all_of.body == all_of.body[target[0]])
-    part, other = _part(all_of.surface, contactor), _part(all_of.surface, body)
-    far = default_reach(part, _part(all_of.surface, target))
+    part, other = all_of.surface.part(contactor), all_of.surface.part(body)
+    far = default_reach(part, all_of.surface.part(target))
     at = couple(part, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
     if at is None:
         return target[:0]
@@ -138,7 +140,7 @@ def _search(
         if not len(one) or not len(other):
             return none
     options = CouplingOptions(points=1, reach=far, keep_points=True, hidden=True)
-    at = couple(_part(all_of.surface, one), _part(all_of.surface, other), 0, options).points
+    at = couple(all_of.surface.part(one), all_of.surface.part(other), 0, options).points
     if at is None:
         return none
     found = Facing(one[at.facet], other[at.target_facet], at.gap, at.weight)
@@ -188,13 +190,3 @@ def _boxes(surface: Surface, facets: NDArray[np.int64]) -> tuple[NDArray[np.floa
     nodes = surface.nodes[facets]
     x = surface.points[np.where(nodes >= 0, nodes, nodes[:, :1])]
     return x.min(axis=1), x.max(axis=1)
-
-
-def _part(surface: Surface, facets: NDArray[np.int64]) -> Surface:
-    return replace(
-        surface,
-        kinds=surface.kinds[facets],
-        nodes=surface.nodes[facets],
-        cells=surface.cells[facets],
-        local=surface.local[facets],
-    )

@@ -92,7 +92,23 @@ def interface(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Find
     """Gaps as a histogram, deep overlaps, and what the contactor does not find opposite.
 
     outside: (n, 2) the facets of ``abut.mesh.exterior.exterior``."""
-    return [*_gaps(model, pair), *_cover(model, pair, outside)]
+    return [*_gaps(model, pair), *_bulges(pair), *_cover(model, pair, outside)]
+
+
+def _bulges(pair: Pair) -> list[Finding]:
+    """The largest height of the smooth surface over flat facets, of both sides, and where."""
+    found = [(np.abs(side.bulge), side) for side in (pair.contactor, pair.target) if side.bulge is not None]
+    if not found:
+        return []
+    heights, side = max(found, key=lambda each: float(each[0].max()))
+    facet = int(heights.max(axis=1).argmax())
+    nodes = side.nodes[facet][side.nodes[facet] >= 0]
+    at = ", ".join(f"{x:.4g}" for x in side.points[nodes].mean(axis=0))
+    height = float(heights.max())
+    what = f"flat facets of '{side.name}' stand for a curved surface: its bulge of up to {height:.3g} over them, at ({at}), "
+    return [
+        Finding("info", f"contact '{pair.contact.name}'", what + 'is taken off the gap (geometry = "faceted": not)')
+    ]
 
 
 def _gaps(model: Model, pair: Pair) -> list[Finding]:

@@ -177,6 +177,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "friction": "Coulomb's coefficient, a number or an expression, or pairs of pressure and coefficient (linear "
         'between, constant outside), or "rough" where nothing slips; left out: none',
         "friction_amplitude": "pairs of time (0 to 1) and factor of the coefficient; left out: it is constant",
+        "geometry": "curved: gaps are those between the smooth surfaces for which flat facets stand; faceted: those between "
+        "the facets; flat surfaces do not differ",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
     },
     "IntegrationTable": {

@@ -13,7 +13,7 @@ from abut.errors import InputError
 from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
 from abut.materials.hyperelastic import VOLUMETRIC
-from abut.model.contact import KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
+from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
@@ -285,6 +285,7 @@ class ContactTable(Table):
     amplitude: Points | None = None
     friction: Friction = 0.0
     friction_amplitude: Points | None = None
+    geometry: Annotated[str, OneOf(GEOMETRIES)] = Contact.geometry
 
 
 class ProbeTable(Table):
