@@ -82,7 +82,8 @@ def _crushed(friction: float, volumetric: str = "square-log") -> Model:
         [Solid(name, NeoHooke(young, 0.3, volumetric=volumetric)) for name, young in moduli.items()],
         [Support("base.bottom", x=0.0, y=0.0), *ends],
         contacts=[
-            Contact(contactor="inner.outer", target="outer.inner", kind="tied"), Contact(contactor="outer.outer", target="base.top", friction=friction)
+            Contact(contactor="inner.outer", target="outer.inner", kind="tied"),
+            Contact(contactor="outer.outer", target="base.top", friction=friction)
         ],
         plane="strain", kinematics="finite",
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The second opinion: a model solved as it is, and with the sides of its contacts swapped: where they differ one is wrong."""
+"""The second opinion: a model solved as it is and with the sides of its contacts swapped. Where they differ one is wrong."""
 
 from __future__ import annotations
 
