@@ -242,7 +242,7 @@ def test_rigid_body(tmp_path):
         ("Force", (0.0, 0.0, -5.0)),
         ("Moment", (0.2, 0.0, 0.0)),
     ]
-    place = pushed.contacts[0].resultant.moment / 5.0  # the middle of the pressure balances the moments
+    place = pushed.contacts[0].resultant.moment / -5.0  # the middle of the pressure balances the moments
     assert place[:2] == pytest.approx([-0.5 + 0.04, 0.5 - 0.06], rel=1e-6)
     with pytest.raises(InputError, match="rigid in part only"):
         load(tmp_path, text.replace("BODY, ELSET=HIGH", "BODY, NSET=TOP") + step())

@@ -80,7 +80,8 @@ def resolve_contacts(
 def _named(table: ContactTable, options: dict[str, Any]) -> Contact:
     """The contact of an entry that names its sides."""
     if table.surfaces:
-        return Contact(*table.surfaces, **options)
+        first, second = table.surfaces
+        return Contact(first, second, **options)
     return Contact(contactor=table.contactor, target=table.target, **options)
 
 

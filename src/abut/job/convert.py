@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -80,7 +80,8 @@ def job_table(model: Model, mesh: str) -> Json:
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "probes"):
-        of = {"loads": _load, "contacts": _contact}.get(name, _plain)
+        kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}
+        of = kinds.get(name, _plain)
         records = [of(record) for record in getattr(model, name)]
         if records:
             table[name] = records
