@@ -99,7 +99,7 @@ def clevis(where: abut.Mesh, force: float, law: str = "complementarity", **solve
             abut.Support("fork.end", x=0.0, y=0.0, z=0.0),
         ],
         [abut.Force("eye.end", (0.25 * force, 0.0, 0.0))],
-        [abut.Contact(f"{body}.round", "pin.round", name=body, law=law) for body in ("eye", "fork")],
+        [abut.Contact(contactor=f"{body}.round", target="pin.round", name=body, law=law) for body in ("eye", "fork")],
         solve=abut.SolveOptions(**solve),
     )
 

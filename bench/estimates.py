@@ -40,7 +40,7 @@ def blocks(cell: str, cells: int) -> abut.Model:
     mesh = join({"lower": lower, "upper": replace(upper, points=tilted)})
     steel = abut.LinearElastic(210e3, 0.3)
     held = [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.02)]
-    contacts = [abut.Contact("lower.top", "upper.bottom")]
+    contacts = [abut.Contact(contactor="lower.top", target="upper.bottom")]
     return abut.Model(mesh, [abut.Solid(body, steel) for body in mesh.bodies], held, contacts=contacts)
 
 

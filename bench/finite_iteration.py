@@ -49,7 +49,7 @@ def model(facets: int, layers: int, kinematics: str, linear: str) -> abut.Model:
     return abut.Model(
         join({"slab": slab, "block": block}), [abut.Solid("slab", material), abut.Solid("block", material)],
         [abut.Support("slab.bottom", x=0.0, y=0.0, z=0.0), abut.Support("block.top", x=0.002, y=0.0, z=-0.002)],
-        contacts=[abut.Contact("block.bottom", "slab.top", friction=0.3)], kinematics=kinematics,
+        contacts=[abut.Contact(contactor="block.bottom", target="slab.top", friction=0.3)], kinematics=kinematics,
         solve=abut.SolveOptions(linear=linear, times=(1.0,)),
     )  # fmt: skip
 

@@ -44,7 +44,7 @@ def main() -> None:
         join(parts),
         [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in parts],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=0)],
-        contacts=[abut.Contact("lower.top", "upper.bottom")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom")],
     )
     start = time.perf_counter()
     result = inf_sup(model)

@@ -53,7 +53,7 @@ def model(cell: str, friction: float, block: bool, volumetric: str) -> abut.Mode
         mesh,
         [abut.Solid(name, abut.NeoHooke(young, 0.3, volumetric=volumetric)) for name, young in YOUNG.items()],
         [abut.Support("base.bottom", x=0.0, y=0.0, amplitude=down), *ends],
-        contacts=[abut.Contact(*sides, friction=friction)], plane="strain", kinematics="finite",
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], friction=friction)], plane="strain", kinematics="finite",
     )  # fmt: skip
 
 

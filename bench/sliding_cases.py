@@ -56,7 +56,7 @@ def strip(level: int, friction: float) -> abut.Model:
             abut.Support("slab.bottom", x=0.0, y=0.0, z=0.0), abut.Support("die.top", z=-DEPTH, amplitude=PRESS),
             abut.Support("die.top", x=WAY, amplitude=SLIDE), *(abut.Support(f"{name}.front", y=0.0) for name in moduli),
         ],
-        contacts=[abut.Contact("slab.top", "die.bottom", friction=friction)], kinematics="finite",
+        contacts=[abut.Contact(contactor="slab.top", target="die.bottom", friction=friction)], kinematics="finite",
     )  # fmt: skip
 
 

@@ -48,7 +48,7 @@ def _two_blocks(n: int, cell: str, tilt: bool) -> abut.Model:
         join({"lower": lower, "upper": _tilted(upper) if tilt else upper}),
         [abut.Solid(body, STEEL) for body in ("lower", "upper")],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-DEPTH)],
-        contacts=[abut.Contact("lower.top", "upper.bottom")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom")],
     )
 
 
@@ -82,7 +82,7 @@ def _hertz(n: int, cell: str) -> abut.Model:
             abut.Support("ball.y0", y=0),
             abut.Support("ball.z0", x=0, y=0, z=-INDENT),
         ],
-        contacts=[abut.Contact("ball.round", "block.top")],
+        contacts=[abut.Contact(contactor="ball.round", target="block.top")],
     )
 
 

@@ -51,7 +51,7 @@ def blocks(cell: str, steps: int = 4, linear: str = "auto", cells: int = 4, **co
             abut.Support("upper.top", **{last: moved[last]}, amplitude=down),
             abut.Support("upper.top", **aside, amplitude=along),
         ],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **contact)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **contact)],
         plane="strain" if cell in PLANE else None,
         solve=abut.SolveOptions(steps=steps, linear=linear),
     )
@@ -88,7 +88,7 @@ def _pressed(mesh: Mesh, plane: str, **contact: Any) -> abut.Model:
             abut.Support("block.bottom", x=0.0, y=0.0), abut.Support("ball.flat", y=-0.02),
             abut.Support("ball.left" if plane == "axisymmetric" else "ball.axis", x=0.0),
         ],
-        contacts=[abut.Contact("ball.round", "block.top", **contact)],
+        contacts=[abut.Contact(contactor="ball.round", target="block.top", **contact)],
         plane=plane,
         solve=abut.SolveOptions(steps=3),
     )  # fmt: skip

@@ -53,7 +53,9 @@ def turned(mesh: abut.Mesh) -> abut.Solution:
                 abut.Support("grip", x=lambda x: -TURN * x[:, 1], amplitude=turn),
                 abut.Support("grip", y=lambda x: TURN * x[:, 0], amplitude=turn),
             ],
-            contacts=[abut.Contact("hub.inner", "shaft.round", friction=FRICTION, offset=-FIT, amplitude=fit)],
+            contacts=[
+                abut.Contact(contactor="hub.inner", target="shaft.round", friction=FRICTION, offset=-FIT, amplitude=fit)
+            ],
             solve=abut.SolveOptions(times=[0.5, *np.linspace(0.5, 1.0, STEPS + 1)[1:].tolist()]),
         )
     )

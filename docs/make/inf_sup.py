@@ -53,7 +53,7 @@ def model(cell: str, pressure: str, n: int, m: int) -> abut.Model:
         join(parts),
         [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in parts],
         [abut.Support("lower.bottom", **clamped), abut.Support("upper.top", **clamped)],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **how)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **how)],
         plane="strain" if dim == 2 else None,
     )
 

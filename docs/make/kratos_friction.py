@@ -46,7 +46,7 @@ def pressed(mesh: abut.Mesh) -> abut.Model:
         replace(mesh, points=points),
         [abut.Solid(body, steel) for body in ("shaft", "hub")],
         [abut.Support("shaft.bottom", x=0, y=0, z=0), abut.Support("grip", x=0, y=0, z=0)],
-        contacts=[abut.Contact("hub.inner", "shaft.round", friction=FRICTION)],
+        contacts=[abut.Contact(contactor="hub.inner", target="shaft.round", friction=FRICTION)],
     )
 
 

@@ -43,7 +43,7 @@ def patch_model(cell: str, method: str) -> abut.Model:
             *(abut.Support(f"{body}.{side}", **{axis: 0.0}) for body in parts for side, axis in sides),
         ],
         [abut.Pressure("upper.top", LOAD)],
-        [abut.Contact("lower.top", "upper.bottom", method=method)],
+        [abut.Contact(contactor="lower.top", target="upper.bottom", method=method)],
         plane="strain" if dim == 2 else None,
     )
 

@@ -137,7 +137,7 @@ def flat_punch(cell: str, n: int, contactor: str, **contact: object) -> abut.Mod
         [abut.Solid("punch", abut.LinearElastic(1e7, 0.3)), abut.Solid("block", abut.LinearElastic(1e3, 0.3))],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
         [abut.Force("punch.top", (0.0, -1.0))],
-        [abut.Contact(*sides, **contact)],
+        [abut.Contact(contactor=sides[0], target=sides[1], **contact)],
         plane="strain",
     )
 

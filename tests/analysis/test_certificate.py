@@ -58,7 +58,7 @@ def pressed(n: int, m: int, cell: str = "quad4", **contact: object) -> abut.Mode
         mesh,
         [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0.02, y=-0.05)],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **contact)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **contact)],
         plane="strain",
     )
 
@@ -150,10 +150,10 @@ def test_two_layers_of_target() -> None:
             abut.Support("base.bottom", x=0, y=0),
             *(abut.Support(f"{body}.top", x=0, y=-0.01) for body in ("sheet", "cover")),
         ],
-        contacts=[abut.Contact("base.top", "both")],
+        contacts=[abut.Contact(contactor="base.top", target="both")],
         plane="strain",
     )
-    single = abut.solve(replace(built, contacts=[abut.Contact("base.top", "sheet.bottom")]))
+    single = abut.solve(replace(built, contacts=[abut.Contact(contactor="base.top", target="sheet.bottom")]))
     layered = abut.solve(built)
     assert checks(layered)["covered twice"].value < 1e-12
     assert np.abs(layered.displacement - single.displacement).max() < 1e-12 * np.abs(single.displacement).max()
@@ -363,7 +363,14 @@ def test_written_and_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     lines = capsys.readouterr().out.splitlines()
     written = json.loads((tmp_path / "out" / "summary.json").read_text())["certificate"]
     assert written["passed"] is True
-    assert [c["name"] for c in written["checks"]] == ["model balance", "response", "strain", "stress error", "rotation", *CONTACT]
+    assert [c["name"] for c in written["checks"]] == [
+        "model balance",
+        "response",
+        "strain",
+        "stress error",
+        "rotation",
+        *CONTACT,
+    ]
     start = lines.index("certificate   value      limit")
     told = [text for text in lines[start + 1 : -1] if not text.strip().startswith("cure: ")]
     assert len(told) == len(written["checks"]) == len(lines) - start - 3  # one cure; then only where the results are

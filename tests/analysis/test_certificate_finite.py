@@ -139,7 +139,7 @@ def rippled(raw: NDArray[np.float64]) -> float:
     model = abut.Model(
         mesh, [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0)], plane="strain",
-        contacts=[abut.Contact("lower.top", "upper.bottom", pressure="P1")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", pressure="P1")],
     )  # fmt: skip
     own = pair(model, model.contacts[0], supports(model))
     surface = own.contactor

@@ -32,7 +32,7 @@ def tilted(
         mesh,
         [abut.Solid(body, steel) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-0.1)],
-        contacts=[abut.Contact(*sides)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1])],
         plane="strain",
         kinematics="finite",
     )
@@ -90,7 +90,7 @@ def test_a_target_without_normals() -> None:
         replace(mesh, points=points),
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.3)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.01)],
-        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top")],
     )
     check = line(abut.solve(model))
     assert check.verdict == "none"

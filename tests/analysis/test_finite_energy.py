@@ -45,7 +45,7 @@ def rubbing(steps: int = 8) -> abut.Model:
             abut.Support("up.top", y=-0.1, amplitude=abut.Amplitude([(0.0, 0.0), (0.5, 1.0)])),
             abut.Support("up.top", x=1.0, amplitude=ALONG),
         ],
-        contacts=[abut.Contact("up.bottom", "low.top", friction=0.3)],
+        contacts=[abut.Contact(contactor="up.bottom", target="low.top", friction=0.3)],
         kinematics="finite",
         solve=abut.SolveOptions(steps=steps),
     )
@@ -63,7 +63,7 @@ def turned(steps: int = 4) -> abut.Model:
         solids=[abut.Solid("strip", abut.LinearElastic(1e3, 0.3, expansion=1e-3))],
         supports=[abut.Support("strip.left", x=0, y=0)],
         loads=[abut.Temperature("strip", 20.0), abut.Pressure("strip.top", 5.0)],
-        contacts=[abut.Contact("strip.right", "grip.left", kind="tied")],
+        contacts=[abut.Contact(contactor="strip.right", target="grip.left", kind="tied")],
         rigid=[abut.Rigid("grip", reference=(5.0, 0.5), rz=1.0)],
         kinematics="finite",
         solve=abut.SolveOptions(steps=steps),

@@ -42,7 +42,7 @@ def by_a_rigid_tool() -> abut.Model:
         [abut.Solid("block", abut.LinearElastic(1e3, 0.3))],
         [abut.Support("block.bottom", x=0, y=0)],
         [abut.NodalForce("tool.top", (0.0, -2.0), amplitude=down)],
-        [abut.Contact("block.top", "tool.bottom", friction=0.3)],
+        [abut.Contact(contactor="block.top", target="tool.bottom", friction=0.3)],
         rigid=[abut.Rigid("tool", x=0.01, rz=0.0, amplitude=along)],
         equations=[abut.Equation([abut.Term(one, "y", 1.0), abut.Term(other, "y", -1.0)], 1e-3, amplitude=along)],
         plane="strain",
@@ -65,7 +65,7 @@ def round_an_axis() -> abut.Model:
             abut.Support("ring.top", y=-0.004, amplitude=down),
             abut.Support("ring.top", x=0.02, amplitude=out),
         ],
-        contacts=[abut.Contact("ring.bottom", "disc.top", friction=0.2)],
+        contacts=[abut.Contact(contactor="ring.bottom", target="disc.top", friction=0.2)],
         plane="axisymmetric",
         solve=abut.SolveOptions(times=[0.1, 0.4, 0.5, 0.75, 1.0]),
     )

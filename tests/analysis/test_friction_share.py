@@ -20,7 +20,7 @@ def released(kinematics: str) -> abut.Model:
         supports=[
             abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0.03, y=-0.02, amplitude=there_and_back),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=0.3)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=0.3)],
         solve=abut.SolveOptions(times=[0.5, 1.0]),
     )  # fmt: skip
 

@@ -18,7 +18,7 @@ def narrow(width: float, aside: float) -> tuple[float, bool]:
     solution = abut.solve(abut.Model(
         mesh, [abut.Solid(body, abut.LinearElastic(1e3, 0.3)) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-0.01)], plane="strain",
-        contacts=[abut.Contact("plate.top", "block.bottom")],
+        contacts=[abut.Contact(contactor="plate.top", target="block.bottom")],
     ))  # fmt: skip
     (check,) = (check for check in solution.certificate if check.name == "loaded area without target")
     return check.value, check.passed

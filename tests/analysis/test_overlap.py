@@ -40,7 +40,7 @@ def stacked(cells: tuple[str, str], gap: float = 0.0, plane: str = "strain", **c
         mesh,
         [abut.Solid(body, abut.LinearElastic(E, NU)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0, z=0 if solid else None)],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **contact)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **contact)],
         plane=None if solid else plane,
     )
 

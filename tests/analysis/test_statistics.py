@@ -89,7 +89,7 @@ def bent(scale: float = 1.0, load: float = 1.0, **contact: object) -> abut.Solut
             [abut.Solid(body, abut.LinearElastic(1000.0 * load, 0.0)) for body in parts],
             [abut.Support("lower.bottom", y=0)],
             [abut.Traction("upper.top", down)],
-            [abut.Contact("upper.bottom", "lower.top", name="columns", **contact)],
+            [abut.Contact(contactor="upper.bottom", target="lower.top", name="columns", **contact)],
             plane="strain",
         )
     )
@@ -156,7 +156,7 @@ def test_axisymmetric(cell: str) -> None:
             [abut.Solid(body, STEEL) for body in parts],
             [abut.Support("lower.bottom", y=0)],
             [abut.Pressure("upper.top", 2.0)],
-            [abut.Contact("upper.bottom", "lower.top")],
+            [abut.Contact(contactor="upper.bottom", target="lower.top")],
             plane="axisymmetric",
         )
     ).steps[-1]
@@ -195,7 +195,7 @@ def test_a_target_of_two_bodies(joined: bool) -> None:
             [abut.Solid(body, soft) for body in mesh.bodies],
             [abut.Support(side, x=0, y=0) for side in held],
             [abut.Pressure("upper.top", 4.0)],
-            [abut.Contact("upper.bottom", target)],
+            [abut.Contact(contactor="upper.bottom", target=target)],
             plane="strain",
         )
     )
@@ -216,7 +216,7 @@ def over_a_hole(cell: str = "quad4") -> abut.Solution:
             make.join({"lower": lower, "upper": upper}),
             [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
             [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.01)],
-            contacts=[abut.Contact("upper.bottom", "lower.top", pressure="P1")],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", pressure="P1")],
             plane="strain",
         )
     )
@@ -285,7 +285,7 @@ def test_nothing_pressed(kind: str, tmp_path: Path) -> None:
             make.join({"lower": lower, "upper": upper}),
             [abut.Solid("lower", soft), abut.Solid("upper", soft)],
             [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=0.01)],
-            contacts=[abut.Contact("upper.bottom", "lower.top", kind=kind)],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", kind=kind)],
             plane="strain",
         )
     )
@@ -339,7 +339,7 @@ def test_what_unloading_leaves_is_nothing() -> None:
             abut.Support("lower.bottom", x=0, y=0),
             abut.Support("upper.top", x=0, y=-0.01, amplitude=released),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top")],
         plane="strain",
         solve=abut.SolveOptions(steps=2),
     )

@@ -24,7 +24,7 @@ def squeezed(kind: str, angle: float) -> abut.Step:
     built = abut.Model(
         mesh, kinematics="finite", solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
         rotations=[abut.Rotation(end, angle, at, (1.0, 0.0, 0.0)) for end, at in ends.items()],
-        contacts=[abut.Contact("upper.bottom", "lower.top", kind=kind)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", kind=kind)],
     )  # fmt: skip
     return abut.solve(built).steps[-1]
 

@@ -74,7 +74,7 @@ def errors(contactor: str, target: str, pressure: str, friction: float = 0.0) ->
         mesh, [abut.Solid("lower", RUBBER), abut.Solid("upper", RUBBER)],
         supports=[abut.Support(name, **axes) for name in ("lower.bottom", "upper.top")],
         plane="strain" if dim == 2 else None,
-        contacts=[abut.Contact("lower.top", "upper.bottom", pressure=pressure, friction=friction)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", pressure=pressure, friction=friction)],
         kinematics="finite", solve=abut.SolveOptions(steps=1),
     )  # fmt: skip
     solution = abut.solve(built)

@@ -25,7 +25,7 @@ def test_patch(cell: str, law: dict[str, object]) -> None:
         [abut.Solid(body, MATERIAL) for body in parts],
         [abut.Support("lower.bottom", y=0)],
         [abut.Pressure("upper.top", 1e-3)],
-        [abut.Contact("lower.top", "upper.bottom", **law)],
+        [abut.Contact(contactor="lower.top", target="upper.bottom", **law)],
         plane="axisymmetric",
     )
     solution = abut.solve(model)

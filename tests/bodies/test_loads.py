@@ -91,7 +91,7 @@ def test_a_bimetal_bends() -> None:
          abut.Solid("upper", abut.LinearElastic(1e3, 0.0, expansion=1e-5))],
         [abut.Support("lower.left", x=0), abut.Support("upper.left", x=0), abut.Support("foot", y=0)],
         [abut.Temperature("lower", change), abut.Temperature("upper", change)],
-        [abut.Contact("upper.bottom", "lower.top", kind="tied")],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", kind="tied")],
         plane="stress",
     )  # fmt: skip
     u = abut.solve(model).displacement
@@ -150,7 +150,7 @@ def flush(gap: float = 0.0, **contact: object) -> abut.Model:
         mesh,
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.0)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.002)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", **contact)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", **contact)],
     )
 
 
@@ -172,7 +172,9 @@ def test_adjust_comes_before_the_offset() -> None:
 def test_swapped_contacts_are_refused() -> None:
     model = flush()
     with pytest.raises(InputError, match="sides swapped: the pressure between them would be determined twice"):
-        replace(model, contacts=[*model.contacts, abut.Contact("lower.top", "upper.bottom", name="again")])
+        replace(
+            model, contacts=[*model.contacts, abut.Contact(contactor="lower.top", target="upper.bottom", name="again")]
+        )
 
 
 @pytest.mark.parametrize(
@@ -191,7 +193,7 @@ def test_swapped_contacts_are_refused() -> None:
         (lambda: abut.SolveOptions(times=(0.5, 0.5)), "increasing"),
         (lambda: abut.SolveOptions(times=(0.5, 1.5)), "up to 1"),
         (lambda: abut.SolveOptions(steps=3, times=(0.5, 1.0)), "give one of them"),
-        (lambda: abut.Contact("a", "b", adjust=-1.0), "adjust"),
+        (lambda: abut.Contact(contactor="a", target="b", adjust=-1.0), "adjust"),
         (lambda: abut.Temperature("a", float("inf")), "finite"),
         (lambda: abut.NodalForce("a", (1.0,)), "2 or 3 numbers"),
     ],
@@ -238,7 +240,7 @@ def test_unloading_a_body_that_contact_alone_holds(linear: str) -> None:
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.3)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0)],
         [abut.Force("upper.top", (0.0, 0.0, -1.0), amplitude=rest)],
-        [abut.Contact("upper.bottom", "lower.top")],
+        [abut.Contact(contactor="upper.bottom", target="lower.top")],
         solve=abut.SolveOptions(steps=8, linear=linear),
     )
     solution = abut.solve(model)
@@ -289,7 +291,9 @@ def test_press_fit_in_steps() -> None:
             "hub": rectangle((a, b), (0, height), (16, 2), "quad8"),
         }
     )
-    pressed = abut.Contact("shaft.right", "hub.left", offset=-interference, amplitude=abut.Amplitude(((0, 0), (1, 1))))
+    pressed = abut.Contact(
+        contactor="shaft.right", target="hub.left", offset=-interference, amplitude=abut.Amplitude(((0, 0), (1, 1)))
+    )
     model = abut.Model(
         mesh,
         [abut.Solid(body, abut.LinearElastic(YOUNG, 0.0)) for body in mesh.bodies],

@@ -86,7 +86,7 @@ def test_overlap_and_edges_that_drop_off(plate_carries: bool, cell: str) -> None
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.3)) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0, z=0), abut.Support("punch.top", x=0, y=0)],
         [abut.Force("punch.top", (0.0, 0.0, -1.0))],
-        [abut.Contact(*pair)],
+        [abut.Contact(contactor=pair[0], target=pair[1])],
         solve=abut.SolveOptions(steps=3),
     )
     solution = abut.solve(model)
@@ -112,7 +112,7 @@ def test_contact_in_the_plane(plane: str, cell: str) -> None:
         mesh,
         [abut.Solid(body, abut.LinearElastic(young, nu)) for body in mesh.bodies],
         [*held, abut.Support("lower.bottom", y=0), abut.Support("upper.top", y=-2e-3)],
-        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top")],
         plane=plane,
     )
     modulus = young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) if plane == "strain" else young / (1 - nu**2)
@@ -208,6 +208,6 @@ def test_interference_fit() -> None:
         mesh,
         [abut.Solid(body, abut.LinearElastic(100.0, 0.0)) for body in mesh.bodies],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=0)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", offset=-0.004)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", offset=-0.004)],
     )
     assert np.nanmax(np.abs(abut.solve(model).contacts[0].pressure / 0.2 - 1.0)) < EXACT

@@ -46,7 +46,10 @@ def corner(cell: str, n: int, m: int, together: bool = True, rigid: bool = True,
         [abut.Solid(name, abut.LinearElastic(1.0 if name == "block" else 2.0, 0.3)) for name in parts],
         [abut.Support(on, **fixed) for on in held],
         [abut.Pressure(on, size) for on, size in PRESSED.items() if on in mesh.surfaces],
-        contacts=[abut.Contact(a, b, **contact) for a, b in ([("round", "walls")] if together else own.items())],
+        contacts=[
+            abut.Contact(contactor=a, target=b, **contact)
+            for a, b in ([("round", "walls")] if together else own.items())
+        ],
         plane="strain" if dim == 2 else None,
     )
 
@@ -128,7 +131,7 @@ def wedge(*held: abut.Support) -> abut.Model:
         [abut.Solid(name, abut.LinearElastic(1.0, 0.3)) for name in parts],
         [abut.Support("base.bottom", x=0, y=0), *held],
         [abut.Pressure("block.top", 1.0)],
-        contacts=[abut.Contact("block.bottom", "base.top")],
+        contacts=[abut.Contact(contactor="block.bottom", target="base.top")],
         plane="strain",
     )
 

@@ -54,7 +54,7 @@ def test_ordinary_functions_keep_two_facets_away_from_open_ones() -> None:
         model = abut.Model(
             join({"lower": lower, "upper": upper}),
             [abut.Solid(body, abut.LinearElastic(1.0, 0.0)) for body in ("lower", "upper")],
-            contacts=[abut.Contact("lower.top", "upper.bottom")], plane="strain",
+            contacts=[abut.Contact(contactor="lower.top", target="upper.bottom")], plane="strain",
         )  # fmt: skip
         own = pair(model, model.contacts[0], supports(model))
         x = own.contactor.points[own.contactor.nodes[:, :2], 0].mean(axis=1)
@@ -108,4 +108,4 @@ def test_averages_have_the_resultant_and_sharpened_ones_linear_fields(kind: str)
 def test_dual_functions_and_the_constraint_function_are_refused() -> None:
     for pressure in ("dual", "dual-P1"):
         with pytest.raises(InputError, match="point by point"):
-            abut.Contact("a", "b", pressure=pressure, law="constraint-function")
+            abut.Contact(contactor="a", target="b", pressure=pressure, law="constraint-function")

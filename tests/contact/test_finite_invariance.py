@@ -40,7 +40,7 @@ def slid(
         for s in model.solids
     ]
     sides = ("lower.top", "upper.bottom") if swap else ("upper.bottom", "lower.top")
-    contacts = [abut.Contact(*sides, friction=0.3, pressure=pressure, name="pair")]
+    contacts = [abut.Contact(contactor=sides[0], target=sides[1], friction=0.3, pressure=pressure, name="pair")]
     mesh = replace(model.mesh, points=length * model.mesh.points @ turn.T)
     return replace(model, mesh=mesh, supports=supports, solids=solids, contacts=contacts, solve=TIMES)
 

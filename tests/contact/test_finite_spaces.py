@@ -140,7 +140,8 @@ def test_ordinary_functions_inside_closed_contact() -> None:
     ends = [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=lambda x: -5e-3 - 2e-3 * x[:, 0])]
     pressures = {
         name: abut.solve(
-            replace(model, mesh=flat, supports=ends, contacts=[abut.Contact("upper.bottom", "lower.top", pressure=name)])
+            replace(model, mesh=flat, supports=ends,
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", pressure=name)])
         ).contacts[0].multiplier
         for name in ("dual-P1", "P1", "dual")
     }  # fmt: skip

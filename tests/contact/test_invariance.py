@@ -195,7 +195,7 @@ def test_same_pressure_whichever_side_carries_it(cell: str) -> None:
             [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in ("lower", "upper")],
             [abut.Support("lower.bottom", normal=0.0), *(abut.Support(on, **across) for on in ends)],
             [abut.Pressure("upper.top", 1e-3), abut.Pressure("upper.right", 5e-4)],
-            [abut.Contact(*pair)],
+            [abut.Contact(contactor=pair[0], target=pair[1])],
             plane="strain" if flat else None,
         )
         solution = abut.solve(model)

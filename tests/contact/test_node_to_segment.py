@@ -207,12 +207,12 @@ def test_surfaces_that_look_away_do_not_pair() -> None:
 )
 def test_what_it_does_not_know_is_refused(method: str, option: dict[str, str]) -> None:
     with pytest.raises(InputError, match=rf"contact 'joint': method {method} is a reference .* use segment-to-segment"):
-        abut.Contact("a", "b", name="joint", method=method, **option)
+        abut.Contact(contactor="a", target="b", name="joint", method=method, **option)
 
 
 def test_unknown_method() -> None:
     with pytest.raises(InputError, match="method"):
-        abut.Contact("a", "b", method="node-to-surface")
+        abut.Contact(contactor="a", target="b", method="node-to-surface")
 
 
 @pytest.mark.parametrize("method", ["node-to-segment", "node-to-segment-two-pass"])

@@ -40,7 +40,7 @@ def blocks(cell: str, size: float = 1.0, turn: Array | None = None, **held: dict
             *(abut.Support(on, normal=0.0) for on in free),
             *(abut.Support(on, **how) for on, how in sides.items()),
         ],
-        contacts=[abut.Contact("a.top", "b.bottom")],
+        contacts=[abut.Contact(contactor="a.top", target="b.bottom")],
     )
 
 

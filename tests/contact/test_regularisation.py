@@ -34,7 +34,7 @@ def blocks(supports: Sequence[abut.Support], loads: Sequence[abut.Pressure | abu
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         supports=[foot, *supports],
         loads=loads,
-        contacts=[abut.Contact("upper.bottom", "lower.top", **options)],  # type: ignore[arg-type]
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", **options)],  # type: ignore[arg-type]
         solve=abut.SolveOptions(linear=linear),
     )
 
@@ -91,7 +91,7 @@ def test_two_blocks_without_any_support() -> None:
         mesh,
         [abut.Solid("a", STEEL), abut.Solid("b", STEEL)],
         loads=[abut.Pressure("a.bottom", 7.0), abut.Pressure("b.top", 7.0)],
-        contacts=[abut.Contact("a.top", "b.bottom")],
+        contacts=[abut.Contact(contactor="a.top", target="b.bottom")],
     )
     solution = abut.solve(model)
     pressure = solution.contacts[0].pressure
@@ -167,7 +167,7 @@ def test_a_rigid_tool_that_may_slide() -> None:
             mesh,
             [abut.Solid("block", STEEL)],
             supports=[abut.Support("block.bottom", x=0, y=0)],
-            contacts=[abut.Contact("block.top", "tool.bottom")],
+            contacts=[abut.Contact(contactor="block.top", target="tool.bottom")],
             rigid=[abut.Rigid("tool", y=-0.01, **given)],
             plane="strain",
         )

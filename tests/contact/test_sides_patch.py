@@ -18,24 +18,27 @@ EXACT = 1e-10
 PART = 0.43  # of the width: where the second of two targets begins, within a facet of the contactor
 WAYS = {
     "lists": [
-        abut.Contact("under.top", ["left.bottom", "right.bottom"]),
-        abut.Contact(["left.top", "right.top"], "over.bottom"),
+        abut.Contact(contactor="under.top", target=["left.bottom", "right.bottom"]),
+        abut.Contact(contactor=["left.top", "right.top"], target="over.bottom"),
     ],
-    "bodies": [abut.Contact("under", ["left", "right"]), abut.Contact(["left", "right"], "over")],
+    "bodies": [
+        abut.Contact(contactor="under", target=["left", "right"]),
+        abut.Contact(contactor=["left", "right"], target="over"),
+    ],
     "one-contactor-in-two": [
-        abut.Contact("under.top", "left.bottom"),
-        abut.Contact("under.top", "right.bottom"),
-        abut.Contact("over.bottom", ["left.top", "right.top"]),
+        abut.Contact(contactor="under.top", target="left.bottom"),
+        abut.Contact(contactor="under.top", target="right.bottom"),
+        abut.Contact(contactor="over.bottom", target=["left.top", "right.top"]),
     ],
     "above-and-below": [
-        abut.Contact("under.top", "left.bottom"),
-        abut.Contact("right", "under"),
-        abut.Contact("left.top", "over.bottom"),
-        abut.Contact("over.bottom", "right.top"),
+        abut.Contact(contactor="under.top", target="left.bottom"),
+        abut.Contact(contactor="right", target="under"),
+        abut.Contact(contactor="left.top", target="over.bottom"),
+        abut.Contact(contactor="over.bottom", target="right.top"),
     ],
     "ties": [
-        abut.Contact("under.top", ["left.bottom", "right.bottom"], kind="tied"),
-        abut.Contact("over.bottom", ["left.top", "right.top"], kind="tied"),
+        abut.Contact(contactor="under.top", target=["left.bottom", "right.bottom"], kind="tied"),
+        abut.Contact(contactor="over.bottom", target=["left.top", "right.top"], kind="tied"),
     ],
 }
 
@@ -130,7 +133,7 @@ def test_one_contactor_on_two_rigid_plates(cell: str, part: float) -> None:
             mesh,
             [abut.Solid("block", abut.LinearElastic(1.0, 0.0))],
             [abut.Support("block.bottom", **{"x": 0.0, "y": 0.0, **({"z": 0.0} if across else {})})],
-            contacts=[abut.Contact("block", "left"), abut.Contact("block", "right")],
+            contacts=[abut.Contact(contactor="block", target="left"), abut.Contact(contactor="block", target="right")],
             plane=None if across else "strain",
             rigid=[abut.Rigid(body, x=0.0, rz=0.0, **down) for body in ("left", "right")],
         )

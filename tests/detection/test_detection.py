@@ -56,12 +56,13 @@ def stacked(upper: float = 0.0, cells: tuple[int, int] = (5, 6)) -> abut.Mesh:
 
 @pytest.mark.parametrize("gap", [0.0, 0.5, -0.2])
 def test_two_blocks(gap: float) -> None:
-    """The whole lower face of the upper block, and what lies opposite with the facets around it: here all of the top."""
+    """The whole lower face of the upper block, and of the lower one, whose facets are larger, what lies opposite with the
+    facets around it: here all of the top."""
     mesh = stacked(gap)
     (found,) = abut.find_contacts(mesh)
-    assert (found.contactor, found.target) == ("auto:upper-lower", "auto:lower-upper")
-    assert rows(found.contactor_facets) == rows(mesh.surfaces["upper.bottom"])
-    assert rows(found.target_facets) == rows(mesh.surfaces["lower.top"])
+    assert (found.contactor, found.target) == ("auto:lower-upper", "auto:upper-lower")
+    assert rows(found.target_facets) == rows(mesh.surfaces["upper.bottom"])
+    assert rows(found.contactor_facets) == rows(mesh.surfaces["lower.top"])
     assert found.gap == pytest.approx((gap, gap), abs=1e-12)
 
 
@@ -95,7 +96,7 @@ def test_reach_and_bodies() -> None:
         abut.find_contacts(mesh, reach=0.0)
 
 
-def test_contactor_is_the_softer_then_the_finer() -> None:
+def test_contactor_is_the_softer_then_the_coarser() -> None:
     mesh = stacked()
     for soft, other in (("upper", "lower"), ("lower", "upper")):
         (found,) = abut.find_contacts(mesh, [abut.Solid(soft, RUBBER), abut.Solid(other, STEEL)])
@@ -104,13 +105,14 @@ def test_contactor_is_the_softer_then_the_finer() -> None:
     alike = [abut.Solid("upper", STEEL), abut.Solid("lower", STEEL)]
     for cells, finer in (((5, 6), "upper"), ((2, 9), "lower")):
         (found,) = abut.find_contacts(stacked(cells=cells), alike)
-        assert found.bodies[0] == finer
+        assert found.bodies[1] == finer
+        assert found.reason == "coarser"
     (rigid,) = abut.find_contacts(mesh, alike[1:])
     assert rigid.bodies == ("lower", "upper")
 
 
-def test_much_finer_side_is_no_contactor_on_a_curved_target() -> None:
-    """Its pressure would show every kink of the coarse one; on a plane there are none."""
+def test_the_coarser_side_is_the_contactor_flat_or_curved() -> None:
+    """The pressure of a finer one would show every facet of the coarse one."""
     round_ = {
         "shaft": ring(radii=(5, 10), cells=(2, 4), cell="quad4"),
         "bush": ring(radii=(10, 12), cells=(2, 40), cell="quad4"),
@@ -120,7 +122,7 @@ def test_much_finer_side_is_no_contactor_on_a_curved_target() -> None:
         "bush": rectangle(x=(0, 10), y=(5, 7), cells=(40, 2), cell="quad4"),
     }
     assert [f.bodies[0] for f in abut.find_contacts(join(round_))] == ["shaft"]
-    assert [f.bodies[0] for f in abut.find_contacts(join(flat))] == ["bush"]
+    assert [f.bodies[0] for f in abut.find_contacts(join(flat))] == ["shaft"]
 
 
 def test_thin_plates_hide_what_is_behind_them() -> None:
@@ -137,8 +139,8 @@ def test_thin_plates_hide_what_is_behind_them() -> None:
     assert set(zip(every.body[seen.one].tolist(), every.body[seen.other].tolist())) == {(0, 1), (1, 2)}
     assert np.abs(seen.gap).max() < 1e-12
     found = abut.find_contacts(mesh)
-    assert {f.bodies for f in found} == {("thin", "a"), ("thin", "c")}
-    assert all(len(f.contactor_facets) == 3 and len(f.target_facets) == 2 for f in found)
+    assert {f.bodies for f in found} == {("a", "thin"), ("c", "thin")}
+    assert all(len(f.contactor_facets) == 2 and len(f.target_facets) == 3 for f in found)
 
 
 def test_patches_apart_are_pairs_of_their_own() -> None:
@@ -148,9 +150,9 @@ def test_patches_apart_are_pairs_of_their_own() -> None:
     bridge = np.concatenate([joined.bodies["foot0"], joined.bodies["foot1"]])
     mesh = replace(joined, bodies={"plate": joined.bodies["plate"], "bridge": bridge})
     found = abut.find_contacts(mesh)
-    assert [f.contactor for f in found] == ["auto:plate-bridge", "auto:plate-bridge:2"]
-    assert [f.contact().name for f in found] == ["plate-bridge", "plate-bridge:2"]
-    assert rows(found[0].target_facets) | rows(found[1].target_facets) == rows(
+    assert [f.contactor for f in found] == ["auto:bridge-plate", "auto:bridge-plate:2"]
+    assert [f.contact().name for f in found] == ["bridge-plate", "bridge-plate:2"]
+    assert rows(found[0].contactor_facets) | rows(found[1].contactor_facets) == rows(
         np.concatenate([mesh.surfaces["foot0.bottom"], mesh.surfaces["foot1.bottom"]])
     )
 
@@ -193,10 +195,10 @@ def test_auto_in_a_job(tmp_path: Path) -> None:
     entry = "auto = true\nreach = 1.0\n[contacts.integration]\npoints = 3\n\n# what follows\n[solve]\nsteps = 2\n"
     path.write_text(AUTO.replace("auto = true", entry))
     job = load_job(path)
-    assert "'auto:upper-lower' (25 facets, contactor: finer) faces" in job.notes[0]
+    assert "'auto:lower-upper' (36 facets, contactor: coarser) faces" in job.notes[0]
     write_pairs(job, written)
     text = written.read_text()
-    assert 'contactor = "auto:upper-lower"' in text
+    assert 'contactor = "auto:lower-upper"' in text
     assert "auto = true" not in text
     assert "reach = 1.0" in text
     assert "\n# what follows\n[solve]\n" in text

@@ -28,7 +28,7 @@ COARSE = {  # lines of the certificate that a mesh of this size fails for a good
     "wall": set(),
     "o-ring": set(),
     "flange": set(),
-    "gears": {"resolution"},
+    "gears": {"overlap", "resolution"},  # one flank bears on a single facet
     "clevis": {"resolution"},
 }
 DEEP = {"bearing": 0.051, "clevis": 0.2}  # interference; of the clevis that of its chords

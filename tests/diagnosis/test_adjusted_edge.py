@@ -27,7 +27,8 @@ def arc(adjust: float, kinematics: str = "small", cells: int = 24) -> abut.Solut
     return abut.solve(abut.Model(
         mesh, [abut.Solid(body, abut.LinearElastic(1e3, 0.3)) for body in mesh.bodies],
         [abut.Support("block.bottom", x=0.0, y=0.0), abut.Support("arc.top", x=0.0, y=-PRESSED)],
-        contacts=[abut.Contact("arc.bottom", "block.top", adjust=adjust)], plane="strain", kinematics=kinematics,
+        contacts=[
+            abut.Contact(contactor="arc.bottom", target="block.top", adjust=adjust)], plane="strain", kinematics=kinematics,
     ))  # fmt: skip
 
 

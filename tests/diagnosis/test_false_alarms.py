@@ -32,7 +32,7 @@ def fit(around: tuple[int, int], interference: float, cell: str = "quad4", geome
     supports = [
         abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in (("start", "y"), ("end", "x"))
     ]
-    contact = abut.Contact("hub.inner", "shaft.outer", offset=-interference, geometry=geometry)
+    contact = abut.Contact(contactor="hub.inner", target="shaft.outer", offset=-interference, geometry=geometry)
     return abut.Model(mesh, [abut.Solid(b, STEEL) for b in mesh.bodies], supports, contacts=[contact], plane="stress")
 
 
@@ -86,8 +86,10 @@ def light_fit(down: float) -> abut.Model:
         [replace(s, on=f"fit.{s.on}") for s in light.supports]
         + [abut.Support("foot.bottom", x=0, y=0), abut.Support("block.top", x=0, y=-down)],
         contacts=[
-            abut.Contact("fit.hub.inner", "fit.shaft.outer", offset=-1e-4, name="fit", geometry="faceted"),
-            abut.Contact("foot.top", "block.bottom", name="blocks"),
+            abut.Contact(
+                contactor="fit.hub.inner", target="fit.shaft.outer", offset=-1e-4, name="fit", geometry="faceted"
+            ),
+            abut.Contact(contactor="foot.top", target="block.bottom", name="blocks"),
         ],
         plane="stress",
     )
@@ -124,7 +126,7 @@ def sheets(pressed: str) -> abut.Model:
             abut.Support("base.bottom", x=0, y=0),
             *(abut.Support(f"{b}.top", x=0, y=-0.01 if b == pressed else 0.01) for b in ("left", "cover", "right")),
         ],
-        contacts=[abut.Contact("base.top", "every")],
+        contacts=[abut.Contact(contactor="base.top", target="every")],
         plane="strain",
     )
 
@@ -134,8 +136,8 @@ def test_two_layers_of_target_where_nothing_presses() -> None:
     does where both press."""
     for pressed in ("right", "left"):
         assert checks(abut.solve(sheets(pressed)))["covered twice"].value < 1e-9
-    behind = abut.Contact("base.top", "cover.bottom", offset=-0.08)
-    twice = replace(sheets("left"), contacts=[abut.Contact("base.top", "left.bottom"), behind])
+    behind = abut.Contact(contactor="base.top", target="cover.bottom", offset=-0.08)
+    twice = replace(sheets("left"), contacts=[abut.Contact(contactor="base.top", target="left.bottom"), behind])
     solution = abut.solve(twice)
     found = {(c.contact, c.name): c for c in solution.certificate}
     for contact in twice.contacts:
@@ -152,7 +154,7 @@ def tubes(linear: str, cell: str = "hex8") -> abut.Model:
             "shaft": cylinder(10.0, (0, 15), (2, 24, 3), cell, inner=5.0),
         }
     )
-    contact = abut.Contact("hub.inner", "shaft.round", offset=-0.01)
+    contact = abut.Contact(contactor="hub.inner", target="shaft.round", offset=-0.01)
     options = abut.SolveOptions(linear=linear)
     return abut.Model(mesh, [abut.Solid(b, STEEL) for b in mesh.bodies], contacts=[contact], solve=options)
 
@@ -175,7 +177,9 @@ def test_tied_bodies_that_are_heated_and_free() -> None:
     mesh = join({"a": box(z=(0, 1), cells=(3, 3, 2)), "b": box(z=(1, 2), cells=(2, 2, 2))})
     material = abut.LinearElastic(210e3, 0.3, expansion=1e-5)
     solids = [abut.Solid(body, material, temperature=100.0) for body in mesh.bodies]
-    solution = abut.solve(abut.Model(mesh, solids, contacts=[abut.Contact("a.top", "b.bottom", kind="tied")]))
+    solution = abut.solve(
+        abut.Model(mesh, solids, contacts=[abut.Contact(contactor="a.top", target="b.bottom", kind="tied")])
+    )
     assert failed(solution) == set()
     (step,) = solution.steps
     wrong = replace(step, reaction=step.reaction + 1e-6 * step.internal)
@@ -191,7 +195,7 @@ def test_a_stiff_part_on_a_soft_one_under_a_force() -> None:
         [abut.Solid("punch", abut.LinearElastic(1e7, 0.3)), abut.Solid("block", abut.LinearElastic(1e3, 0.3))],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
         [abut.Force("punch.top", (0.0, -1.0))],
-        [abut.Contact("punch.bottom", "block.top")],
+        [abut.Contact(contactor="punch.bottom", target="block.top")],
         plane="strain",
     )
     solution = abut.solve(model)
@@ -208,7 +212,7 @@ def blocks(down: float, gap: float = 0.0) -> abut.Model:
     mesh = join({"lower": rectangle((0, 1), (0, 1), (3, 3)), "upper": rectangle((0, 1), (1 + gap, 2 + gap), (2, 2))})
     supports = [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=down)]
     solids = [abut.Solid(body, STEEL) for body in mesh.bodies]
-    contacts = [abut.Contact("lower.top", "upper.bottom")]
+    contacts = [abut.Contact(contactor="lower.top", target="upper.bottom")]
     return abut.Model(mesh, solids, supports, contacts=contacts, plane="strain")
 
 

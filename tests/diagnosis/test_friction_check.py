@@ -96,7 +96,7 @@ def corner(dim: int, friction: float = 0.3) -> abut.Model:
         make.join(parts),
         [abut.Solid(name, abut.LinearElastic(1.0, 0.3)) for name in parts],
         [abut.Support(on, **whole) for on in held],
-        contacts=[abut.Contact("cell.bottom", "plate.top", friction=friction)],
+        contacts=[abut.Contact(contactor="cell.bottom", target="plate.top", friction=friction)],
         plane="strain" if dim == 2 else None,
     )
 
@@ -140,7 +140,7 @@ def test_a_coefficient_that_is_too_large() -> None:
 def test_bounds_are_for_what_they_know() -> None:
     """Not beside contacts without friction, nor for bodies that friction alone holds, rough surfaces and tables."""
     model = pushed()
-    other = abut.Contact("upper.right", "lower.top", name="other")
+    other = abut.Contact(contactor="upper.right", target="lower.top", name="other")
     table = ((0.0, 0.3), (1.0, 0.2))
     for own in (
         on_a_slope(0.2),
@@ -161,7 +161,7 @@ def test_axisymmetric() -> None:
         make.join(parts),
         [abut.Solid(name, abut.LinearElastic(1.0, 0.3)) for name in parts],
         [abut.Support("a.bottom", x=0, y=0), abut.Support("b.top", x=0, y=-0.01)],
-        contacts=[abut.Contact("b.bottom", "a.top", friction=0.1)],
+        contacts=[abut.Contact(contactor="b.bottom", target="a.top", friction=0.1)],
         plane="axisymmetric",
     )
     ((severity, text),) = findings(model)

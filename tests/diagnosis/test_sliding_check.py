@@ -26,7 +26,7 @@ def apart(x: float, scale: float = 1.0, target: str = "plate.top") -> abut.Model
             abut.Support("plate.bottom", x=0, y=0), abut.Support("block.top", x=-x, amplitude=first),
             abut.Support("block.top", y=-0.1, amplitude=then),
         ],
-        contacts=[abut.Contact("block.bottom", target, name="c", friction=0.2)],
+        contacts=[abut.Contact(contactor="block.bottom", target=target, name="c", friction=0.2)],
     )  # fmt: skip
 
 
@@ -46,5 +46,9 @@ def test_large_sliding_may_bring_bodies_together_later() -> None:
 def test_a_body_that_may_touch_itself_is_no_error() -> None:
     """Detection with finite kinematics takes each body with itself, flat as it may be."""
     model = apart(0.0)
-    contacts = [abut.Contact("plate", "plate"), abut.Contact("block", "block"), abut.Contact("block", "plate")]
+    contacts = [
+        abut.Contact(contactor="plate", target="plate"),
+        abut.Contact(contactor="block", target="block"),
+        abut.Contact(contactor="block", target="plate"),
+    ]
     assert not [f for f in check(replace(model, contacts=contacts)).findings if f.severity != "info"]

@@ -173,7 +173,7 @@ def test_as_functions_in_python(tmp_path: Path, space: str) -> None:
             abut.Traction(force.on, sideways),
             abut.Temperature(heat.on, FUNCTIONS["temperature"]),
         ],
-        [abut.Contact(contact.contactor, contact.target, friction=FUNCTIONS["friction"])],
+        [abut.Contact(contactor=contact.contactor, target=contact.target, friction=FUNCTIONS["friction"])],
         plane=model.plane,
     )
     ours, theirs = abut.solve(model), abut.solve(same)

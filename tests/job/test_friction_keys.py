@@ -12,7 +12,7 @@ from abut.job import load_job
 from abut.job.convert import write_job
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pushed-block" / "job.toml"
-NAMED = 'contactor = "block.bottom"\ntarget = "plate.top"\n'
+NAMED = 'surfaces = ["block.bottom", "plate.top"]\n'
 
 
 def job(folder: Path, friction: str, contact: str = NAMED) -> Path:

@@ -108,7 +108,7 @@ def test_no_convergence_writes_the_last_state_and_names_facets(
     """A ball pressed on a plane starts from one point of contact: one iteration cannot be enough."""
     ball = (EXAMPLE.parents[1] / "hertz-sphere" / "job.toml").read_text()
     text = ball.replace("cells = 16", "cells = 3").replace("hex20", "hex8")
-    text = text.replace('target = "plane.top"', f'target = "plane.top"\nlaw = "{law}"')
+    text = text.replace('"plane.top"]', f'"plane.top"]\nlaw = "{law}"')
     assert law in text
     status, error = run(tmp_path, text + "\n[solve]\nmax_iterations = 1", capsys)
     assert status == 3

@@ -66,6 +66,7 @@ VALUES = {  # of options that take one; {} is the folder of the test
     ("check", "--ignore"): "FRICTION", ("check", "--output"): "{}/motions", ("check", "--write-pairs"): "{}/pairs.toml",
     ("convert", "--ignore"): "FRICTION",
     ("verify", "--levels"): "2", ("verify", "--plot"): "{}/plot.svg", ("verify", "--job"): "{}/job.toml",
+    ("verify", "--output"): "{}/swap",
     ("infsup", "--contact"): "c", ("infsup", "--levels"): "2",
     ("schema", "--output"): "{}/schema.json",
 }  # fmt: skip

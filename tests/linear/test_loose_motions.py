@@ -24,7 +24,7 @@ def free_tool() -> abut.Model:
     return abut.Model(
         mesh, [abut.Solid("block", SOFT)], [abut.Support("block.bottom", x=0, y=0, z=0)],
         [abut.NodalForce("handle", (0.0, 0.0, -3.0)), abut.Force("tool.top", (0.0, 0.0, -6.0))],
-        [abut.Contact("block.top", "tool.bottom")], rigid=[abut.Rigid("tool", x=0, y=0, rz=0)],
+        [abut.Contact(contactor="block.top", target="tool.bottom")], rigid=[abut.Rigid("tool", x=0, y=0, rz=0)],
     )  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def backed_pad(**contact: object) -> abut.Model:
     ]
     return abut.Model(
         mesh, [abut.Solid(body, SOFT) for body in ("block", "pad")], [abut.Support("block.bottom", x=0, y=0, z=0)],
-        [abut.Force("back.top", (0.0, 0.1, -2.0))], [abut.Contact("block.top", "pad.bottom", **contact)],
+        [abut.Force("back.top", (0.0, 0.1, -2.0))], [abut.Contact(contactor="block.top", target="pad.bottom", **contact)],
         rigid=[abut.Rigid("back", x=0.0)], equations=periodic,
     )  # fmt: skip
 

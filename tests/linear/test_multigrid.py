@@ -30,7 +30,7 @@ def blocks(n: int, cell: str = "hex8", tilt: float = 0.01, **contact: object) ->
         join({"lower": lower, "upper": replace(upper, points=upper.points + slope)}),
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0, z=-0.05)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", **contact)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", **contact)],
     )
 
 
@@ -78,7 +78,7 @@ def test_rings() -> None:
         join({"lower": lower, "upper": upper}),
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", y=-0.01)],
-        contacts=[abut.Contact("lower.top", "upper.bottom")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom")],
         plane="axisymmetric",
     )
     plane = assert_same(replace(model, plane="strain"))
@@ -187,8 +187,8 @@ def test_constraint_function_on_a_body_that_only_contact_holds() -> None:
         }
     )
     contacts = [
-        abut.Contact("upper.bottom", "lower.top", law="constraint-function"),
-        abut.Contact("cap.bottom", "upper.top", kind="tied"),
+        abut.Contact(contactor="upper.bottom", target="lower.top", law="constraint-function"),
+        abut.Contact(contactor="cap.bottom", target="upper.top", kind="tied"),
     ]
     model = abut.Model(
         mesh,

@@ -68,7 +68,7 @@ def cushion(friction: float, cell: str, cells: tuple[int, int]) -> abut.Model:
             abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", z=-0.04, amplitude=FIRST),
             abut.Support("upper.top", x=0.12, y=0.05, amplitude=THEN),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)], solve=TWO_STEPS,
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)], solve=TWO_STEPS,
     )  # fmt: skip
 
 
@@ -106,7 +106,8 @@ def stacked() -> abut.Model:
         ],
         rigid=[abut.Rigid("back", x=0.05, y=0.0, rx=0.0, rz=0.0, amplitude=THEN)], equations=equal,
         contacts=[
-            abut.Contact("pad.bottom", "slab.top", friction=0.2), abut.Contact("slab.bottom", "ground.top", friction=0.6),
+            abut.Contact(contactor="pad.bottom", target="slab.top", friction=0.2),
+                abut.Contact(contactor="slab.bottom", target="ground.top", friction=0.6),
         ], solve=TWO_STEPS,
     )  # fmt: skip
 

@@ -33,7 +33,7 @@ def pressed_block(law: str, kind: str = "contact", free: bool = False) -> abut.M
         solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
         supports=held,
         loads=[top],
-        contacts=[abut.Contact("upper.bottom", "lower.top", law=law, kind=kind)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", law=law, kind=kind)],
         solve=abut.SolveOptions(steps=2),
     )
 

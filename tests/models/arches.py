@@ -38,7 +38,7 @@ def arch(force: float | None = None, way: float = 0.0, steps: int | str = "auto"
     return abut.Model(
         mesh, [abut.Solid(name, STEEL) for name in mesh.bodies],
         [abut.Support("arch.left", x=0, y=0), abut.Support("arch.right", x=0, y=0), abut.Support("punch.left", x=0), *moved],
-        pushed, [abut.Contact("punch.bottom", "arch.top")], plane="strain", kinematics="finite",
+        pushed, [abut.Contact(contactor="punch.bottom", target="arch.top")], plane="strain", kinematics="finite",
         solve=abut.SolveOptions(steps=steps),
     )  # fmt: skip
 
@@ -60,6 +60,7 @@ def ball(cells: int = 2) -> abut.Model:
             abut.Support("low.bottom", x=0, y=0, z=0), abut.Support("up.top", y=0),
             abut.Support("up.top", z=-PRESSED, amplitude=press), abut.Support("up.top", x=ROLLED, amplitude=roll),
         ],
-        contacts=[abut.Contact("ball", "low.top", friction=0.3), abut.Contact("ball", "up.bottom", friction=0.3)],
+        contacts=[abut.Contact(contactor="ball", target="low.top", friction=0.3),
+            abut.Contact(contactor="ball", target="up.bottom", friction=0.3)],
         kinematics="finite",
     )  # fmt: skip

@@ -82,7 +82,7 @@ class Parts:
         self.supports.append(abut.Support(on, **components))
 
     def touch(self, contactor: str, target: str, **options: Any) -> None:
-        self.contacts.append(abut.Contact(contactor, target, name=f"c{len(self.contacts)}", **options))
+        self.contacts.append(abut.Contact(contactor=contactor, target=target, name=f"c{len(self.contacts)}", **options))
 
     def meet(self, one: str, other: str, **options: Any) -> None:
         """As ``touch``, with the sides drawn."""

@@ -98,7 +98,7 @@ def line(
         [abut.Solid(body, steel(e)) for body, e in zip(("cylinder", "block"), young)],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("cylinder.axis", x=0)],
         [abut.Force("cylinder.flat", (0.0, -load))],
-        [abut.Contact(*sides, **options)],
+        [abut.Contact(contactor=sides[0], target=sides[1], **options)],
         plane="strain",
     )
 
@@ -126,7 +126,7 @@ def ball(cell: str = "quad8", cells: int = 10, **options: object) -> abut.Model:
         [abut.Solid(body, SOFT) for body in mesh.bodies],
         [abut.Support("plane.bottom", x=0, y=0), abut.Support("plane.top", x=0, y=0)],
         [abut.Force("ball.flat", (0.0, -BALL_FORCE))],
-        [abut.Contact("ball.round", "plane.top", **options)],
+        [abut.Contact(contactor="ball.round", target="plane.top", **options)],
         plane="axisymmetric",
     )
 
@@ -144,7 +144,7 @@ def balls(cell: str, cells: tuple[int, int], young: tuple[float, float]) -> abut
         [abut.Solid(body, steel(e)) for body, e in zip(("upper", "lower"), young)],
         [abut.Support("lower.flat", x=0, y=0)],
         [abut.Force("upper.flat", (0.0, -BALL_FORCE))],
-        [abut.Contact("upper.round", "lower.round")],
+        [abut.Contact(contactor="upper.round", target="lower.round")],
         plane="axisymmetric",
     )
 
@@ -179,7 +179,7 @@ def octant(cell: str, cells: int, **options: object) -> abut.Model:
             abut.Support("ball.y0", y=0),
         ],
         [abut.Force("ball.z0", (0.0, 0.0, -BALL_FORCE / 4.0))],
-        [abut.Contact("ball.round", "plane.top", **options)],
+        [abut.Contact(contactor="ball.round", target="plane.top", **options)],
     )
 
 
@@ -211,7 +211,7 @@ def fit(
     ends = (("start", "y"), ("end", "x"))
     supports = [abut.Support(f"{body}.{end}", **{a: 0}) for body in mesh.bodies for end, a in ends]
     sides = ("shaft.outer", "hub.inner") if swap else ("hub.inner", "shaft.outer")
-    contact = abut.Contact(*sides, offset=-interference)
+    contact = abut.Contact(contactor=sides[0], target=sides[1], offset=-interference)
     return abut.Model(mesh, [abut.Solid(b, steel()) for b in mesh.bodies], supports, contacts=[contact], plane=plane)
 
 
@@ -228,7 +228,7 @@ def tubes(around: tuple[int, int], cell: str = "hex8", linear: str = "auto", hel
         }
     )
     supports = [abut.Support(f"{b}.{s}", z=0) for b in mesh.bodies for s in ("bottom", "top")] if held else []
-    contact = abut.Contact("hub.inner", "shaft.round", offset=-0.02)
+    contact = abut.Contact(contactor="hub.inner", target="shaft.round", offset=-0.02)
     options = abut.SolveOptions(linear=linear)
     return abut.Model(mesh, [abut.Solid(b, steel()) for b in mesh.bodies], supports, contacts=[contact], solve=options)
 
@@ -237,7 +237,7 @@ def wrapped(cell: str = "quad8") -> abut.Model:
     """Axisymmetric: hub and shaft of one length."""
     mesh = join({"hub": rectangle((10, 20), (0, 4), (6, 3), cell), "shaft": rectangle((5, 10), (0, 4), (4, 2), cell)})
     sides = [abut.Support(f"{body}.{side}", y=0) for body in mesh.bodies for side in ("bottom", "top")]
-    contact = abut.Contact("hub.left", "shaft.right", offset=-0.02)
+    contact = abut.Contact(contactor="hub.left", target="shaft.right", offset=-0.02)
     return abut.Model(
         mesh, [abut.Solid(b, steel()) for b in mesh.bodies], sides, contacts=[contact], plane="axisymmetric"
     )
@@ -260,7 +260,7 @@ def squares(
         mesh,
         [abut.Solid(body, abut.LinearElastic(e, NU)) for body, e in zip(("lower", "upper"), young)],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0.02, y=down)],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **options)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **options)],
         plane="strain",
     )
 
@@ -287,7 +287,7 @@ def plate(cell: str, n: int, m: int, contactor: str = "plate", down: float = -0.
         mesh,
         [abut.Solid(body, SOFT) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0), abut.Support("block.top", x=0, y=down)],
-        contacts=[abut.Contact(*sides)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1])],
         plane="strain",
     )
 

@@ -22,7 +22,7 @@ def strip(facets: int, cell: str = "quad8", **contact: object) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(210e3, 0.0)) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0), abut.Support("punch.left", x=0), abut.Support("punch.right", x=0)],
         [abut.Pressure("punch.top", 100.0)],
-        [abut.Contact("punch.bottom", "plate.top", **{"adjust": 0.005, **contact})],
+        [abut.Contact(contactor="punch.bottom", target="plate.top", **{"adjust": 0.005, **contact})],
         plane="strain",
     )
 
@@ -47,7 +47,7 @@ def sheets(*contacts: abut.Contact) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.0)) for body in mesh.bodies],
         [abut.Support("base.bottom", x=0, y=0), abut.Support("cover.top", x=0, y=0), abut.Support("sheet.left", x=0)],
         [abut.Pressure("sheet.top", 1.0)],
-        contacts=contacts or [abut.Contact("base.top", "sheet.bottom")],
+        contacts=contacts or [abut.Contact(contactor="base.top", target="sheet.bottom")],
         plane="strain",
     )
 
@@ -64,7 +64,7 @@ def stack(unload: float | None = None, kind: str = "contact", **contact: object)
         [abut.Solid(body, steel()) for body in mesh.bodies],
         [abut.Support("lower.bottom", z=0), *sides],
         [abut.Pressure("upper.top", 5.0, amplitude=history)],
-        [abut.Contact("lower.top", "upper.bottom", kind=kind, **contact)],
+        [abut.Contact(contactor="lower.top", target="upper.bottom", kind=kind, **contact)],
         solve=abut.SolveOptions(steps=1 if unload is None else 2),
     )
 
@@ -79,7 +79,7 @@ def heated(kind: str) -> abut.Model:
         mesh,
         [abut.Solid(body, hot, temperature=100.0) for body in mesh.bodies],
         [] if kind == "tied" else [*walls, *sides],
-        contacts=[abut.Contact("a.top", "b.bottom", kind=kind)],
+        contacts=[abut.Contact(contactor="a.top", target="b.bottom", kind=kind)],
     )
 
 
@@ -96,7 +96,10 @@ def tower(light: float) -> abut.Model:
         [abut.Solid(body, SOFT) for body in mesh.bodies],
         supports,
         [abut.Pressure("a2.top", 10.0), abut.Pressure("b2.top", light)],
-        [abut.Contact("a1.top", "a2.bottom", name="a"), abut.Contact("b1.top", "b2.bottom", name="b")],
+        [
+            abut.Contact(contactor="a1.top", target="a2.bottom", name="a"),
+            abut.Contact(contactor="b1.top", target="b2.bottom", name="b"),
+        ],
         plane="strain",
     )
 
@@ -114,8 +117,8 @@ def light_fit(heavy: bool, around: tuple[int, int] = (26, 24)) -> abut.Model:
         + [abut.Support("foot.bottom", y=0)],
         [abut.Pressure("block.top", 2000.0 if heavy else 1e-3)],
         [
-            abut.Contact("foot.top", "block.bottom", name="blocks"),
-            abut.Contact("fit.hub.inner", "fit.shaft.outer", offset=-2e-4, name="fit"),
+            abut.Contact(contactor="foot.top", target="block.bottom", name="blocks"),
+            abut.Contact(contactor="fit.hub.inner", target="fit.shaft.outer", offset=-2e-4, name="fit"),
         ],
         plane="stress",
     )
@@ -129,7 +132,7 @@ def moved(down: float, gap: float = 0.01, unit: float = 1.0) -> abut.Model:
         mesh,
         [abut.Solid(body, abut.LinearElastic(1000.0, 0.0)) for body in mesh.bodies],
         [abut.Support("lower.bottom", y=0), abut.Support("upper.top", y=-down * unit), *sides],
-        contacts=[abut.Contact("lower.top", "upper.bottom")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom")],
         plane="strain",
     )
 
@@ -156,7 +159,7 @@ def washer(swap: bool, cells: int = 8) -> abut.Model:
         [abut.Solid(body, steel()) for body in mesh.bodies],
         [abut.Support("plate.bottom", y=0)],
         [abut.Force("head.top", (0.0, -1000.0))],
-        [abut.Contact(*sides)],
+        [abut.Contact(contactor=sides[0], target=sides[1])],
         plane="axisymmetric",
     )
 
@@ -175,7 +178,7 @@ def sleeve(swap: bool, cell: str = "quad4", cells: tuple[int, int] = (4, 30)) ->
         mesh,
         [abut.Solid(body, steel()) for body in mesh.bodies],
         [abut.Support("shaft.bottom", y=0), abut.Support("hub.bottom", y=0)],
-        contacts=[abut.Contact(*sides, offset=-0.02)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], offset=-0.02)],
         plane="axisymmetric",
     )
 
@@ -204,7 +207,7 @@ def bar(cells: int = 8) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(210e3, NU)) for body in mesh.bodies],
         [*supports, abut.Support("sleeve.round", x=0, y=0), abut.Support("pin.top", x=0)],
         [abut.Force("pin.top", (0.0, -2e4, 0.0))],
-        [abut.Contact("pin.round", "sleeve.inner")],
+        [abut.Contact(contactor="pin.round", target="sleeve.inner")],
     )
 
 

@@ -180,7 +180,8 @@ SOUND_RUNS = (
     Run("hub on a long shaft", lambda: sleeve(False, "quad8"), beside_fine_sleeve),
     Run("hub on less than two facets of its shaft", lambda: sleeve(True, "quad4", (3, 8)), beside_fine_sleeve),
     Run("sheet under a cover", sheets, worst(even(1.0), rests)),
-    Run("a sheet, and the cover behind it", lambda: sheets(abut.Contact("base.top", ["sheet.bottom", "cover.bottom"])),
+    Run("a sheet, and the cover behind it", lambda: sheets(
+        abut.Contact(contactor="base.top", target=["sheet.bottom", "cover.bottom"])),
         worst(even(1.0), rests)),
 )  # fmt: skip
 
@@ -207,14 +208,15 @@ UNSOUND_RUNS = (
     Run("round punch on three quad4 facets", lambda: strip(3, "quad4", adjust=0.0), peak(STRIP_PEAK), ("faceting", *COARSE)),
     Run("round punch on six quad8 facets", lambda: strip(6, adjust=0.0), peak(STRIP_PEAK), COARSE),
     Run("round punch, coarse plate as contactor", lambda: replace(strip(6, adjust=0.0),
-        contacts=[abut.Contact("plate.top", "punch.bottom")]), peak(STRIP_PEAK), COARSE),
+        contacts=[abut.Contact(contactor="plate.top", target="punch.bottom")]), peak(STRIP_PEAK), COARSE),
     Run("one Gauss point", lambda: column("hex8", "hex8", ((1, 2, 2), (2, 1, 2)), integration=gauss), even(1e-3),
         ("facet moments",)),
     Run("node-to-segment, two-pass", lambda: column("quad8", "quad8", ((5, 3), (7, 3)), method="node-to-segment-two-pass"),
         outside, ("oscillation",)),
     Run("P0 checkerboard of the tour", lambda: two_blocks("P0"), falsely_open, ("oscillation",)),
     Run("a layer behind pulled through the one in front", lambda: sheets(
-        abut.Contact("base.top", "sheet.bottom"), abut.Contact("base.top", "cover.bottom", offset=-0.063)),
+        abut.Contact(contactor="base.top", target="sheet.bottom"),
+            abut.Contact(contactor="base.top", target="cover.bottom", offset=-0.063)),
         rests, ("covered twice",)),
     Run("Young's modulus in GPa", lambda: units(tubes((24, 24))), outside, ("strain",)),
     Run("motion in metres", lambda: moved(0.03, unit=1e-3), outside, ("response",)),

@@ -52,7 +52,8 @@ def clamp(
     return abut.Model(
         mesh, [abut.Solid("body", RUBBER)],
         [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.03, y=-GAP - closing), *between],
-        contacts=[abut.Contact(*sides, name="jaws", **contact)], plane=None if solid else "strain", kinematics="finite",
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="jaws", **contact)],
+        plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
 
 
@@ -68,7 +69,7 @@ def wrung(cell: str, sides: tuple[Names, Names] = ("body", "body"), **contact: A
             abut.Support("above", x=lambda p: 0.2 * (p[:, 2] - 0.25), amplitude=then),
             abut.Support("above", z=lambda p: 0.12 - 0.2 * (p[:, 0] - PLACE), amplitude=then),
         ],
-        contacts=[abut.Contact(*sides, name="jaws", **contact)], kinematics="finite",
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="jaws", **contact)], kinematics="finite",
         solve=abut.SolveOptions(times=tuple(np.linspace(0.125, 1.0, 8))),
     )  # fmt: skip
 
@@ -114,7 +115,8 @@ def tube(
     between = [abut.Support("bottom", z=0.0), abut.Support("top", z=0.0)] if solid else []
     middle = [abut.Support("below", x=0.0, y=0.0), abut.Support("above", x=0.0, y=-2.0 * INNER - closing)]
     return abut.Model(
-        mesh, [abut.Solid("body", RUBBER)], [*middle, *between], contacts=[abut.Contact(*sides, name="inside", **contact)],
+        mesh, [abut.Solid("body", RUBBER)], [*middle, *between],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], name="inside", **contact)],
         plane=None if solid else "strain", kinematics="finite",
     )  # fmt: skip
 

@@ -35,8 +35,8 @@ def pin_in_cradle(friction: float, above: float = 0.0) -> abut.Model:
     return abut.Model(
         replace(mesh, points=points), [abut.Solid("pin", STEEL), abut.Solid("cradle", STEEL)],
         [abut.Support("cradle.bottom", x=0.0, y=0.0)], [abut.BodyForce((0.0, -WEIGHT), on="pin")],
-        contacts=[abut.Contact(TREAD, "cradle.top", friction=friction, geometry="faceted")], plane="strain",
-        kinematics="finite",
+        contacts=[abut.Contact(contactor=TREAD, target="cradle.top", friction=friction, geometry="faceted")],
+        plane="strain", kinematics="finite",
     )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def peg(cell: str, plate_is_contactor: bool = False) -> abut.Model:
         mesh, [abut.Solid("plate", SOFT), abut.Solid("peg", SOFT)],
         [abut.Support("plate.bottom", x=0.0, y=0.0), abut.Support("peg.top", y=-0.08, amplitude=press),
          abut.Support("peg.top", x=1.5, amplitude=slide)],
-        contacts=[abut.Contact(*(sides[::-1] if plate_is_contactor else sides), friction=0.3)],
+        contacts=[abut.Contact(contactor=sides[plate_is_contactor], target=sides[not plate_is_contactor], friction=0.3)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 
@@ -76,7 +76,7 @@ def wedge(cell: str, aside: float = 0.0) -> abut.Model:
         join({"block": round_, "wedge": sharp}),
         [abut.Solid("block", RUBBER), abut.Solid("wedge", STEEL)],
         [abut.Support("block.bottom", x=0.0, y=0.0), abut.Support("wedge.top", x=0.0, y=-0.6)],
-        contacts=[abut.Contact(("wedge.bottom", "wedge.left", "wedge.right"), "block.top", friction=0.2)],
+        contacts=[abut.Contact(contactor=("wedge.bottom", "wedge.left", "wedge.right"), target="block.top", friction=0.2)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 
@@ -100,5 +100,5 @@ def landing(cell: str, cells: int, on_corner: bool, tilt: float = 25.0) -> abut.
         mesh, [abut.Solid("plate", RUBBER), abut.Solid("cube", RUBBER)],
         [abut.Support("plate.bottom", x=0.0, y=0.0, z=0.0), abut.Support("cube.top", z=-0.4, amplitude=press),
          abut.Support("cube.top", x=0.4, y=0.0, amplitude=slide)],
-        contacts=[abut.Contact(sides, "plate.top", friction=0.3)], kinematics="finite",
+        contacts=[abut.Contact(contactor=sides, target="plate.top", friction=0.3)], kinematics="finite",
     )  # fmt: skip

@@ -50,7 +50,7 @@ def accordion(
         mesh=mesh,
         solids=[abut.Solid("strip", abut.NeoHooke(young=100.0, poisson=0.3))],
         supports=[abut.Support("first", x=0.0, y=0.0), abut.Support("last", x=-shortening, y=0.0)],
-        contacts=[abut.Contact(sides, sides, name="folds", **contact)],
+        contacts=[abut.Contact(contactor=sides, target=sides, name="folds", **contact)],
         plane="strain",
         kinematics="finite",
     )

@@ -83,7 +83,7 @@ def sheared(mesh: Mesh, size: float, slide: float | None = None, **contact: obje
         [abut.Solid(b, abut.LinearElastic(1.0, POISSON)) for b in ("lower", "upper")],
         supports=supports,
         loads=loads,
-        contacts=[abut.Contact("lower.top", "upper.bottom", **{"friction": FRICTION, **contact})],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **{"friction": FRICTION, **contact})],
         plane="strain" if dim == 2 else None,
     )
 
@@ -121,7 +121,7 @@ def pushed(far: float = 0.02, friction: float = FRICTION) -> abut.Model:
             abut.Support("upper.top", x=far, amplitude=abut.Amplitude([(0.2, 0), (0.6, 1), (1, -1)])),
         ],
         [abut.Pressure("upper.top", 100.0, amplitude=abut.Amplitude([(0, 0), (0.2, 1)]))],
-        [abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
         plane="strain",
         solve=abut.SolveOptions(times=[0.2, 0.4, 0.6, 0.8, 1.0]),
     )
@@ -138,7 +138,7 @@ def on_a_slope(angle: float) -> abut.Model:
         [abut.Solid(name, abut.LinearElastic(1e4, POISSON, density=1.0)) for name in parts],
         [abut.Support("lower.bottom", x=0, y=0)],
         [abut.Gravity((10.0 * np.sin(angle), -10.0 * np.cos(angle)), on="upper")],
-        [abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", friction=FRICTION)],
         plane="strain",
     )
 
@@ -170,7 +170,7 @@ def cattaneo(cell: str, n: int) -> abut.Model:
             abut.Support("upper.top", y=-0.00187, amplitude=steps["down"]),
             abut.Support("upper.top", x=0.000362, amplitude=steps["along"]),
         ],
-        contacts=[abut.Contact("lower.top", "upper.bottom", friction=COEFFICIENT)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", friction=COEFFICIENT)],
         plane="strain",
         solve=abut.SolveOptions(steps=2),
     )
@@ -226,7 +226,7 @@ def rubbed(n: int = 4, cell: str = "hex8") -> abut.Model:
             abut.Support("upper.top", z=lambda x: -0.015 + 0.02 * (x[:, 0] - 1.0), amplitude=down),
             abut.Support("upper.top", x=0.006, y=0.003, amplitude=along),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=FRICTION)],
         solve=abut.SolveOptions(times=[0.25, 0.5, 0.75, 1.0]),
     )
 

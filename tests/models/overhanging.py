@@ -32,7 +32,7 @@ def pressed(cell: str, covered: float, kinematics: str, space: str, load: float)
             abut.Support("upper.top", **dict.fromkeys(axes[:-1], 0.0)),
         ],
         loads=[abut.Pressure("upper.top", load)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", pressure=space)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", pressure=space)],
         solve=abut.SolveOptions(steps=1),
     )  # fmt: skip
 
@@ -55,5 +55,5 @@ def crossed(cell: str, friction: float, **options: Any) -> abut.Model:
             abut.Support("plate.bottom", **dict.fromkeys(axes, 0.0)), *across,
             abut.Support("block.top", **{axes[-1]: -0.06}, amplitude=PRESS), abut.Support("block.top", x=0.8, amplitude=GO),
         ],
-        contacts=[abut.Contact("plate.top", "block.bottom", friction=friction)], **options,
+        contacts=[abut.Contact(contactor="plate.top", target="block.bottom", friction=friction)], **options,
     )  # fmt: skip

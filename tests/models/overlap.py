@@ -24,7 +24,7 @@ def strip(facets: int = 3, **contact: object) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(E, 0.0)) for body in mesh.bodies],
         [abut.Support("plate.bottom", x=0, y=0), abut.Support("punch.left", x=0), abut.Support("punch.right", x=0)],
         [abut.Pressure("punch.top", 100.0)],
-        [abut.Contact("punch.bottom", "plate.top", **{"adjust": 0.005, **contact})],
+        [abut.Contact(contactor="punch.bottom", target="plate.top", **{"adjust": 0.005, **contact})],
         plane="strain",
     )
 
@@ -37,6 +37,6 @@ def ball_on_block(contactor: str, target: str, n: int) -> abut.Model:
         mesh,
         [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("ball.flat", x=0, y=-0.002)],
-        contacts=[abut.Contact(contactor, target)],
+        contacts=[abut.Contact(contactor=contactor, target=target)],
         plane="strain",
     )

@@ -30,7 +30,7 @@ def press_fit(cell: str = "tet4", friction: float = 0.2, hub: bool = True, aroun
         make.join(parts),
         [abut.Solid(name, STEEL) for name in parts],
         [abut.Support("shaft.bottom", x=0, y=0, z=0)],
-        contacts=[abut.Contact(*sides, offset=-0.02, friction=friction)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], offset=-0.02, friction=friction)],
     )
 
 
@@ -81,9 +81,9 @@ def keyway(size: float = 2.0) -> abut.Model:
             abut.Support("rim", x=lambda p: -turn * p[..., 1], y=lambda p: turn * p[..., 0]),
         ],
         contacts=[
-            abut.Contact("fit", "bore", offset=-fit),
-            abut.Contact("sides", "fit_slot"),
-            abut.Contact("sides", "bore_slot"),
+            abut.Contact(contactor="fit", target="bore", offset=-fit),
+            abut.Contact(contactor="sides", target="fit_slot"),
+            abut.Contact(contactor="sides", target="bore_slot"),
         ],
         plane="strain",
     )

@@ -96,7 +96,7 @@ def line(
         [abut.Solid("cylinder", abut.LinearElastic(210e3, 0.3)), abut.Solid("block", abut.LinearElastic(70e3, 0.3))],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("cylinder.axis", x=0)],
         [abut.Force("cylinder.flat", (0.0, -load))],
-        [abut.Contact(*sides, **contact)],
+        [abut.Contact(contactor=sides[0], target=sides[1], **contact)],
         plane="strain",
     )
 
@@ -134,7 +134,7 @@ def quarter_ball(cell: str, m: int, contactor: str = "ball", pressed: float = PR
         mesh,
         [abut.Solid(body, abut.LinearElastic(YOUNG, NU)) for body in mesh.bodies],
         [*held, abut.Support("block.bottom", z=0.0), abut.Support("ball.top", z=-pressed)],
-        contacts=[abut.Contact(*sides, **contact)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], **contact)],
     )
 
 
@@ -174,7 +174,7 @@ def balls(cell: str, cells: int, contactor: str = "lower", **contact: object) ->
         [abut.Solid("upper", abut.LinearElastic(5000.0, NU)), abut.Solid("lower", abut.LinearElastic(1000.0, NU))],
         [abut.Support("lower.flat", y=0)],
         [abut.Force("upper.flat", (0.0, -BALLS_FORCE))],
-        [abut.Contact(*sides, **contact)],
+        [abut.Contact(contactor=sides[0], target=sides[1], **contact)],
         plane="axisymmetric",
     )
 
@@ -192,7 +192,7 @@ def octant(cell: str, cells: int, **contact: object) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(1000.0, NU)) for body in parts],
         [*rigid, abut.Support("ball.x0", x=0), abut.Support("ball.y0", y=0)],
         [abut.Force("ball.z0", (0.0, 0.0, -OCTANT_FORCE / 4))],
-        [abut.Contact("ball.round", "plane.top", **contact)],
+        [abut.Contact(contactor="ball.round", target="plane.top", **contact)],
     )
 
 
@@ -210,7 +210,7 @@ def square_punch(part: float, cell: str = "hex8", whole: int = 3, **contact: obj
         [abut.Solid("plate", abut.LinearElastic(1e3, NU)), abut.Solid("punch", abut.LinearElastic(1e6, NU))],
         [*held, abut.Support("plate.bottom", z=0.0)],
         [abut.Pressure("punch.top", 1.0)],
-        [abut.Contact("plate.top", "punch.bottom", **contact)],
+        [abut.Contact(contactor="plate.top", target="punch.bottom", **contact)],
     )
 
 
@@ -242,7 +242,7 @@ def bent(cell: str, n: int, kind: str = "contact", **contact: object) -> abut.Mo
         [abut.Solid(body, abut.LinearElastic(1000.0, NU)) for body in mesh.bodies],
         [abut.Support("a.bottom", **held, **{"z" if solid else "y": 0.0}), abut.Support("b.top", **held)],
         [abut.Traction("b.top", end)],
-        [abut.Contact("a.top", "b.bottom", kind=kind, **contact)],
+        [abut.Contact(contactor="a.top", target="b.bottom", kind=kind, **contact)],
         plane=None if solid else "strain",
     )
 
@@ -257,7 +257,7 @@ def opened(n: int) -> abut.Model:
             abut.Support("a.bottom", x=0.0, y=0.0),
             abut.Support("b.top", x=0.0, y=lambda x: np.asarray(-0.002 - 0.012 * x[:, 0])),
         ],
-        contacts=[abut.Contact("a.top", "b.bottom")],
+        contacts=[abut.Contact(contactor="a.top", target="b.bottom")],
         plane="strain",
     )
 
@@ -274,7 +274,7 @@ def stepped(n: int, **contact: object) -> abut.Model:
         mesh,
         [abut.Solid(body, abut.LinearElastic(1000.0, NU)) for body in mesh.bodies],
         [abut.Support("a.bottom", x=0, y=0), abut.Support("b.top", x=0, y=-0.005)],
-        contacts=[abut.Contact("a.top", "b.bottom", **contact)],
+        contacts=[abut.Contact(contactor="a.top", target="b.bottom", **contact)],
         plane="strain",
     )
 

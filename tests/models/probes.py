@@ -64,7 +64,7 @@ def two_blocks(*probes: abut.Probe, **options: Any) -> abut.Model:
         "plane": "strain",
         "solids": [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         "supports": [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.01)],
-        "contacts": [abut.Contact("upper.bottom", "lower.top", name="blocks")],
+        "contacts": [abut.Contact(contactor="upper.bottom", target="lower.top", name="blocks")],
         **options,
     }
     return abut.Model(make.join({"lower": lower, "upper": upper}), probes=probes, **given)

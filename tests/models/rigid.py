@@ -22,7 +22,7 @@ def pressed(young: float | None = None, **rigid: object) -> abut.Model:
     if young:
         solids.append(abut.Solid("tool", abut.LinearElastic(young, 0.0)))
     return abut.Model(
-        mesh, solids, held, contacts=[abut.Contact("block.top", "tool.bottom")], plane="strain",
+        mesh, solids, held, contacts=[abut.Contact(contactor="block.top", target="tool.bottom")], plane="strain",
         rigid=() if young else [abut.Rigid("tool", **rigid)],
     )  # fmt: skip
 

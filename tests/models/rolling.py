@@ -40,8 +40,8 @@ def roller(cells: int = 8, friction: float = 0.4) -> abut.Model:
             abut.Support("roof.top", y=-DOWN, amplitude=together), abut.Support("roof.top", x=LENGTH, amplitude=along),
         ],
         contacts=[
-            abut.Contact(TREAD, "road.top", name="road", friction=friction),
-            abut.Contact(TREAD, "roof.bottom", name="roof", friction=friction),
+            abut.Contact(contactor=TREAD, target="road.top", name="road", friction=friction),
+            abut.Contact(contactor=TREAD, target="roof.bottom", name="roof", friction=friction),
         ],
     )  # fmt: skip
 
@@ -55,7 +55,7 @@ def wheel(cells: int, friction: float) -> abut.Model:
         solids=[abut.Solid("slab", abut.LinearElastic(young=1e3, poisson=0.3))],
         rigid=[abut.Rigid("wheel", reference=(0.0, 1.0, 0.25), y=-0.03, z=0.0, rx=0.0, ry=0.0, rz=-TURN)],
         supports=[abut.Support("slab.front", x=0, y=0, z=0)],
-        contacts=[abut.Contact("slab.back", "wheel.round", friction=friction)],
+        contacts=[abut.Contact(contactor="slab.back", target="wheel.round", friction=friction)],
     )  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def pushed_across() -> abut.Model:
         ],
         loads=[abut.Pressure("block.top", value=LOAD / 2.25, amplitude=pressed)],
         contacts=[
-            abut.Contact("block.bottom", "plate.top", name="floor", friction=FRICTION),
-            abut.Contact("block.left", "pusher.right", name="push"),
+            abut.Contact(contactor="block.bottom", target="plate.top", name="floor", friction=FRICTION),
+            abut.Contact(contactor="block.left", target="pusher.right", name="push"),
         ],
     )  # fmt: skip

@@ -30,7 +30,7 @@ def beam(facets: int, cell: str, lift: float = 8.0, **solve: object) -> abut.Mod
         [abut.Solid("beam", STEEL), abut.Solid("floor", HARD)],
         [abut.Support("floor.bottom", x=0, y=0), abut.Support("corner", x=0)],
         [abut.Pressure("beam.top", 1.0), abut.Force("beam.right", (0.0, lift))],
-        [abut.Contact("beam.bottom", "floor.top", name="floor")],
+        [abut.Contact(contactor="beam.bottom", target="floor.top", name="floor")],
         plane="strain",
         solve=abut.SolveOptions(**solve),
     )
@@ -51,7 +51,7 @@ def solid_beam(facets: int, cell: str, lift: float = 8.0, **solve: object) -> ab
         [abut.Solid("beam", STEEL), abut.Solid("floor", HARD)],
         [abut.Support("floor.bottom", x=0, y=0, z=0), abut.Support("corner", x=0), abut.Support("beam.front", y=0)],
         [abut.Pressure("beam.top", 1.0), abut.Force("beam.right", (0.0, 0.0, lift))],
-        [abut.Contact("beam.bottom", "floor.top", name="floor")],
+        [abut.Contact(contactor="beam.bottom", target="floor.top", name="floor")],
         solve=abut.SolveOptions(**solve),
     )
 
@@ -74,7 +74,7 @@ def layer(cells: int, cell: str, **solve: object) -> abut.Model:
         [abut.Solid("layer", STEEL), abut.Solid("half", STEEL)],
         [abut.Support("half.bottom", x=0, y=0), abut.Support("axis", x=0)],
         [abut.Pressure("layer.patch", 1.0)],
-        [abut.Contact("layer.bottom", "half.top", name="layer")],
+        [abut.Contact(contactor="layer.bottom", target="half.top", name="layer")],
         plane="strain",
         solve=abut.SolveOptions(**solve),
     )
@@ -99,7 +99,7 @@ def line(cells: int, cell: str, swap: bool = False, **contact: object) -> abut.M
         ],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("cylinder.axis", x=0)],
         [abut.Force("cylinder.flat", (0.0, -35e3))],
-        [abut.Contact(*sides, **contact)],
+        [abut.Contact(contactor=sides[0], target=sides[1], **contact)],
         plane="strain",
     )
 
@@ -117,7 +117,7 @@ def ball(cells: int, force: float = 1.0, cell: str = "quad4", **solve: object) -
         [abut.Solid("ball", STEEL), abut.Solid("block", STEEL)],
         [abut.Support("block.bottom", y=0)],
         [abut.Force("ball.flat", (0.0, -force))],
-        [abut.Contact("ball.round", "block.top", name="touch")],
+        [abut.Contact(contactor="ball.round", target="block.top", name="touch")],
         plane="axisymmetric",
         solve=abut.SolveOptions(**solve),
     )
@@ -141,7 +141,7 @@ def pin(cells: int, force: float, clearance: float = 0.01, **solve: object) -> a
             *(abut.Support(on, x=0) for on in ("pin.start", "pin.end", "lower.start", "upper.end")),
         ],
         [abut.Force("lower.outer", (0.0, force))],
-        [abut.Contact(f"{lug}.inner", "pin.outer", name=lug) for lug in ("upper", "lower")],
+        [abut.Contact(contactor=f"{lug}.inner", target="pin.outer", name=lug) for lug in ("upper", "lower")],
         plane="strain",
         solve=abut.SolveOptions(**solve),
     )

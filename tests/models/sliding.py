@@ -33,7 +33,7 @@ def arched(friction: float, cell: str = "quad4", slide: float = 0.5, **options: 
             abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", y=-0.06, amplitude=FIRST),
             abut.Support("upper.top", x=slide, amplitude=THEN),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)], **options,
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)], **options,
     )  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def sharp(friction: float, cells: int, **options: Any) -> abut.Model:
     come under the block one after the other."""
     plate = make.rectangle([0, 3], [0, 1], cells=[cells, 2], cell="quad4")
     block = make.rectangle([0.5, 1.5], [1, 2], cells=[5, 2], cell="quad4")
-    contacts = [abut.Contact("lower.top", "upper.bottom", friction=friction)]
+    contacts = [abut.Contact(contactor="lower.top", target="upper.bottom", friction=friction)]
     return replace(
         arched(friction, slide=0.6, **options), mesh=make.join({"lower": plate, "upper": block}), contacts=contacts
     )
@@ -119,5 +119,5 @@ def pressed_in_space(friction: float, cell: str = "hex8", **options: Any) -> abu
             abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", z=-0.06, amplitude=FIRST),
             abut.Support("upper.top", x=0.4, y=0.1, amplitude=THEN),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)], **options,
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)], **options,
     )  # fmt: skip

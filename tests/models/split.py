@@ -30,5 +30,5 @@ def split_base(contactor_below: bool) -> abut.Model:
             abut.Support("upper.front", y=0),
         ],
         [abut.Pressure("upper.top", 1e-3)],
-        [abut.Contact(*pair)],
+        [abut.Contact(contactor=pair[0], target=pair[1])],
     )

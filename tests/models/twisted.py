@@ -48,7 +48,11 @@ def twisted(dim: int, cell: str = "", friction: float = 0.3) -> abut.Model:
         make.join({"inner": inner, "outer": outer}),
         [abut.Solid(name, STEEL) for name in ("inner", "outer")],
         supports,
-        contacts=[abut.Contact(contactor, "outer.inner", offset=-GAP - FIT, amplitude=TIMES["fit"], friction=friction)],
+        contacts=[
+            abut.Contact(
+                contactor=contactor, target="outer.inner", offset=-GAP - FIT, amplitude=TIMES["fit"], friction=friction
+            )
+        ],
         plane="strain" if dim == 2 else None,
         solve=abut.SolveOptions(times=[0.5, 0.75, 1.0]),
     )

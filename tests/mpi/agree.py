@@ -48,7 +48,7 @@ def press(n: int = 4, cell: str = "hex8", height: float = 1.0, **options: Any) -
             abut.Support("punch.top", x=0.0, y=0.0, z=lambda x: -0.02 + 0.04 * (x[:, 0] - 0.3)),
         ],
         loads=[abut.Gravity((0.0, 0.0, -9.81), on="wide"), abut.Temperature("wide", lambda x: 2.0 * x[:, 0])],
-        contacts=[abut.Contact("wide.top", "punch.bottom", **options)],
+        contacts=[abut.Contact(contactor="wide.top", target="punch.bottom", **options)],
         solve=abut.SolveOptions(steps=2),
     )
 
@@ -104,7 +104,10 @@ def clevis() -> Any:
     import abut
     from models.clevis import clevis as model
 
-    built = model(abut.Contact("pin.round", "eye", name="eye"), abut.Contact("pin", ["arm1", "arm2"], name="arms"))
+    built = model(
+        abut.Contact(contactor="pin.round", target="eye", name="eye"),
+        abut.Contact(contactor="pin", target=["arm1", "arm2"], name="arms"),
+    )
     return replace(built, supports=[*built.supports, abut.Support("pin.top", x=0.01, y=0, z=0)])
 
 

@@ -48,7 +48,8 @@ def punch() -> abut.Model:
     })  # fmt: skip
     return abut.Model(
         mesh, [abut.Solid("strip", RUBBER)], [abut.Support("strip.bottom", x=0.0, y=0.0)],
-        rigid=[abut.Rigid("punch", x=0.2, y=-0.06)], contacts=[abut.Contact("strip.top", "punch", friction=0.2)],
+        rigid=[abut.Rigid("punch", x=0.2, y=-0.06)],
+        contacts=[abut.Contact(contactor="strip.top", target="punch", friction=0.2)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 
@@ -62,7 +63,7 @@ def pad() -> abut.Model:
     return abut.Model(
         mesh, [abut.Solid("block", RUBBER)], [abut.Support("block.bottom", x=0.0, y=0.0, z=0.0)],
         rigid=[abut.Rigid("pad", x=0.1, y=0.03, z=-0.08, rz=0.1)],
-        contacts=[abut.Contact("block.top", "pad", friction=0.2)], kinematics="finite",
+        contacts=[abut.Contact(contactor="block.top", target="pad", friction=0.2)], kinematics="finite",
     )  # fmt: skip
 
 
@@ -76,7 +77,7 @@ def turned() -> abut.Model:
         mesh, [abut.Solid("lower", SOFT), abut.Solid("upper", RUBBER)],
         [abut.Support("lower.bottom", x=0.0, y=0.0, z=0.0)],
         rotations=[abut.Rotation("upper.top", angle=0.5, centre=(0.5, 0.5, 2.0), axis=(0.0, 0.0, 1.0))],
-        contacts=[abut.Contact("lower.top", "upper.bottom", kind="tied")],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", kind="tied")],
         kinematics="finite", solve=abut.SolveOptions(steps=2),
     )  # fmt: skip
 

@@ -140,7 +140,7 @@ def bolted() -> abut.Model:
         [abut.Solid(name, steel) for name in layers],
         [abut.Support("slab.bottom", x=0, y=0), *(abut.Support(f"{name} left", x=0) for name in list(layers)[1:])],
         [abut.Force("upper.right", (0.0, 40.0))],
-        [abut.Contact(f"{b}.bottom", f"{a}.top") for a, b in pairwise(layers)],
+        [abut.Contact(contactor=f"{b}.bottom", target=f"{a}.top") for a, b in pairwise(layers)],
         "strain",
         equations=[
             abut.Equation((abut.Term(f"head{x}", "y", 1.0), abut.Term(f"foot{x}", "y", -1.0)), -0.004) for x in (2, 6)

@@ -38,7 +38,7 @@ def bouncing() -> abut.Model:
         mesh, [abut.Solid(body, abut.LinearElastic(2.0, 0.0)) for body in ("base", "block")],
         [abut.Support("base.bottom", x=0, y=0), abut.Support("block.top", y=1, amplitude=up),
          abut.Support("block.left", x=2)],
-        contacts=[abut.Contact("block.bottom", "base.top")], plane="strain", kinematics="finite",
+        contacts=[abut.Contact(contactor="block.bottom", target="base.top")], plane="strain", kinematics="finite",
         solve=abut.SolveOptions(times=tuple((count[1:] / STEPS).tolist())),
     )  # fmt: skip
 

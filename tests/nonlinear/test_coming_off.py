@@ -60,7 +60,7 @@ def test_a_stiff_body_comes_from_afar_to_a_soft_one() -> None:
         make.join({"soft": soft, "stiff": stiff}), plane="strain", kinematics="finite",
         solids=[abut.Solid("soft", abut.NeoHooke(5.0, 0.45)), abut.Solid("stiff", abut.LinearElastic(2e5, 0.3))],
         supports=[abut.Support("soft.bottom", x=0, y=0), abut.Support("stiff.top", x=0, y=-38.9)],
-        contacts=[abut.Contact("soft.top", "stiff.bottom")],
+        contacts=[abut.Contact(contactor="soft.top", target="stiff.bottom")],
     )  # fmt: skip
     solution = abut.solve(model)
     assert solution.converged

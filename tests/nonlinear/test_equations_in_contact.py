@@ -36,7 +36,7 @@ def level_cubes(friction: float, slide: float = 0.0) -> abut.Model:
         mesh, [abut.Solid("lower", STEM), abut.Solid("upper", STEM)],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=slide, y=0, amplitude=THEN)],
         [abut.Traction("upper.top", (0, 0, -FORCE), amplitude=FIRST)], kinematics="finite", equations=equations,
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
 
 
@@ -80,7 +80,8 @@ def test_periodic_strips(cell: str, friction: float) -> None:
     model = abut.Model(
         mesh, [abut.Solid("lower", STEM), abut.Solid("upper", STEM)],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.4)], plane="strain",
-        kinematics="finite", equations=equations, contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        kinematics="finite", equations=equations,
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
     solution = abut.solve(model)
     assert solution.converged

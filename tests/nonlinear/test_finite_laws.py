@@ -72,7 +72,7 @@ def apart(gap: float, tilt: float, cell: str, **given: Any) -> abut.Model:
         make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
         solids=[abut.Solid("lower", SOFT), abut.Solid("upper", SOFT)],
         supports=[abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-TINY)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", **given)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", **given)],
     )  # fmt: skip
 
 
@@ -180,7 +180,8 @@ def rest(law: Any) -> abut.Model:
         make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
         solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
         supports=[abut.Support("lower.bottom", y=0), abut.Support("lower.left", x=0), abut.Support("upper.left", x=0)],
-        loads=[abut.Pressure("upper.top", 3.0)], contacts=[abut.Contact("upper.bottom", "lower.top", law=law)],
+        loads=[abut.Pressure("upper.top", 3.0)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", law=law)],
     )  # fmt: skip
 
 

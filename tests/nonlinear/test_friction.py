@@ -193,9 +193,9 @@ def test_one_contact_among_others() -> None:
         [abut.Support("a.bottom", x=0, y=0), abut.Support("d.top", x=0.1), abut.Support("b.left", x=0)],
         [abut.Pressure("d.top", 1.0)],
         [
-            abut.Contact("a.top", "b.bottom"),
-            abut.Contact("b.top", "c.bottom", kind="tied"),
-            abut.Contact("c.top", "d.bottom", friction=0.1),
+            abut.Contact(contactor="a.top", target="b.bottom"),
+            abut.Contact(contactor="b.top", target="c.bottom", kind="tied"),
+            abut.Contact(contactor="c.top", target="d.bottom", friction=0.1),
         ],
         plane="strain",
     )
@@ -217,7 +217,7 @@ def test_no_traction_across_a_plane_of_symmetry() -> None:
         [abut.Solid("ball", abut.LinearElastic(1e3, 0.3)), abut.Solid("ground", abut.LinearElastic(200.0, 0.1))],
         [abut.Support("ground.bottom", x=0, y=0, z=0), *supports],
         [abut.Force("ball.z0", (0.0, 0.0, -5.0))],
-        [abut.Contact("ground.top", "ball.round", friction=0.1)],
+        [abut.Contact(contactor="ground.top", target="ball.round", friction=0.1)],
     )
     contact = abut.solve(model).contacts[0]
     nodes = np.maximum(contact.contactor.nodes, 0)
@@ -239,7 +239,7 @@ def test_no_traction_across_a_plane_of_symmetry() -> None:
 )
 def test_refused(options: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        abut.Contact("a", "b", **options)
+        abut.Contact(contactor="a", target="b", **options)
 
 
 def test_no_friction_is_the_contact_without() -> None:

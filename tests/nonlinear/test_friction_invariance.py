@@ -44,7 +44,7 @@ def pushed(cell: str, turn: np.ndarray | None = None) -> abut.Model:
         [abut.Solid("lower", abut.LinearElastic(1e3, 0.3)), abut.Solid("upper", abut.LinearElastic(3e3, 0.2))],
         [abut.Support("lower.bottom", x=0, y=0, z=0)],
         [abut.Traction("upper.top", load, abut.Amplitude(tuple(history))) for load, history in zip(loads, histories)],
-        [abut.Contact("upper.bottom", "lower.top", friction=COEFFICIENT)],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", friction=COEFFICIENT)],
         solve=abut.SolveOptions(times=[0.25, 0.5, 0.75, 1.0]),
     )
 

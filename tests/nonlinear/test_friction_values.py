@@ -64,7 +64,7 @@ def two_on_a_plate(**contact: object) -> abut.Model:
         [abut.Solid(name, abut.LinearElastic(1e3, 0.3)) for name in parts],
         [abut.Support("plate.bottom", x=0, y=0), *(abut.Support(f"b{i}.top", x=0.2) for i in range(2))],
         [abut.Pressure(f"b{i}.top", 1.0, amplitude=abut.Amplitude([(0, 1)])) for i in range(2)],
-        [abut.Contact(["b0.bottom", "b1.bottom"], "plate.top", **contact)],
+        [abut.Contact(contactor=["b0.bottom", "b1.bottom"], target="plate.top", **contact)],
         plane="strain",
     )
 
@@ -125,7 +125,7 @@ def test_every_form_in_one_model() -> None:
         [abut.Solid(name, abut.LinearElastic(1e3, 0.3)) for name in parts],
         [abut.Support("plate.bottom", x=0, y=0), *(abut.Support(f"{name}.top", x=0.2) for name in forms)],
         [abut.Pressure(f"{name}.top", 1.0, amplitude=abut.Amplitude([(0, 1)])) for name in forms],
-        [abut.Contact(f"{name}.bottom", "plate.top", name=name, **own) for name, own in forms.items()],
+        [abut.Contact(contactor=f"{name}.bottom", target="plate.top", name=name, **own) for name, own in forms.items()],
         plane="strain",
     )
     solution = abut.solve(model)
@@ -145,7 +145,7 @@ def test_axisymmetric(law: str) -> None:
         [abut.Solid("disc", abut.LinearElastic(1e3, 0.4)), abut.Solid("rod", abut.LinearElastic(1e5, 0.3))],
         [abut.Support("disc.bottom", y=0)],
         [abut.Pressure("rod.top", 10.0)],
-        [abut.Contact("disc.top", "rod.bottom", law=law)],
+        [abut.Contact(contactor="disc.top", target="rod.bottom", law=law)],
         plane="axisymmetric",
     )
     smooth = abut.solve(model)
@@ -190,7 +190,7 @@ def test_law_of_a_table_against_differences(components: int) -> None:
 )
 def test_refused(options: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        abut.Contact("a", "b", **options)
+        abut.Contact(contactor="a", target="b", **options)
 
 
 @pytest.mark.parametrize(

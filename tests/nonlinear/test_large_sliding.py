@@ -150,7 +150,7 @@ def patch(friction: float) -> abut.Model:
         make.join({"lower": lower, "upper": upper}), plane="strain", kinematics="finite",
         solids=[abut.Solid("lower", abut.NeoHooke(100.0, 0.3)), abut.Solid("upper", abut.NeoHooke(100.0, 0.3))],
         supports=[abut.Support(name, x=u(0), y=u(1)) for name in outside],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
 
 
@@ -184,7 +184,7 @@ def test_turned_small_example() -> None:
                 abut.Support("lower.bottom", x=u(0, 0.0), y=u(1, 0.0)),
                 abut.Support("upper.top", x=u(0, -1e-7), y=u(1, -1e-7)),
             ],
-            contacts=[abut.Contact("upper.bottom", "lower.top", pressure="P1")],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", pressure="P1")],
         )  # fmt: skip
 
     small = abut.solve(model("small", 0.0)).contacts[0].multiplier
@@ -231,7 +231,7 @@ def test_contact_found_again(friction: float) -> None:
             abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=1.05, amplitude=there),
             abut.Support("upper.top", y=-0.02, amplitude=abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0)))),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
     solution = abut.solve(model)
     assert solution.converged
@@ -340,7 +340,7 @@ def test_restrained_friction_alone() -> None:
                 abut.Pressure("upper.top", 3.0, amplitude=first, follows=False),
                 abut.Traction("upper.top", [drag, 0.0], amplitude=then),
             ],
-            contacts=[abut.Contact("upper.bottom", "lower.top", friction=0.3)],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=0.3)],
         )  # fmt: skip
 
     solution = abut.solve(model(0.3))

@@ -24,7 +24,7 @@ def leaves(kinematics: str, friction: float) -> abut.Model:
         solids=[abut.Solid(name, STEEL) for name in parts],
         supports=[abut.Support(f"{name}.left", x=0, y=0) for name in parts],
         loads=[abut.Force("leaf0.right", (0, -FORCE))],
-        contacts=[abut.Contact(f"leaf{i}.bottom", f"leaf{i + 1}.top", friction=friction) for i in (0, 1)],
+        contacts=[abut.Contact(contactor=f"leaf{i}.bottom", target=f"leaf{i + 1}.top", friction=friction) for i in (0, 1)],
     )  # fmt: skip
 
 

@@ -38,7 +38,7 @@ def over_the_edge(dim: int, friction: float, aside: float = 0.0) -> abut.Model:
             abut.Support("lower.bottom", **dict.fromkeys(axes, 0.0)), *held,
             abut.Support("upper.top", **{axes[up]: -0.06}, amplitude=PRESS), abut.Support("upper.top", x=FAR, amplitude=GO),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
     )  # fmt: skip
 
 

@@ -167,7 +167,7 @@ def random_model(seed: int) -> abut.Model:
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL if seed % 4 else HARD)],
         [abut.Support("lower.bottom", x=0, y=0), *held],
         loads,
-        [abut.Contact("upper.bottom", "lower.top")],
+        [abut.Contact(contactor="upper.bottom", target="lower.top")],
         plane="strain",
     )
 
@@ -199,7 +199,10 @@ def touching(load: float, lift: float = 0.0) -> abut.Model:
             abut.Support("pressed.top", x=0, y=-load + lift),
             abut.Support("idle.top", x=0, y=lift),
         ],
-        contacts=[abut.Contact("pressed.bottom", "plate.top"), abut.Contact("idle.bottom", "other plate.top")],
+        contacts=[
+            abut.Contact(contactor="pressed.bottom", target="plate.top"),
+            abut.Contact(contactor="idle.bottom", target="other plate.top"),
+        ],
         plane="strain",
     )
 
@@ -237,7 +240,7 @@ def tied_beam() -> abut.Model:
         mesh=mesh,
         solids=[*model.solids, abut.Solid("layer", STEEL)],
         supports=[model.supports[0], abut.Support("layer.left", x=0)],
-        contacts=[*model.contacts, abut.Contact("layer.bottom", "beam.top", kind="tied", name="glue")],
+        contacts=[*model.contacts, abut.Contact(contactor="layer.bottom", target="beam.top", kind="tied", name="glue")],
         loads=[abut.Pressure("layer.top", 1.0), abut.Force("beam.right", (0.0, 8.0))],
     )
 

@@ -86,7 +86,7 @@ def test_tangent_is_the_derivative(pressed: Solution) -> None:
 def whole(mesh: Mesh, *sides: str) -> Model:
     return Model(
         mesh, [abut.Solid("body", abut.NeoHooke(young=1.0, poisson=0.3))], [abut.Support("left", x=0.0, y=0.0)],
-        contacts=[abut.Contact(sides, sides, name="self")], plane="strain", kinematics="finite",
+        contacts=[abut.Contact(contactor=sides, target=sides, name="self")], plane="strain", kinematics="finite",
     )  # fmt: skip
 
 
@@ -115,7 +115,7 @@ def test_folds_in_space() -> None:
     mesh = grid(lines, "hex8", lambda x: np.column_stack([folded(x[:, :2]), x[:, 2]]))
     model = Model(
         mesh, [abut.Solid("body", abut.NeoHooke(young=1.0, poisson=0.3))], [abut.Support("left", x=0, y=0, z=0)],
-        contacts=[abut.Contact("body", "body", name="self")], kinematics="finite",
+        contacts=[abut.Contact(contactor="body", target="body", name="self")], kinematics="finite",
     )  # fmt: skip
     at = couple(*model.sides(model.contacts[0]), 1, CouplingOptions(reach=0.7, keep_points=True)).points
     assert at is not None

@@ -62,7 +62,7 @@ def test_tends_to_coulomb_in_3d() -> None:
             abut.Support("upper.top", x=0.012, y=0.006, amplitude=abut.Amplitude([(0.3, 0), (1, 1)])),
         ],
         [abut.Pressure("upper.top", 100.0, amplitude=abut.Amplitude([(0, 0), (0.3, 1)]))],
-        [abut.Contact("upper.bottom", "lower.top", friction=FRICTION)],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", friction=FRICTION)],
         solve=abut.SolveOptions(times=[0.3, 0.65, 1.0]),
     )
     exact, far = abut.solve(model), []
@@ -80,10 +80,10 @@ def test_laws_side_by_side() -> None:
     """The constraint function with friction and without, Coulomb's law, a tie: all slides in the end."""
     parts = {name: make.rectangle([0, 1], [i, i + 1], cells=[3 + i, 3]) for i, name in enumerate("abcde")}
     contacts = [
-        abut.Contact("a.top", "b.bottom", **SMOOTH),
-        abut.Contact("b.top", "c.bottom", kind="tied"),
-        abut.Contact("c.top", "d.bottom", friction=0.1),
-        abut.Contact("d.top", "e.bottom", friction=0.3, **SMOOTH),
+        abut.Contact(contactor="a.top", target="b.bottom", **SMOOTH),
+        abut.Contact(contactor="b.top", target="c.bottom", kind="tied"),
+        abut.Contact(contactor="c.top", target="d.bottom", friction=0.1),
+        abut.Contact(contactor="d.top", target="e.bottom", friction=0.3, **SMOOTH),
     ]
     model = abut.Model(
         make.join(parts),
@@ -125,4 +125,4 @@ class Own:
 
 def test_a_law_of_ones_own_has_no_friction() -> None:
     with pytest.raises(InputError, match="friction: a law of your own looks at the gap and the pressure alone"):
-        abut.Contact("a", "b", law=Own(), friction=0.1)
+        abut.Contact(contactor="a", target="b", law=Own(), friction=0.1)

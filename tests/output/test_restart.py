@@ -101,7 +101,7 @@ def test_restarted_run_equals_the_whole_one(
 
 def test_restart_with_the_constraint_function(tmp_path: Path) -> None:
     """Its start depends on displacements and pressures, not on the active set alone."""
-    text = BALL.replace('target = "plane.top"', 'target = "plane.top"\nlaw = "constraint-function"')
+    text = BALL.replace('"plane.top"]', '"plane.top"]\nlaw = "constraint-function"')
     assert "constraint-function" in text
     whole, parts = job(tmp_path / "whole", text), job(tmp_path / "parts", text)
     assert main(["run", "--quiet", str(whole)]) == 0

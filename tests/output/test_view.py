@@ -36,7 +36,7 @@ def solved(cell: str) -> abut.Solution:
             plane=plane,
             solids=[abut.Solid("lower", steel), abut.Solid("upper", steel)],
             supports=[abut.Support("lower.bottom", **hold), abut.Support("upper.top", **push)],
-            contacts=[abut.Contact("upper.bottom", "lower.top", name="blocks")],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", name="blocks")],
             solve=abut.SolveOptions(steps=STEPS),
         )
     )

@@ -76,7 +76,7 @@ def blocks() -> Solution:
             abut.Support("upper.back", y=0),
         ],
         loads=[abut.Gravity((0.0, 0.0, -10.0))],
-        contacts=[abut.Contact("upper.bottom", "lower.top", name="c")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", name="c")],
     )
     return abut.solve(model)
 

@@ -103,7 +103,10 @@ def test_no_contact_no_pressure() -> None:
 def test_ambiguous_contacts_are_not_guessed() -> None:
     """A line through a pile crosses two contacts and asks for neither; where it does ask, it must choose."""
     parts = {name: make.rectangle([0, 1], [i, i + 1], cells=[2, 2]) for i, name in enumerate("abc")}
-    contacts = [abut.Contact("b.bottom", "a.top", name="low"), abut.Contact("c.bottom", "b.top", name="high")]
+    contacts = [
+        abut.Contact(contactor="b.bottom", target="a.top", name="low"),
+        abut.Contact(contactor="c.bottom", target="b.top", name="high"),
+    ]
     given: dict[str, Any] = {
         "plane": "strain",
         "solids": [abut.Solid(name, STEEL) for name in parts],

@@ -204,7 +204,7 @@ def test_jumps_are_read_as_means() -> None:
     model = two_blocks(
         abut.Probe("line", line=([0.5, 1], [1.5, 1]), points=7, of=["pressure", "gap"]),
         abut.Probe("set", on="upper.bottom"),
-        contacts=[abut.Contact("upper.bottom", "lower.top", pressure="P0")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", pressure="P0")],
     )
     solution = abut.solve(model)
     contact = solution.contacts[0]

@@ -27,7 +27,7 @@ def facing(upper: object, lower: object, steps: int = 1, friction: float = 0.2) 
         make.join(parts),
         [abut.Solid(name, abut.LinearElastic(200.0, 0.3)) for name in parts],
         [abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0, y=-0.2)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", friction=friction)],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=friction)],
         plane="strain",
         solve=abut.SolveOptions(steps=steps),
     )

@@ -146,7 +146,7 @@ def test_an_oblique_equation_is_an_oblique_support(with_contact: bool) -> None:
     model = abut.Model(
         mesh, [abut.Solid(body, SOFT) for body in mesh.bodies],
         [abut.Support(f"{body}.left", normal=0) for body in mesh.bodies], [abut.Pressure(f"{last}.top", 5.0)],
-        [abut.Contact("lower.top", "upper.bottom")] if with_contact else [], plane="strain",
+        [abut.Contact(contactor="lower.top", target="upper.bottom")] if with_contact else [], plane="strain",
     )  # fmt: skip
     normal = turn @ [0.0, -1.0]
     terms = [

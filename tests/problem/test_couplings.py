@@ -198,7 +198,7 @@ def test_a_flange_pressed_and_bent(kind, kinematics):
         [abut.Solid("low", steel), abut.Solid("flange", steel)],
         [abut.Support("low.bottom", x=0, y=0, z=0), *held],
         [abut.Force("bolt", (0, 0, -force)), abut.Moment("bolt", (0, -moment, 0))],
-        contacts=[abut.Contact("flange.bottom", "low.top")],
+        contacts=[abut.Contact(contactor="flange.bottom", target="low.top")],
         couplings=[abut.Coupling("bolt", "flange.top", kind, (0, 0, 9.0), **motion)],
         kinematics=kinematics,
     )
@@ -411,7 +411,7 @@ def test_sides_whose_points_follow_have_the_smallest_pressure():
         [abut.Solid("low", steel), abut.Solid("flange", steel)],
         [abut.Support("low.bottom", x=0, y=0, z=0)],
         [abut.Force("foot", (0, 0, -100.0))],
-        contacts=[abut.Contact("flange.bottom", "low.top")],
+        contacts=[abut.Contact(contactor="flange.bottom", target="low.top")],
         couplings=[abut.Coupling("foot", "flange.bottom", x=0.0, y=0.0, rz=0.0), abut.Coupling("seat", "low.top")],
     )
     solution = abut.solve(model)

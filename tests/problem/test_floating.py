@@ -41,7 +41,7 @@ def bearing(load: float) -> abut.Model:
         ],
         [abut.Force("upper.top", (0.0, -load))],
         [
-            abut.Contact(f"{name}.{side}", plate, name=f"{name} {side}")
+            abut.Contact(contactor=f"{name}.{side}", target=plate, name=f"{name} {side}")
             for name in ("roller", "loose")
             for side, plate in (("above", "upper.bottom"), ("below", "lower.top"))
         ],
@@ -94,7 +94,7 @@ def block(*loads: abut.Force) -> abut.Model:
         [abut.Solid("plate", STEEL), abut.Solid("box", STEEL)],
         [abut.Support("plate.bottom", x=0, y=0, z=0), abut.Support("corner", x=0, y=0), abut.Support("other", y=0)],
         loads,
-        [abut.Contact("box.bottom", "plate.top")],
+        [abut.Contact(contactor="box.bottom", target="plate.top")],
     )
 
 

@@ -119,7 +119,7 @@ def test_half_of_it_is_half(materials: tuple[float, float]) -> None:
             make.join(parts),
             [abut.Solid(name, abut.LinearElastic(young, 0.3)) for name, young in zip(parts, materials)],
             supports,
-            contacts=[abut.Contact("upper.bottom", "lower.top", friction=0.2)],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", friction=0.2)],
             plane="strain",
             solve=abut.SolveOptions(steps=3),
         )
@@ -218,7 +218,7 @@ def test_held_edge_keeps_its_friction() -> None:
         [abut.Solid(name, abut.LinearElastic(1e4, 0.3)) for name in parts],
         [abut.Support("plate.bottom", y=0, x=0.05), abut.Support("block.left", x=0)],
         [abut.Pressure("block.top", 10.0)],
-        [abut.Contact("block.bottom", "plate.top", friction=FRICTION)],
+        [abut.Contact(contactor="block.bottom", target="plate.top", friction=FRICTION)],
         plane="strain",
     )
     force = abut.solve(model).contacts[0].force

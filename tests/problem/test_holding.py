@@ -39,7 +39,7 @@ def assembled(
 ) -> abut.Model:
     """Neighbours in the order of the bodies touch."""
     names = list(mesh.bodies)
-    contacts = [abut.Contact(f"{a}.top", f"{b}.bottom") for a, b in zip(names[1:], names)]
+    contacts = [abut.Contact(contactor=f"{a}.top", target=f"{b}.bottom") for a, b in zip(names[1:], names)]
     plane = {} if space == "3D" else {"plane": space}
     return abut.Model(mesh, [abut.Solid(b, steel(unit)) for b in names], supports, loads, contacts, **plane)
 
@@ -117,10 +117,13 @@ def test_pushed_along_a_floor() -> None:
     def model(walled: bool) -> abut.Model:
         mesh = make.join({**parts, **(wall if walled else {})})
         supports = [abut.Support("floor.bottom", x=0, y=0), abut.Support("punch.left", x=0.01, y=0)]
-        contacts = [abut.Contact("block.bottom", "floor.top"), abut.Contact("punch.right", "block.left")]
+        contacts = [
+            abut.Contact(contactor="block.bottom", target="floor.top"),
+            abut.Contact(contactor="punch.right", target="block.left"),
+        ]
         if walled:
             supports.append(abut.Support("wall.right", x=0, y=0))
-            contacts.append(abut.Contact("block.right", "wall.left"))
+            contacts.append(abut.Contact(contactor="block.right", target="wall.left"))
         solids = [abut.Solid(body, steel(1.0)) for body in mesh.bodies]
         return abut.Model(mesh, solids, supports, [abut.Pressure("block.top", 1.0)], contacts, plane="strain")
 
@@ -160,7 +163,7 @@ def test_pulled_off_in_a_later_step() -> None:
         [abut.Solid(b, steel(1.0)) for b in mesh.bodies],
         supports,
         [abut.Force("block.top", (0.0, 1.0), amplitude=lift)],
-        [abut.Contact("block.bottom", "floor.top")],
+        [abut.Contact(contactor="block.bottom", target="floor.top")],
         plane="strain",
         solve=abut.SolveOptions(steps=4),
     )
@@ -205,7 +208,10 @@ def test_ball_between_plates_may_spin(space: str, unit: str, load: str) -> None:
         loads.append(abut.Force("upper.top", (*(0.0 for _ in others), -1e3)))
 
     def model(extra: list[object]) -> abut.Model:
-        contacts = [abut.Contact("upper.bottom", "ball.round"), abut.Contact("lower.top", "ball.round")]
+        contacts = [
+            abut.Contact(contactor="upper.bottom", target="ball.round"),
+            abut.Contact(contactor="lower.top", target="ball.round"),
+        ]
         plane = {} if space == "3D" else {"plane": "strain"}
         solids = [abut.Solid(b, steel(size)) for b in mesh.bodies]
         return abut.Model(mesh, solids, supports, [*loads, *extra], contacts, **plane)

@@ -81,7 +81,7 @@ def test_a_rigid_plate_in_space() -> None:
     model = abut.Model(
         mesh, [abut.Solid("block", abut.LinearElastic(young, 0.0))],
         [abut.Support("block.bottom", x=0, y=0, z=0)],
-        contacts=[abut.Contact("block.top", "tool.bottom")],
+        contacts=[abut.Contact(contactor="block.top", target="tool.bottom")],
         rigid=[abut.Rigid("tool", (0.5, 0.5, 0.0), 0.0, 0.0, -depth, rx=turn, ry=0.0, rz=0.0)],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
@@ -107,7 +107,7 @@ def test_a_rigid_tool_free_in_space() -> None:
     model = abut.Model(
         mesh, [abut.Solid("block", SOFT)], [abut.Support("block.bottom", x=0, y=0, z=0)],
         [abut.NodalForce("handle", (0.0, 0.0, -3.0)), abut.Force("tool.top", (0.0, 0.0, -6.0))],
-        [abut.Contact("block.top", "tool.bottom")],
+        [abut.Contact(contactor="block.top", target="tool.bottom")],
         rigid=[abut.Rigid("tool", x=0, y=0, rz=0)],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
@@ -125,7 +125,7 @@ def test_an_axisymmetric_rigid_punch() -> None:
     mesh = join({"block": block, "punch": punch})
     model = abut.Model(
         mesh, [abut.Solid("block", SOFT)], [abut.Support("block.bottom", x=0, y=0)],
-        [abut.Force("punch.top", (0.0, -5.0))], [abut.Contact("block.top", "punch.bottom")],
+        [abut.Force("punch.top", (0.0, -5.0))], [abut.Contact(contactor="block.top", target="punch.bottom")],
         plane="axisymmetric", rigid=[abut.Rigid("punch")],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
@@ -231,7 +231,8 @@ def test_a_rigid_back_on_a_free_pad(condensed: bool, law: str, monkeypatch: pyte
     model = abut.Model(
         mesh, [abut.Solid("block", abut.LinearElastic(1e3, 0.0)), abut.Solid("pad", abut.LinearElastic(1e3, 0.0))],
         [abut.Support("block.bottom", x=0, y=0)], [abut.Force("back.top", (0.0, -2.0))],
-        [abut.Contact("block.top", "pad.bottom", law=law)], plane="strain", rigid=[abut.Rigid("back", x=0.0)],
+        [abut.Contact(contactor="block.top", target="pad.bottom", law=law)],
+        plane="strain", rigid=[abut.Rigid("back", x=0.0)],
     )  # fmt: skip
     step = abut.solve(model).steps[-1]
     tolerance = EXACT if law == "complementarity" else 1e-6  # smoothed
@@ -257,8 +258,8 @@ def test_amplitudes_of_what_is_not_given() -> None:
         ({"rigid": [abut.Rigid("tool"), abut.Rigid("block")], "solids": []}, "at least one must deform"),
         ({"loads": [abut.Gravity((0, -1), on="tool")]}, "has no density"),
         ({"loads": [abut.Temperature("tool", 1.0)]}, "does not expand"),
-        ({"contacts": [abut.Contact("tool.bottom", "block.top")]}, "swap contactor and target"),
-        ({"contacts": [abut.Contact("tool.bottom", "tool.top")]}, "both sides"),
+        ({"contacts": [abut.Contact(contactor="tool.bottom", target="block.top")]}, "swap contactor and target"),
+        ({"contacts": [abut.Contact(contactor="tool.bottom", target="tool.top")]}, "both sides"),
         ({"equations": [abut.Equation((abut.Term(10**6, "x", 1.0),))]}, "no point 1000000"),
         ({"equations": [abut.Equation((abut.Term(0, "z", 1.0),))]}, "z does not exist"),
         ({"equations": [abut.Equation((abut.Term("none", "x", 1.0),))]}, "no node set named 'none'"),

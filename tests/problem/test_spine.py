@@ -45,7 +45,7 @@ def blocks(steps: int = 3, cell: str = "hex8", **contact: Any) -> abut.Model:
         [abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
         [abut.Support("lower.bottom", x=0, y=0, z=0), abut.Support("upper.top", x=0, y=0)],
         [abut.Pressure("upper.top", 100.0), abut.Force("upper.right", (0.0, 0.0, 60.0))],
-        [abut.Contact("upper.bottom", "lower.top", **contact)],
+        [abut.Contact(contactor="upper.bottom", target="lower.top", **contact)],
         solve=abut.SolveOptions(steps=steps),
     )
 
@@ -202,7 +202,7 @@ def test_laws_of_wrong_shapes_are_refused() -> None:
 
 def test_laws_that_are_none_are_refused() -> None:
     with pytest.raises(abut.InputError, match="law"):
-        abut.Contact("a", "b", law=3.0)  # type: ignore[arg-type]
+        abut.Contact(contactor="a", target="b", law=3.0)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

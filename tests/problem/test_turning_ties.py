@@ -43,7 +43,7 @@ def layers(dim: int, gap: float, curved: bool) -> abut.Model:
     return abut.Model(
         make.join({"lower": lower, "upper": upper}), kinematics="finite", plane="strain" if dim == 2 else None,
         solids=[abut.Solid("lower", SOFT), abut.Solid("upper", SOFT)], supports=[abut.Support("lower.bottom", **turn)],
-        contacts=[abut.Contact("upper.bottom", "lower.top", kind="tied")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", kind="tied")],
     )  # fmt: skip
 
 

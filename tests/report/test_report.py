@@ -44,7 +44,7 @@ def solution_of(cell: str, steps: int = 1, name: str = "blocks", plane: str = "s
             plane=None if lower.dim == 3 else plane,
             solids=[abut.Solid("lower", STEEL), abut.Solid("upper", STEEL)],
             supports=[abut.Support("lower.bottom", **hold), abut.Support("upper.top", **push)],
-            contacts=[abut.Contact("upper.bottom", "lower.top", name=name)],
+            contacts=[abut.Contact(contactor="upper.bottom", target="lower.top", name=name)],
             solve=abut.SolveOptions(steps=steps),
         )
     )
@@ -179,7 +179,7 @@ def test_rigid_bodies_show_what_moves_them(tmp_path: Path) -> None:
         solids=[abut.Solid("block", STEEL)],
         rigid=[abut.Rigid("tool", x=0.0, y=-0.01, rz=0.0)],
         supports=[abut.Support("block.bottom", x=0, y=0)],
-        contacts=[abut.Contact("block.top", "tool.bottom")],
+        contacts=[abut.Contact(contactor="block.top", target="tool.bottom")],
     )
     solution = abut.solve(model)
     page = Page(write_report(solution, tmp_path / "report.html"))

@@ -25,7 +25,7 @@ def _pressed(*course: tuple[float, float]) -> abut.Model:
             abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=0),
             abut.Support("upper.top", y=-0.01, amplitude=abut.Amplitude(((0.0, 0.0), *course))),
         ],
-        contacts=[abut.Contact("upper.bottom", "lower.top")],
+        contacts=[abut.Contact(contactor="upper.bottom", target="lower.top")],
     )  # fmt: skip
 
 
@@ -53,7 +53,7 @@ def test_ties_are_no_contact() -> None:
         mesh=make.join({"base": base, "lower": lower, "upper": upper}),
         solids=[*model.solids, abut.Solid("base", STEEL)],
         supports=[abut.Support("base.bottom", x=0, y=0), *model.supports[1:]],
-        contacts=[*model.contacts, abut.Contact("lower.bottom", "base.top", kind="tied")],
+        contacts=[*model.contacts, abut.Contact(contactor="lower.bottom", target="base.top", kind="tied")],
     )
     solution = abut.solve(tied)
     touching, tie = solution.contacts

@@ -45,7 +45,7 @@ def swung(cell: str) -> abut.Model:
         solids=[abut.Solid("block", abut.LinearElastic(YOUNG, 0.3))],
         rigid=[abut.Rigid("lever", reference=(0.0,) * (2 if flat else 3), x=0, y=0, rz=np.pi / 2)
                if flat else abut.Rigid("lever", reference=(0.0,) * 3, x=0, y=0, z=0, rx=0, ry=0, rz=np.pi / 2)],
-        contacts=[abut.Contact(*sides, kind="tied")],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], kind="tied")],
         kinematics="finite",
         solve=abut.SolveOptions(steps=4),
     )  # fmt: skip

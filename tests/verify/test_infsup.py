@@ -52,7 +52,7 @@ def held(mesh: Mesh, **contact: object) -> abut.Model:
         mesh,
         [abut.Solid(body, abut.LinearElastic(1.0, 0.3)) for body in mesh.bodies],
         [abut.Support("lower.bottom", **fixed), abut.Support("upper.top", **fixed)],
-        contacts=[abut.Contact("lower.top", "upper.bottom", **contact)],
+        contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", **contact)],
         plane="strain" if mesh.dim == 2 else None,
     )
 

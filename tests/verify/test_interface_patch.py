@@ -24,7 +24,7 @@ def bare(mesh: Mesh, contactor: str, target: str, plane: str | None = "strain", 
     return abut.Model(
         mesh,
         [abut.Solid(body, abut.LinearElastic(200.0, 0.1)) for body in mesh.bodies],
-        contacts=[abut.Contact(contactor, target, **contact)],
+        contacts=[abut.Contact(contactor=contactor, target=target, **contact)],
         plane=plane if mesh.dim == 2 else None,
     )
 
@@ -109,7 +109,7 @@ def test_patch_of_every_contact() -> None:
     """Two contacts in a stack are tested one by one, the other one open meanwhile."""
     parts = {str(i): rectangle((0, 1), (i, i + 1), (3 + i, 2), "quad8") for i in range(3)}
     built = bare(join(parts), "0.top", "1.bottom", name="low")
-    built = replace(built, contacts=[*built.contacts, abut.Contact("1.top", "2.bottom", name="high")])
+    built = replace(built, contacts=[*built.contacts, abut.Contact(contactor="1.top", target="2.bottom", name="high")])
     results = interface_patch(built)
     assert [r.contact for r in results] == ["low", "high"]
     assert all(r.passed and r.flat for r in results)
@@ -141,4 +141,4 @@ def test_patch_refuses() -> None:
     with pytest.raises(InputError, match="pressure is not unique; take another method"):
         interface_patch(replace(built, contacts=[two_pass]))
     with pytest.raises(InputError, match=r"no facet of .* faces"):
-        interface_patch(replace(built, contacts=[abut.Contact("lower.top", "upper.top")]))
+        interface_patch(replace(built, contacts=[abut.Contact(contactor="lower.top", target="upper.top")]))

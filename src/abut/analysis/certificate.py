@@ -14,6 +14,7 @@ from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error, straight_between
 from abut.analysis.resolution import resolution
+from abut.contact.contactor_choice import Side
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
@@ -53,7 +54,7 @@ class Surroundings:
     opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; average: (n_points,) what the
     reported pressure was recovered from, theory (P10), by default it itself; gives: the target's share of what both sides
     give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in facets, None where contact follows
-    it."""
+    it; sides: as the choice of the contactor sees them, None where it has no part in it."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -65,6 +66,7 @@ class Surroundings:
     average: NDArray[np.float64] | None = None
     gives: float = 1.0
     slid: NDArray[np.float64] | None = None
+    sides: tuple[Side, Side] | None = None
 
 
 def certificate(

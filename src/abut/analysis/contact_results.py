@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
+from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
     LOADED,
     forces_on_bodies,
@@ -136,8 +137,12 @@ def contact_result(
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
     statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
     before = None if earlier is None else earlier.friction
-    return ContactResult(
+    carried = carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal)
+    average = None if shown is None else shown.average
+    second = (pair.contactor, forces[ids]) if pair.contact.turned else (pair.target, others[target_ids])
+    result = ContactResult(
         name=pair.contact.name,
+        named=pair.contact.named,
         contactor=_undeformed(mesh, pair.contactor),
         target=_undeformed(mesh, pair.target),
         force=amount.force,
@@ -154,18 +159,33 @@ def contact_result(
         gap=np.where(covered[:, None], facet_node_values(pair.contactor, degree, state.gaps), np.nan),
         covered=covered,
         covered_share=float(coupling.covered.sum() / full_moments(pair.contactor, 0)[:, 0].sum()),
-        target_pressure=carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal),
-        checks=_checks(state, residual, around, nodal, share, None if shown is None else shown.average),
+        target_pressure=carried,
+        checks=(
+            *_checks(state, residual, around, nodal, share, average),
+            *sides_check(pair, around.sides, nodal, carried),
+        ),
         statistics=statistics,
         resultant=amount,
         contactor_forces=forces[ids],
         target_forces=others[target_ids],
-        body_forces=forces_on_bodies(pair.target, mesh.bodies, others[target_ids]),
+        body_forces=forces_on_bodies(*second, mesh.bodies),
         friction=None
         if shown is None
         else friction_result(
             pair, shown, state.multipliers, state.status, state.slips, state.limit, before, around.reference
         ),
+    )
+    return _on_second(result) if pair.contact.turned else result
+
+
+def _on_second(result: ContactResult) -> ContactResult:
+    """The same where the contactor is the side that is named second: resultants are those on the one named first."""
+    of_all, friction = result.resultant, result.friction
+    return replace(
+        result,
+        force=-result.force,
+        resultant=replace(of_all, force=-of_all.force, moment=-of_all.moment),
+        friction=friction if friction is None else replace(friction, force=-friction.force),
     )
 
 

@@ -252,8 +252,11 @@ def _contacts(
             cells = normal_stress(model.mesh, pair.contactor, stress)
         gives = _gives(model, constraints, pair)
         along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
+        sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
         around.append(
-            Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
+            Surroundings(
+                reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along, sides=sides
+            )
         )
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)

@@ -18,6 +18,7 @@ from abut.errors import ConvergenceError, SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.model.side_choice import choices
 from abut.nonlinear.large_steps import march_finite
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import pace_of
@@ -74,7 +75,7 @@ class Run:
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
         places = find_places(model)
-        for text in (text for place in places for text in place.notes):
+        for text in (*choices(model.contacts), *(text for place in places for text in place.notes)):
             told.note(text)
         if team is None and model.solve.linear == "petsc":
             from abut.parallel.team import start_team

@@ -163,7 +163,7 @@ def cross(arms: NDArray[np.float64], forces: NDArray[np.float64]) -> NDArray[np.
 
 
 def forces_on_bodies(
-    surface: Surface, bodies: Mapping[str, NDArray[np.int64]], forces: NDArray[np.float64]
+    surface: Surface, forces: NDArray[np.float64], bodies: Mapping[str, NDArray[np.int64]]
 ) -> dict[str, NDArray[np.float64]]:
     """Resultants (dim,) of a surface's nodal forces by the body that it belongs to; they add up to that of all.
 

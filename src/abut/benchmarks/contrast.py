@@ -37,7 +37,7 @@ def _patch(stiffness: str, size: str) -> Benchmark:
             [Solid(body, LinearElastic(young[body], POISSON)) for body in parts],
             [Support("lower.bottom", z=0), *sides],
             [Pressure("upper.top", load)],
-            [Contact("lower.top", "upper.bottom")],
+            [Contact(contactor="lower.top", target="upper.bottom")],
         )
 
     def measure(solution: Solution) -> dict[str, float]:
@@ -83,7 +83,7 @@ def _hertz(name: str, young: tuple[float, float], cells: tuple[int, int], contac
             [Solid(body, LinearElastic(e, POISSON)) for body, e in zip(("cylinder", "block"), young)],
             [Support("block.bottom", x=0, y=0), Support("cylinder.axis", x=0)],
             [Force("cylinder.flat", (0.0, -load))],
-            [Contact(*pair)],
+            [Contact(contactor=pair[0], target=pair[1])],
             plane="strain",
         )
 

@@ -103,7 +103,7 @@ def _smooth_model(cell: str, n: int) -> Model:
         [Solid(body, material) for body, material in MATERIALS.items()],
         supports,
         loads,
-        [Contact("lower.top", "upper.bottom")],
+        [Contact(contactor="lower.top", target="upper.bottom")],
         plane="strain" if dim == 2 else None,
     )
 
@@ -161,7 +161,7 @@ def _edge_model(cell: str, n: int) -> Model:
         mesh,
         [Solid(body, material) for body, material in MATERIALS.items()],
         supports,
-        contacts=[Contact("lower.top", "upper.bottom")],
+        contacts=[Contact(contactor="lower.top", target="upper.bottom")],
         plane="strain" if dim == 2 else None,
     )
 

@@ -65,7 +65,7 @@ def belt(
                 for name, way in (("slack", STRETCH - SLIP), ("tight", SLIP))
             ),
         ],
-        contacts=[Contact(*sides, friction=FRICTION)],
+        contacts=[Contact(contactor=sides[0], target=sides[1], friction=FRICTION)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 

@@ -51,7 +51,7 @@ def ironing(level: int) -> Model:
             Support("slab.bottom", x=0.0, y=0.0), Support("die.top", y=-1.0, amplitude=PRESS),
             Support("die.top", x=10.0, amplitude=SLIDE),
         ],
-        contacts=[Contact("slab.top", ("die.bottom", "die.left", "die.right"), friction=0.3)],
+        contacts=[Contact(contactor="slab.top", target=("die.bottom", "die.left", "die.right"), friction=0.3)],
         plane="strain", kinematics="finite",
     )  # fmt: skip
 
@@ -84,7 +84,8 @@ def _crushed(friction: float, volumetric: str = "square-log") -> Model:
         [Solid(name, NeoHooke(young, 0.3, volumetric=volumetric)) for name, young in moduli.items()],
         [Support("base.bottom", x=0.0, y=0.0), *ends],
         contacts=[
-            Contact("inner.outer", "outer.inner", kind="tied"), Contact("outer.outer", "base.top", friction=friction)
+            Contact(contactor="inner.outer", target="outer.inner", kind="tied"),
+            Contact(contactor="outer.outer", target="base.top", friction=friction)
         ],
         plane="strain", kinematics="finite",
     )  # fmt: skip

@@ -45,7 +45,7 @@ def model(level: int, cell: str) -> Model:
             Support("slab.bottom", x=0.0, y=0.0, z=0.0), Support("die.top", y=0.0, z=-DEPTH, amplitude=PRESS),
             Support("die.top", x=1.0, amplitude=SLIDE),
         ],
-        contacts=[Contact("die.bottom", "slab.top", friction=FRICTION)], kinematics="finite",
+        contacts=[Contact(contactor="die.bottom", target="slab.top", friction=FRICTION)], kinematics="finite",
     )  # fmt: skip
 
 

@@ -50,7 +50,7 @@ def _wires(level: int) -> Model:
             Support("left.bottom", x=0.0, y=0.0, z=0.0), Support("right.bottom", x=0.0, y=0.0, z=0.0),
             Support("upper.bottom", x=0.0, y=-PRESSED, amplitude=DOWN), Support("upper.bottom", z=PULLED, amplitude=ALONG),
         ],
-        contacts=[Contact("upper.top", ("left.top", "right.top"), friction=FRICTION)], kinematics="finite",
+        contacts=[Contact(contactor="upper.top", target=("left.top", "right.top"), friction=FRICTION)], kinematics="finite",
     )  # fmt: skip
 
 

@@ -65,7 +65,10 @@ def cylinders(
             Force("plate.top", (0.0, -DOWN), Amplitude(((0.0, 0.0), (pushes[0][0], 1.0)))),
             Force("plate.top", (ALONG, 0.0), Amplitude(tuple(pushes))),
         ],
-        [Contact(*sides, friction=friction), Contact("upper.top", "plate.bottom", kind="tied")],
+        [
+            Contact(contactor=sides[0], target=sides[1], friction=friction),
+            Contact(contactor="upper.top", target="plate.bottom", kind="tied"),
+        ],
         plane="strain",
         rigid=[Rigid("plate", rz=0.0)],
         solve=SolveOptions(times=tuple(time for time, _ in pushes)),

@@ -38,7 +38,7 @@ def _code_aster(level: int) -> Model:
         join(parts),
         [Solid(body, steel) for body in parts],
         [Support("lower.bottom", x=0, y=0), Support("upper.top", x=0, y=-0.1)],
-        contacts=[Contact("lower.top", "upper.bottom")],
+        contacts=[Contact(contactor="lower.top", target="upper.bottom")],
         plane="strain",
     )
 
@@ -71,7 +71,7 @@ def _taylor(level: int) -> Model:
         [Solid("lower", material), Solid("upper", material)],
         [Support("lower.bottom", y=0), Support("lower.left", x=0), Support("upper.left", x=_SIDE)],
         [Pressure("upper.top", 10.0), Pressure("beside", 10.0)],
-        [Contact("upper.bottom", "under")],
+        [Contact(contactor="upper.bottom", target="under")],
         plane="strain",
     )
 
@@ -102,7 +102,7 @@ def _ssnp170(dim: int, cells: tuple[str, str]) -> Benchmark:
             [Solid(body, material) for body in parts],
             [support_along("lower.bottom", "xyz"[dim - 1], 0.0), *supports],
             [Pressure("upper.top", 25.0)],
-            [Contact("lower.top", "upper.bottom")],
+            [Contact(contactor="lower.top", target="upper.bottom")],
             plane="strain" if dim == 2 else None,
         )
 

@@ -23,7 +23,7 @@ def _squares(cell: str, pressure: str, n: int, share: float, method: str) -> Mod
         join(parts),
         [Solid(body, LinearElastic(1.0, 0.3)) for body in parts],
         [Support("lower.bottom", x=0, y=0), Support("upper.top", x=0, y=0)],
-        contacts=[Contact("lower.top", "upper.bottom", pressure=pressure, method=method)],
+        contacts=[Contact(contactor="lower.top", target="upper.bottom", pressure=pressure, method=method)],
         plane="strain",
     )
 

@@ -264,6 +264,7 @@ def _failure(solution: Solution, directory: Path) -> str:
 
 
 def _print_result(solution: Solution, directory: Path) -> None:
+    from abut.contact.sides import words
     from abut.diagnosis.advice import remedies
     from abut.diagnosis.cures import cure
     from abut.report.contact_words import force, lines
@@ -274,7 +275,7 @@ def _print_result(solution: Solution, directory: Path) -> None:
         show(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
     for contact in solution.contacts:
         show(
-            f"contact '{contact.name}': force on the contactor {force(contact)}, largest pressure "
+            f"contact '{contact.name}': force on {words(contact.named[0])} {force(contact)}, largest pressure "
             f"{contact.max_pressure:.6g}, area {contact.area:.6g}, largest penetration {contact.max_penetration:.2g}"
         )
         for line in lines(contact):

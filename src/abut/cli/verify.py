@@ -22,12 +22,18 @@ def add_verify(commands: Any) -> None:
     """Add ``abut verify`` to the parser's ``commands``."""
     verify = commands.add_parser(
         "verify",
-        help="run problems with known answers, or the patch test of a job",
+        help="run problems with known answers, or tests of a job",
         description="Run the benchmark library: value, reference, error, tolerance and source of every quantity. With "
-        "--job, run the contact patch test on the meshes of a job instead.",
-        epilog="exit status: 0 all pass; 1 something fails; 2 bad input",
+        "a job or deck, run the contact patch test on its meshes instead; with --swap, solve it as it is and with the "
+        "sides of its contacts swapped, and compare.",
+        epilog="exit status: 0 all pass; 1 something fails, or the two solutions of --swap differ (by more than 10 %% of "
+        "the largest pressure inside the contact, or 2 %% of the force); 2 bad input; 3 not converged",
     )
-    verify.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run (all of them if left out)")
+    verify.add_argument(
+        "names", nargs="*", metavar="NAME", help="benchmarks to run (all of them if left out), or one job or deck"
+    )
+    verify.add_argument("--swap", action="store_true", help="of a job: a second opinion, with the sides swapped")
+    verify.add_argument("--output", type=Path, metavar="DIR", help="with --swap: write report.html here")
     verify.add_argument("--list", action="store_true", help="list the benchmarks")
     verify.add_argument("--levels", type=int, metavar="N", help="refine N times, fit the rate of convergence, plot it")
     verify.add_argument("--plot", type=Path, metavar="FILE", help="with --levels: save the plot (png, svg; matplotlib)")
@@ -60,10 +66,14 @@ def add_infsup(commands: Any) -> None:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
+    if arguments.job is None and len(arguments.names) == 1 and _is_job(arguments.names[0]):
+        arguments.job = Path(arguments.names.pop())
     if arguments.job is not None:
         if arguments.names or arguments.levels is not None:
-            raise InputError("verify: --job goes without benchmark names and --levels")
+            raise InputError("verify: a job goes without benchmark names and --levels")
         return _verify_job(arguments)
+    if arguments.swap or arguments.output is not None:
+        raise InputError("verify: --swap and --output are for a job: abut verify job.toml --swap")
     from abut.benchmarks import BENCHMARKS, run
 
     for name in arguments.names:
@@ -106,6 +116,11 @@ def _verify(arguments: argparse.Namespace) -> int:
         seconds = sum({outcome.benchmark: outcome.seconds for outcome in outcomes}.values())
         show(f"{len(outcomes) - len(failed)} of {len(outcomes)} quantities pass, {seconds:.0f} s")
     return FAILED if failed else DONE
+
+
+def _is_job(name: str) -> bool:
+    """Whether a name is that of a job or deck, rather than a benchmark's."""
+    return Path(name).suffix.lower() in (".toml", ".inp")
 
 
 def _print_outcome(outcome: Outcome, width: int) -> None:
@@ -184,7 +199,12 @@ def _verify_job(arguments: argparse.Namespace) -> int:
     from abut.verify import interface_patch
     from abut.verify.interface_patch import describe
 
-    results = interface_patch(load_job(arguments.job).model)
+    job = load_job(arguments.job)
+    if arguments.swap:
+        from abut.cli.swap import verify_swap
+
+        return verify_swap(arguments, job)
+    results = interface_patch(job.model)
     if arguments.json:
         show(json.dumps([{**vars(result), "passed": result.passed} for result in results], indent=2))
     else:

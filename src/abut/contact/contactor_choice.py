@@ -1,12 +1,15 @@
-"""Which of two surfaces should be the contactor: the one rule, which `auto = true` and `abut check` both go by.
+"""Which of two surfaces should be the contactor: the one rule, by which abut chooses, and `abut check` and the advice judge
+what the user has named.
 
-1. A rigid side never: the pressure needs the displacements of its own side to be unique.
+1. A rigid side never, nor one whose points supports hold: the pressure needs the displacements of its own side.
 2. The softer side, which takes the shape of the other one: a stiff contactor that is finer than its target touches the
    target's corners one by one (``abut.benchmarks.contrast``).
 3. But not a side that is mostly bare while the other is covered: its pressure would stand on facets of which a small part
    only lies opposite anything.
-4. Among equals the finer side: its pressure has the better resolution, and gaps are closed in the mean over smaller facets.
-   Unless it is several times finer than a curved target: its pressure would show every kink between the target's facets.
+4. Among equals the coarser side: the other one follows what its pressure can show, where a finer contactor would show the
+   corners of its target. Where sizes hardly differ, the one that is less bare.
+
+``bench/sides`` has the study that this comes from, docs/verification/pressure.md its numbers.
 """
 
 from __future__ import annotations
@@ -19,17 +22,19 @@ from numpy.typing import NDArray
 ALIKE = 1.1  # ratio of moduli up to which neither side is the softer one
 BARE = 0.55  # share of a side's facets that lies opposite: with less a pressure stands on facets that are mostly bare
 BARER = 0.1  # difference of such shares that is worth a choice
-FINER = 1.25  # ratio of facet sizes from which on the finer side is told apart where a line of the certificate fails
-TWICE = 2.0  # ratio of facet sizes that is worth a word before the run
-MUCH_FINER = 3.0  # ratio from which on a finer contactor would show the kinks of a curved target
-FLAT = np.cos(np.deg2rad(1.0))  # facets all within that of one plane have no kinks to show
-MARGIN = 1.1  # by which sizes and shares must pass their limits for the choice to be clear: both are measured
+FINER = 1.25  # ratio of facet sizes from which on one side counts as finer than the other
+MARGIN = 1.1  # by which shares must pass their limits for the choice to be clear: they are measured
+SAME_SIZE = 1e-3  # relative difference of sizes that is none
+STIFFER = 3.0  # ratio of moduli from which on a contactor that is a little finer may show the facets of its target
+TWICE = 2.0  # ratio of facet sizes that is worth a word
+CLOSE = 0.05  # of the sum of two facets' sizes: gaps within that of the smallest one lie where contact begins
+NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they face each other
 
 REASONS = {
+    "rigid": "the other side is rigid, or held",
     "softer": "softer",
     "covered": "the facets of the other side reach far beyond this one",
-    "kinks": "the other side is much finer and would show the faceting of this one",
-    "finer": "finer",
+    "coarser": "coarser",
     "alike": "first of two alike",
 }
 
@@ -38,13 +43,12 @@ REASONS = {
 class Side:
     """What the choice looks at, of those facets of a surface that face the other one.
 
-    modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets, a length; covered: share of their area
-    that lies opposite the other side; flat: whether they lie in one plane."""
+    modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets where contact begins, a length; covered:
+    share of the area of all of them that lies opposite the other side."""
 
     modulus: float
     size: float
     covered: float
-    flat: bool
 
 
 @dataclass(frozen=True)
@@ -57,27 +61,28 @@ class Choice:
 
     @property
     def reason(self) -> str:
-        """Why, in words."""
+        """Why, in a few words."""
         return REASONS[self.rule]
 
+    def why(self, one: Side, other: Side) -> str:
+        """Why, with the numbers of both sides."""
+        chosen, left = (one, other)[:: 1 - 2 * self.contactor]
+        if self.rule == "softer":
+            return f"softer, E/(1-nu^2) {chosen.modulus:.3g} against {left.modulus:.3g}"
+        if self.rule == "coarser":
+            return f"coarser, facets of {chosen.size:.3g} against {left.size:.3g}"
+        return self.reason
 
-def side(
-    size: NDArray[np.float64],
-    area: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    opposite: float,
-    modulus: float,
-) -> Side:
-    """Measure a side by those of its facets that face the other one: size, area (n,), mean unit normal (n, dim).
 
-    opposite: how much of their area lies opposite the other side. Areas are those of the section where the surface is
-    axisymmetric."""
-    return Side(
-        modulus=modulus,
-        size=float(np.median(size)),
-        covered=min(opposite / float(area.sum()), 1.0),
-        flat=bool((normal @ normal[0]).min() > FLAT),
-    )
+def side(size: NDArray[np.float64], area: NDArray[np.float64], opposite: float, modulus: float) -> Side:
+    """Measure a side. size: (n,) of its facets where contact begins; area: (m,) of all that face the other side, as if plane
+    where the surface is axisymmetric; opposite: how much of that area lies opposite the other side."""
+    return Side(modulus, float(np.median(size)), min(opposite / float(area.sum()), 1.0))
+
+
+def where_contact_begins(gap: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points are hardly further apart than the nearest ones. gap, sizes: (n,) sum of both facets' sizes, lengths."""
+    return np.asarray(gap - gap.min() <= CLOSE * sizes)
 
 
 def choose(one: Side, other: Side) -> Choice:
@@ -86,31 +91,27 @@ def choose(one: Side, other: Side) -> Choice:
     soft = int(other.modulus < one.modulus)
     stiff = sides[1 - soft].modulus
     if np.isinf(stiff) and np.isfinite(sides[soft].modulus):
-        return Choice(soft, "softer", True)
-    unlike = stiff > ALIKE * sides[soft].modulus
-    if unlike and not _bare(sides[soft], sides[1 - soft]):
+        return Choice(soft, "rigid", True)
+    if stiff > ALIKE * sides[soft].modulus and not _bare(sides[soft], sides[1 - soft]):
         return Choice(soft, "softer", True)
     for number in (0, 1):
         if _bare(sides[1 - number], sides[number]):
             return Choice(number, "covered", sides[1 - number].covered * MARGIN < BARE)
-    return _by_size(one, other)
+    coarse = int(other.size > one.size * (1.0 + SAME_SIZE))
+    ratio = sides[coarse].size / sides[1 - coarse].size
+    if ratio < FINER and sides[coarse].covered < sides[1 - coarse].covered - BARER:
+        return Choice(1 - coarse, "covered", False)
+    return Choice(coarse, "coarser" if ratio > 1.0 + SAME_SIZE else "alike", ratio > TWICE)
 
 
-def much_finer(contactor: Side, target: Side) -> bool:
-    """Whether the contactor's pressure would show the kinks of the target."""
-    return target.size > MUCH_FINER * contactor.size and not target.flat
+def shows_facets(contactor: Side, target: Side) -> bool:
+    """Whether a contactor may touch the facets of its target one by one: the rule takes the other side, and it is finer, by
+    a little if it is also stiffer, else by far: less does no harm that would show."""
+    choice = choose(contactor, target)
+    finer = target.size / contactor.size
+    stiffer = contactor.modulus > STIFFER * target.modulus
+    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and finer > (FINER if stiffer else TWICE)
 
 
 def _bare(side: Side, other: Side) -> bool:
     return side.covered < BARE and side.covered < other.covered - BARER
-
-
-def _by_size(one: Side, other: Side) -> Choice:
-    sides = one, other
-    fine = int(other.size < one.size * (1.0 - 1e-9))
-    coarse = 1 - fine
-    ratio = sides[coarse].size / sides[fine].size
-    if much_finer(sides[fine], sides[coarse]):
-        return Choice(coarse, "kinks", ratio > MARGIN * MUCH_FINER)
-    kinks_near = not sides[coarse].flat and ratio * MARGIN > MUCH_FINER
-    return Choice(fine, "finer" if ratio > 1.0 + 1e-9 else "alike", ratio > TWICE and not kinks_near)

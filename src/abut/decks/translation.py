@@ -234,7 +234,8 @@ def _history(course: Course) -> tuple[float, Amplitude | None]:
 
 
 def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
-    """The slave is the contactor, which must deform: elements in ``hard`` are rigid."""
+    """Of a tie the slave is the contactor, as the deck says, unless it is rigid, as elements in ``hard`` are: what the slave
+    leaves out stays free. Of contact abut chooses."""
     slave, master = groups.surface(pair.slave), groups.surface(pair.master)
     for name, side in ((slave, pair.slave), (master, pair.master)):
         if deck.surfaces[side].nodes is not None:
@@ -243,11 +244,11 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
         found = near(deck, groups, pair)
         notes += tie_notes(deck, groups, pair, found)
         slave = groups.facets(found.rows, f"{pair.slave}-near") if found.left else slave
-    if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
-        slave, master = master, slave
-        notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
     if pair.tied:
-        return Contact(slave, master, name=pair.name, kind="tied")
+        if np.isin(groups.rows(pair.slave)[:, 0], hard).all():
+            slave, master = master, slave
+            notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
+        return Contact(contactor=slave, target=master, name=pair.name, kind="tied")
     adjust = pair.adjust
     if isinstance(adjust, np.ndarray):
         adjust = distance(deck, groups, pair, adjust)
@@ -262,7 +263,7 @@ def _general(
     deck: Deck, general: GeneralContact, mesh: Mesh, solids: list[Solid], contacts: list[Contact], notes: list[str]
 ) -> tuple[Mesh, list[Contact]]:
     """Pairs of bodies that face each other and that no *CONTACT PAIR or *TIE names; the mesh with their surfaces."""
-    named = [{body for side in (c.contactor, c.target) for body in bodies_of(mesh, side)} for c in contacts]
+    named = [{body for side in c.named for body in bodies_of(mesh, side)} for c in contacts]
     found = [f for f in find_contacts(mesh, solids) if set(f.bodies) not in named]
     if not found and not contacts:
         raise DeckError(
@@ -277,9 +278,10 @@ def _general(
 
 def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     """Raise InputError for flat surfaces that look the same way, which happens where meshes overlap."""
-    if contact.contactor == contact.target:
+    first, second = contact.named
+    if first == second:
         return
-    sides = find_sides(mesh, contact.contactor, contact.target)
+    sides = find_sides(mesh, first, second)
     push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
     a, b = (normal / max(surface_area(side), 1e-300) for normal, side in zip(push, sides))
     if a @ b > SAME_WAY:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut import checks
-from abut.contact.contactor_choice import Choice, choose, side
+from abut.contact.contactor_choice import Choice, choose, side, where_contact_begins
 from abut.detection.opposing_facets import Facing, Outside, facing, outside, seen_by
 from abut.errors import InputError, nearest
 from abut.materials.material import Material
@@ -44,7 +44,7 @@ class FoundContact:
     def contact(self, **options: Any) -> Contact:
         """The contact of a model; ``options`` as for ``abut.Contact``."""
         name = options.pop("name", "") or f"{self.bodies[0]}-{self.bodies[1]}{_patch(self.contactor)}"
-        return Contact(self.contactor, self.target, name=name, **options)
+        return Contact(contactor=self.contactor, target=self.target, name=name, chosen=self.reason, **options)
 
     @property
     def note(self) -> str:
@@ -82,7 +82,7 @@ def find_contacts(
     >>> mesh = make.join(blocks)
     >>> (found,) = abut.find_contacts(mesh)
     >>> found.contactor, found.target, found.reason
-    ('auto:b-a', 'auto:a-b', 'finer')
+    ('auto:a-b', 'auto:b-a', 'coarser')
     >>> mesh = abut.add_surfaces(mesh, [found])
     >>> contacts = [found.contact()]  # of a Model of this mesh
     """
@@ -159,13 +159,15 @@ def _patches(every: Outside, found: Facing) -> list[_Patch]:
 
 def _choose(every: Outside, patch: _Patch, materials: dict[str, Material] | None) -> Choice:
     """Which side is the contactor; materials: by body, one without counts as rigid; None: there are none at all."""
-    opposite = float(patch.faces.area.sum())
+    faces = patch.faces
+    begins = where_contact_begins(faces.gap, every.size[faces.one] + every.size[faces.other])
+    opposite = float(faces.area.sum())
     sides = [
         side(
-            every.size[facets], every.area[facets], every.normal[facets], opposite,
+            every.size[np.unique(those[begins])], every.area[facets], opposite,
             1.0 if materials is None else contact_modulus(materials.get(every.names[body])),
         )
-        for body, facets in zip(patch.bodies, patch.facets)
+        for body, facets, those in zip(patch.bodies, patch.facets, (faces.one, faces.other))
     ]  # fmt: skip
     return choose(*sides)
 

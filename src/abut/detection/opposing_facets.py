@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.contact.bulge import with_bulge
+from abut.contact.contactor_choice import NEAR
 from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, mean_normals, straight
 from abut.mesh.exterior import exterior
@@ -19,7 +20,6 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
 OPPOSITE = -0.5  # cosine between the normals of facets that face each other: within 60 degrees of opposite
-NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they face each other
 HALF = 0.5  # of the thickness of the bodies, or of what is near: overlaps that are deeper are none
 SEEN_TWICE = 1.2  # covered area over a facet's area from which on what lies behind is hidden
 

@@ -9,10 +9,7 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.contactor_choice import FINER
 from abut.contact.coupling import surface_degree
-from abut.contact.geometry import facet_sizes
-from abut.diagnosis.contactor import swap
 from abut.materials.elastic import LinearElastic
 from abut.model import LAWS, METHODS, SolveOptions
 from abut.problem.constraints import supports
@@ -112,12 +109,6 @@ def _by_overlap(solution: Solution) -> Iterator[Remedy]:
             yield Remedy(
                 f'{where}pressure = "auto"',
                 "the functions of P2 span fewer facets, so that contact on a single row of facets is seen",
-            )
-        coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-        if coarse > FINER and (sides := swap(solution.model, contact)):
-            yield Remedy(
-                f"{where}{sides}",
-                f"gaps are closed in the mean over the contactor's facets, and those are {coarse:.2g} times the target's",
             )
         yield Remedy(
             f"{where}refine both surfaces where they touch",

@@ -92,9 +92,7 @@ def _penetration(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _overlap(contact: Contact, result: ContactResult, sides: str) -> str:
-    coarse = float(np.median(facet_sizes(result.contactor)) / np.median(facet_sizes(result.target)))
-    finer = f", or {sides}" if sides and coarse > FINER else ""
-    return f"refine both surfaces where they touch, until contact is two facets wide{finer}"
+    return "refine both surfaces where they touch, until contact is two facets wide"
 
 
 def _faceting(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -141,12 +139,10 @@ def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
 def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     loaded = np.nanmax(result.pressure, axis=1) > LOADED * result.max_pressure
     size = float(np.median(facet_sizes(result.contactor)[loaded]))
-    ratio = size / float(np.median(facet_sizes(result.target)))
-    finer = f", or {sides}" if sides and ratio > FINER else ""
     first = result.contactor.dim == 3 and bool((result.contactor.kinds == CELLS["tri3"].code).any())
     higher = ", and cells of second order take off more than that" if first else ""
     return (
-        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{higher}{finer}; "
+        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{higher}; "
         "but round the edges of sharp bodies, where pressure has no limit"
     )
 
@@ -165,6 +161,10 @@ def _edges(contact: Contact, result: ContactResult, sides: str) -> str:
         f"{way} the edge of {words(contact.contactor)} over two facets: it pushes along the normal of its own face, not of "
         "what it touches"
     )
+
+
+def _sides(contact: Contact, result: ContactResult, sides: str) -> str:
+    return f"{sides or 'refine the target'}, or give surfaces = [...] in place of contactor and target: abut chooses"
 
 
 def _moments(contact: Contact, result: ContactResult, sides: str) -> str:
@@ -230,6 +230,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "pressure error": _pressure_error,
     "largest pressure": _largest,
     "contactor's edges": _edges,
+    "sides": _sides,
     "facet moments": _moments,
     "loaded area without target": _bare,
     "force at the target's edge": _bare,

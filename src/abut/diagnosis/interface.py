@@ -85,7 +85,7 @@ def _right_side(model: Model, contact: Contact, found: list[FoundContact]) -> st
         }
         best = max(share, key=lambda name: share[name], default="")
         names.append(best if best and share[best] > 0.3 else auto)
-    return f"the surfaces that face each other are '{names[0]}' (contactor) and '{names[1]}' (target): use them"
+    return f"the surfaces that face each other are '{names[0]}' and '{names[1]}': use them"
 
 
 def interface(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding]:

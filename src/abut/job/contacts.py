@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import Names, bodies_of, listed
@@ -15,6 +16,7 @@ from abut.job.values import values
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Integration, Solid
 
+SIDES = ("surfaces", "contactor", "target")
 FINDING = ("auto", "bodies", "reach")  # keys that say what to look for; the others are the contact's own
 Key = tuple[float | None, tuple[str, ...] | None]
 
@@ -48,19 +50,19 @@ def resolve_contacts(
     contacts: list[tuple[int, Contact]] = []
     notes: list[str] = []
     for i, table in enumerate(tables):
-        options = values(table, f"contacts[{i}]", (*FINDING, "contactor", "target", "integration", "law"))
+        options = values(table, f"contacts[{i}]", (*FINDING, *SIDES, "integration", "law"))
         options["law"] = table.law
         if isinstance(table.law, OverclosureTable):
             options["law"] = PressureOverclosure(tuple((over, pressure) for over, pressure in table.law.points))
         options["integration"] = Integration(**table.integration.model_dump())
         if not table.auto:
-            contacts.append((i, Contact(table.contactor, table.target, **options)))
+            contacts.append((i, _named(table, options)))
             continue
         if finite and table.kind != "tied":
             every = _anywhere(table, f"contacts[{i}]", mesh, solids, coupled)
             name = options.pop("name")
             contacts += [(i, pair.contact(name, **options)) for pair in every]
-            notes += [pair.note for pair in every]
+            notes += [pair.note for pair in every if pair.note]
             coupled |= {frozenset(pair.bodies) for pair in every}
             continue
         found = [f for f in finder.find(table) if frozenset(f.bodies) not in coupled]
@@ -77,6 +79,14 @@ def resolve_contacts(
             contacts.append((i, f.contact(name=f"{first}-{each.name}", **options) if first else each))
         notes += [f.note for f in found]
     return Resolved(mesh, tuple(c for _, c in contacts), tuple(i for i, _ in contacts), tuple(notes))
+
+
+def _named(table: ContactTable, options: dict[str, Any]) -> Contact:
+    """The contact of an entry that names its sides."""
+    if table.surfaces:
+        first, second = table.surfaces
+        return Contact(first, second, **options)
+    return Contact(contactor=table.contactor, target=table.target, **options)
 
 
 def _anywhere(
@@ -108,28 +118,49 @@ class _Finder:
 
     def named(self, table: ContactTable, where: str) -> tuple[FoundContact, ...]:
         """The found pair that an entry names by its surfaces, if it does."""
-        names = [(side, name) for side in ("contactor", "target") for name in _found(getattr(table, side))]
-        names = [(side, name) for side, name in names if name not in self._mesh.surfaces]
+        names = [(place, name) for place, side in _places(table) for name in _found(side)]
+        names = [(place, name) for place, name in names if name not in self._mesh.surfaces]
         if not names:
             return ()
         pairs = self.find(table)
         known = [name for found in pairs for name in (found.contactor, found.target)]
-        for side, name in names:
+        for place, name in names:
             if name not in known:
-                raise InputError(f"{where}.{side}: no two surfaces found as {name!r}{nearest(name, known)}")
+                raise InputError(f"{where}.{place}: no two surfaces found as {name!r}{nearest(name, known)}")
         return tuple(found for found in pairs if {found.contactor, found.target} & {name for _, name in names})
 
 
+def _places(table: ContactTable) -> list[tuple[str, Names]]:
+    """The sides that an entry names, each with its key."""
+    if table.surfaces:
+        return [(f"surfaces[{number}]", side) for number, side in enumerate(table.surfaces)]
+    return [(key, getattr(table, key)) for key in SIDES[1:] if getattr(table, key)]
+
+
 def _check(table: ContactTable, where: str) -> None:
+    given = [key for key in SIDES if getattr(table, key)]
     if table.auto:
-        for side in ("contactor", "target"):
-            if getattr(table, side):
-                raise InputError(f"{where}.{side}: auto = true finds both surfaces; leave {side} or auto out")
+        if given:
+            raise InputError(f"{where}.{given[0]}: auto = true finds both surfaces; leave {given[0]} or auto out")
         return
-    for side in ("contactor", "target"):
-        if not getattr(table, side):
-            raise InputError(f"{where}.{side}: missing; name both surfaces, or give auto = true")
-    if (table.bodies, table.reach) != (None, None) and not (_found(table.contactor) or _found(table.target)):
+    if "surfaces" in given and len(given) > 1:
+        raise InputError(
+            f"{where}.{given[1]}: surfaces leaves the choice of the contactor to abut, contactor and target force it: leave "
+            f"{' and '.join(given[1:])} out, or surfaces"
+        )
+    if "surfaces" in given and len(table.surfaces) != len(("contactor", "target")):
+        raise InputError(
+            f"{where}.surfaces: expected two entries, each a surface or body or a list of them, got {len(table.surfaces)}"
+            + ('; several on one side are a list: [["a", "b"], "c"]' if len(table.surfaces) > 1 else "")
+        )
+    if any(not side for side in table.surfaces):
+        raise InputError(f"{where}.surfaces: expected the names of surfaces or bodies, got an empty one")
+    for side in SIDES[1:]:
+        if given and "surfaces" not in given and side not in given:
+            raise InputError(f"{where}.{side}: missing; give it, or surfaces = [...] alone, and abut chooses")
+    if not given:
+        raise InputError(f"{where}.surfaces: missing; name both surfaces, or give auto = true")
+    if (table.bodies, table.reach) != (None, None) and not any(_found(side) for _, side in _places(table)):
         raise InputError(
             f"{where}: bodies and reach are for auto = true and surfaces named '{AUTO}...'; leave them out"
         )
@@ -142,7 +173,7 @@ def _found(side: Names) -> list[str]:
 
 def _bodies(mesh: Mesh, table: ContactTable) -> set[frozenset[str]]:
     """Pairs of bodies that an entry couples; none where it names unknown ones, which the model will refuse."""
-    sides = (table.contactor, table.target)
+    sides = [side for _, side in _places(table)]
     if not all(name in mesh.surfaces or name in mesh.bodies for side in sides for name in listed(side)):
         return set()
     bodies, other = (bodies_of(mesh, side) for side in sides)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from abut.model import (
     Amplitude,
     BodyForce,
     Centrifugal,
+    Contact,
     Force,
     Gravity,
     Integration,
@@ -81,7 +82,9 @@ def job_table(model: Model, mesh: str) -> Json:
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "probes"):
-        records = [_load(record) if name == "loads" else _plain(record) for record in getattr(model, name)]
+        kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}
+        of = kinds.get(name, _plain)
+        records = [of(record) for record in getattr(model, name)]
         if records:
             table[name] = records
     options = _plain(model.solve)
@@ -94,6 +97,22 @@ def _load(load: Load) -> Json:
     if isinstance(load, BodyForce):
         raise InputError("a job file holds no body force; use gravity")
     return {"kind": KINDS[type(load)], **_plain(load)}
+
+
+def _contact(contact: Contact) -> Json:
+    """As the user named its sides; those that were found keep what was chosen."""
+    table = _plain(contact)
+    names: Json = {"name": table.pop("name")}
+    for key in ("first", "second", "contactor", "target", "chosen"):
+        table.pop(key, None)
+    if contact.first:
+        return {**names, "surfaces": _value(contact.named, "surfaces"), **table}
+    return {
+        **names,
+        "contactor": _value(contact.contactor, "contactor"),
+        "target": _value(contact.target, "target"),
+        **table,
+    }
 
 
 def _plain(record: Any) -> Json:

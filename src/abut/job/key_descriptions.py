@@ -164,9 +164,12 @@ MEANINGS: dict[str, dict[str, str]] = {
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
     "ContactTable": {
-        "name": "a name of your choice; left out: CONTACTOR-TARGET",
-        "contactor": "surface or body that carries the pressure (slave), or a list; the softer, among equals the finer one",
-        "target": "surface or body opposite (master), or a list, of which the nearest counts everywhere",
+        "name": "a name of your choice; left out: both surfaces, A-B",
+        "surfaces": "the two sides, [A, B], each a surface or body, or a list of them: abut chooses which one is the "
+        "contactor, and says so; forces are those on A",
+        "contactor": "in place of surfaces, with target: the side that carries the pressure (slave), whatever abut would "
+        "choose",
+        "target": "the side opposite (master), or a list, of which the nearest counts everywhere",
         "kind": "contact, or tied in all directions",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "
         "P1 or P2",

@@ -87,7 +87,11 @@ def _trailing(piece: str) -> str:
 
 def _entry(job: Job, number: int, table: Json) -> str:
     contact = job.model.contacts[number]
-    keys = {"name": contact.name, "contactor": contact.contactor, "target": contact.target}
+    keys: Json = {"name": contact.name}
+    if contact.first:
+        keys["surfaces"] = list(contact.named)
+    else:
+        keys |= {"contactor": contact.contactor, "target": contact.target}
     left = ("auto",) if _found(contact) else ("auto", "bodies")
     keys |= {key: value for key, value in table.items() if key not in (*left, *keys)}
     return "[[contacts]]\n" + "".join(f"{key} = {_value(value)}\n" for key, value in keys.items())

@@ -286,6 +286,7 @@ class OverclosureTable(Table):
 # The model's own record says what is allowed and what is the default.
 class ContactTable(Table):
     name: str = Contact.name
+    surfaces: list[str | list[str]] = []
     contactor: str | list[str] = ""
     target: str | list[str] = ""
     auto: bool = False

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from abut import checks
 from abut.contact.laws import Law
-from abut.contact.sides import Names, label, normalised
+from abut.contact.sides import Names, code, label, normalised
 from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
 from abut.model.friction import ROUGH, Friction, checked
@@ -17,6 +17,8 @@ LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
 GEOMETRIES = ("curved", "faceted")
 RULES = ("gauss", "newton-cotes")
+SIDES = ("first", "second", "contactor", "target")
+STATED = {"decides": False}  # of fields that say how the sides were named, and do not decide the solution
 
 
 @dataclass(frozen=True)
@@ -39,9 +41,14 @@ class Integration:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact pair. The contactor carries the pressure. ``contactor`` and ``target`` are names of surfaces or bodies, or
-    lists of them, which have one pressure: every point of the contactor faces the nearest target along its normal; of a
-    body, the part of its boundary that can meet the other side.
+    """Two sides that touch. ``first`` and ``second`` are names of surfaces or bodies, or lists of them, which have one
+    pressure: every point of one side faces the nearest point of the other along its normal; of a body, the part of its
+    boundary that can meet the other side.
+
+    One of them, the contactor, carries the pressure; the other is its target. Which one is abut's choice
+    (``abut.contact.contactor_choice``), made as the model is built, and never changes what a key means: resultants
+    are those on ``first``. ``contactor`` and ``target``, in place of the two, force the choice; resultants are those on
+    the contactor then. A contact of a ``Model`` has both, and ``chosen`` says why abut took that side.
 
     ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
@@ -60,10 +67,11 @@ class Contact:
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
     >>> press_fit.name
     'shaft.side-hub.bore'
+    >>> forced = abut.Contact(contactor="shaft.side", target="hub.bore")
     """
 
-    contactor: Names
-    target: Names
+    first: Names = field(default="", metadata=STATED)
+    second: Names = field(default="", metadata=STATED)
     name: str = ""
     kind: str = "contact"
     pressure: str = "auto"
@@ -77,12 +85,14 @@ class Contact:
     friction: Friction = 0.0
     friction_amplitude: History = None
     geometry: str = "curved"
+    contactor: Names = field(default="", kw_only=True)
+    target: Names = field(default="", kw_only=True)
+    chosen: str = field(default="", kw_only=True, compare=False, metadata=STATED)
 
     def __post_init__(self) -> None:
-        for side in ("contactor", "target"):
-            object.__setattr__(self, side, normalised(getattr(self, side), f"contact '{self.name}': {side}"))
+        self._check_sides()
         if not self.name:
-            object.__setattr__(self, "name", f"{label(self.contactor)}-{label(self.target)}")
+            object.__setattr__(self, "name", "-".join(map(label, self.named)))
         where = f"contact '{self.name}'"
         checks.choice(self.kind, f"{where}: kind", KINDS)
         checks.choice(self.pressure, f"{where}: pressure", PRESSURES)
@@ -109,9 +119,40 @@ class Contact:
             raise InputError(f"{where}: amplitude: expected an Amplitude, got {type(self.amplitude).__name__}")
 
     @property
+    def named(self) -> tuple[Names, Names]:
+        """The two sides as the user named them; resultants are those on the first one."""
+        return (self.first, self.second) if self.first else (self.contactor, self.target)
+
+    @property
+    def turned(self) -> bool:
+        """Whether abut took the side that is named second for the contactor."""
+        return self.contactor != self.named[0]
+
+    def forced(self, contactor: Names, target: Names) -> Contact:
+        """The same with these sides, whatever abut would choose."""
+        return replace(self, first="", second="", chosen="", contactor=contactor, target=target)
+
+    def with_choice(self, number: int, reason: str) -> Contact:
+        """The same with the side ``number`` (0 or 1 of those named) for the contactor, and why."""
+        sides = self.named
+        return replace(self, contactor=sides[number], target=sides[1 - number], chosen=reason)
+
+    @property
     def frictional(self) -> bool:
         """Whether there is friction."""
         return self.friction != 0.0
+
+    def _check_sides(self) -> None:
+        given = [side for side in SIDES if getattr(self, side) != ""]
+        where = f"contact '{self.name}'" if self.name else "contact"
+        if given not in ([*SIDES[:2]], [*SIDES[2:]]) and not (self.chosen and len(given) == len(SIDES)):
+            got = ", ".join(f"{side} = {code(getattr(self, side))}" for side in given) or "none"
+            raise InputError(
+                f"{where}: name two surfaces, of which abut chooses the contactor, or both contactor and target, not some "
+                f"of each (got {got})"
+            )
+        for side in given:
+            object.__setattr__(self, side, normalised(getattr(self, side), f"{where}: {side}"))
 
     def _check_friction(self, where: str) -> None:
         object.__setattr__(self, "friction", checked(self.friction, f"{where}: friction"))

@@ -7,12 +7,24 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut import checks
 from abut.bodies.integration import check_integration
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
-from abut.contact.sides import Sides, bodies_of, check_names, check_own, check_twice, find_sides, moving_sides, words
+from abut.contact.contactor_choice import Side
+from abut.contact.sides import (
+    Names,
+    Sides,
+    bodies_of,
+    check_names,
+    check_own,
+    check_twice,
+    find_sides,
+    moving_sides,
+    words,
+)
 from abut.errors import InputError
 from abut.materials.material import Material
 from abut.mesh.mesh import Mesh
@@ -24,6 +36,7 @@ from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
+from abut.model.side_choice import SAME, decided, held_points, measured
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 from abut.model.step_ends import with_corners
@@ -151,20 +164,41 @@ class Model:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
         return self._sides[contact.name]
 
+    def measured(self, contact: Contact) -> tuple[Side, Side]:
+        """Contactor and target of one of the contacts as the choice between them sees them."""
+        return self._measured[contact.name]
+
+    @cached_property
+    def _measured(self) -> dict[str, tuple[Side, Side]]:
+        return {c.name: measured(self.mesh, self.materials, self._held, self.sides(c)) for c in self.contacts}
+
+    @cached_property
+    def _held(self) -> NDArray[np.bool_]:
+        return held_points(self.mesh, self.supports)
+
     @cached_property
     def _sides(self) -> dict[str, Sides]:
-        sliding = {c.name for c in self.contacts if self.finite and c.kind != "tied"}
         held = held_directions(self.mesh, self.supports)
         made = {}
         for c in self.contacts:
-            both = (
-                moving_sides(self.mesh, c.contactor, c.target)
-                if c.name in sliding
-                else find_sides(self.mesh, c.contactor, c.target, self._moved)
-            )
+            both = self._surfaces(c, c.contactor, c.target)
             curved = c.kind != "tied" and c.geometry == GEOMETRIES[0]
             made[c.name] = (with_bulge(both[0], held), with_bulge(both[1], held)) if curved else both
         return made
+
+    def _surfaces(self, contact: Contact, contactor: Names, target: Names) -> Sides:
+        if self.finite and contact.kind != "tied":
+            return moving_sides(self.mesh, contactor, target)
+        return find_sides(self.mesh, contactor, target, self._moved)
+
+    def _decided(self, contact: Contact) -> Contact:
+        """With contactor and target, where the user leaves them to abut."""
+        if not contact.first:
+            return contact
+        if contact.first == contact.second:
+            return contact.with_choice(0, SAME)
+        surfaces = self._surfaces(contact, contact.first, contact.second)
+        return decided(contact, measured(self.mesh, self.materials, self._held, surfaces), self.finite)
 
     @property
     def _moved(self) -> float:
@@ -226,13 +260,20 @@ class Model:
         mesh, rigid = self.mesh, {body.body for body in self.rigid}
         names: set[str] = set()
         for i, contact in enumerate(self.contacts):
-            check_names(mesh, contact.contactor, f"contacts[{i}].contactor")
-            check_names(mesh, contact.target, f"contacts[{i}].target")
+            places = ("surfaces[0]", "surfaces[1]") if contact.first else ("contactor", "target")
+            for side, place in zip(contact.named, places):
+                check_names(mesh, side, f"contacts[{i}].{place}")
             if contact.name in names:
                 raise InputError(f"contacts[{i}].name: '{contact.name}' is used twice; give each contact its own name")
             names.add(contact.name)
-            if rigid >= bodies_of(mesh, contact.contactor):
-                self._refuse_rigid(i, contact, rigid)
+            if all(rigid >= bodies_of(mesh, side) for side in contact.named):
+                raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
+            if contact.contactor and not contact.first and rigid >= bodies_of(mesh, contact.contactor):
+                raise InputError(
+                    f"contacts[{i}].contactor: {words(contact.contactor)} is rigid; the pressure needs the displacements of "
+                    "its own side to be unique: swap contactor and target"
+                )
+        object.__setattr__(self, "contacts", tuple(map(self._decided, self.contacts)))
         self._check_sides()
 
     def _check_sides(self) -> None:
@@ -241,11 +282,3 @@ class Model:
             if not self.finite or contact.kind == "tied":
                 check_own(surfaces, contact.contactor, contact.target, f"contacts[{i}]")
         check_twice([contact.name for contact in self.contacts], every)
-
-    def _refuse_rigid(self, i: int, contact: Contact, rigid: set[str]) -> None:
-        if rigid >= bodies_of(self.mesh, contact.target):
-            raise InputError(f"contacts[{i}]: both sides of '{contact.name}' are rigid; one of them must deform")
-        raise InputError(
-            f"contacts[{i}].contactor: {words(contact.contactor)} is rigid; the pressure needs the displacements of its own "
-            "side to be unique: swap contactor and target"
-        )

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.sides import listed
 from abut.solution import ContactResult, FrictionResult, Step
 from abut.types import Json
 
@@ -20,6 +21,9 @@ def contact_summary(contact: ContactResult) -> Json:
     pressure = contact.statistics
     return {
         "name": contact.name,
+        "named": [list(listed(side)) for side in contact.named],
+        "contactor": contact.contactor.name,
+        "target": contact.target.name,
         "force": contact.force.tolist(),
         "max_pressure": number(contact.max_pressure),
         "area": contact.area,

@@ -42,6 +42,8 @@ def _leaves(value: object, name: str) -> Iterator[tuple[str, str]]:
     elif dataclasses.is_dataclass(value):
         yield name, type(value).__name__
         for field in dataclasses.fields(value):
+            if not field.metadata.get("decides", True):
+                continue
             yield from _leaves(getattr(value, field.name), f"{name}.{field.name}")
     elif isinstance(value, Mapping):
         for key, item in value.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,10 @@ def find_place(model: Model, probe: Probe, around: Sequence[Boxes] = ()) -> Plac
     mesh = model.mesh
     points, distance, nodes = _points(mesh, probe)
     side = choose(model, probe, points)
+    if side is not None and _reads_across(model, probe, side, points):
+        side, nodes_on = replace(side, role=CONTACTOR), None
+    else:
+        nodes_on = nodes
     of = _quantities(model, probe, side)
     notes: list[str] = []
     weights = None
@@ -76,9 +80,18 @@ def find_place(model: Model, probe: Probe, around: Sequence[Boxes] = ()) -> Plac
             notes += said
     surface = None
     if side is not None and set(of) & set(ON_CONTACTS):
-        surface, said = _on_surface(model, probe, side, points, nodes)
+        surface, said = _on_surface(model, probe, side, points, nodes_on)
         notes += said
     return Place(probe, of, points, distance, nodes, weights, surface, tuple(notes))
+
+
+def _reads_across(model: Model, probe: Probe, side: Side, points: NDArray[np.float64]) -> bool:
+    """Whether a probe on the target is read where the contactor is nearest to it: which side has the gap was abut's choice,
+    and what a probe reads does not depend on that."""
+    contact = model.contacts[side.contact]
+    if side.role == CONTACTOR or not contact.first or not (probe.of is None or "gap" in probe.of):
+        return False
+    return not bool(feet(model.sides(contact)[0], points).beside.all())
 
 
 def _points(

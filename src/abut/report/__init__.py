@@ -5,18 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 from abut.io.atomic import write_file
+from abut.report.chart import Beside, Chart
 from abut.report.origin import Origin, read_origin
 from abut.report.page import page
 from abut.solution import Solution
 
-__all__ = ["Origin", "read_origin", "write_report"]
+__all__ = ["Beside", "Chart", "Origin", "read_origin", "write_report"]
 
 
-def write_report(solution: Solution, path: str | Path, origin: Origin | None = None) -> Path:
+def write_report(
+    solution: Solution, path: str | Path, origin: Origin | None = None, beside: Beside | None = None
+) -> Path:
     """Write the report of a solution to the HTML file ``path`` and return it.
 
-    origin: the name and text of the job, and reference values. Raises InputError where the file cannot be written, and
-    AbutError in a source tree whose libraries of the report are not built (``make build``).
+    origin: the name and text of the job, and reference values; beside: another solution that it is compared with. Raises
+    InputError where the file cannot be written, and AbutError in a source tree whose libraries of the report are not built
+    (``make build``).
 
     >>> from tempfile import TemporaryDirectory
     >>> import abut
@@ -33,7 +37,7 @@ def write_report(solution: Solution, path: str | Path, origin: Origin | None = N
     'bar.html'
     """
     path = Path(path)
-    data = page(solution, origin or Origin(path.stem)).encode("utf-8")
+    data = page(solution, origin or Origin(path.stem), beside).encode("utf-8")
 
     def write(temporary: Path) -> None:
         temporary.write_bytes(data)

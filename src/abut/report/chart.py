@@ -9,6 +9,17 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
+class Beside:
+    """A section that compares a solution with another one: title, what it says, head and rows of a table, charts."""
+
+    title: str
+    text: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    charts: tuple[Chart, ...]
+
+
+@dataclass(frozen=True)
 class Chart:
     """title, label of the axis, x (n,), series by name (n,), NaN where a line is broken."""
 

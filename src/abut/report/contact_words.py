@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.sides import words
 from abut.solution import ContactResult, FrictionResult
 
 ZERO = 1e-9  # of its scale: smaller numbers are rounding, and shown as 0
@@ -34,18 +35,18 @@ def centre(contact: ContactResult) -> str:
 
 
 def force(contact: ContactResult) -> str:
-    """The resultant on the contactor; 0 where forces cancel, as round a press fit."""
+    """The resultant on the side named first; 0 where forces cancel, as round a press fit."""
     return vector(contact.force, float(np.linalg.norm(contact.contactor_forces, axis=1).sum()))
 
 
 def moment(contact: ContactResult) -> str:
-    """The moment on the contactor about the origin."""
+    """The moment on the side named first about the origin."""
     sizes = np.linalg.norm(contact.contactor_forces, axis=1)
     return vector(contact.resultant.moment, float(sizes.sum()) * _extent(contact))
 
 
 def on_bodies(contact: ContactResult) -> str:
-    """The forces on the bodies of the target, where it belongs to several; else nothing."""
+    """The forces on the bodies of the side named second, where it belongs to several; else nothing."""
     if len(contact.body_forces) < 2:
         return ""
     scale = float(np.linalg.norm(contact.contactor_forces, axis=1).sum())
@@ -66,7 +67,7 @@ def lines(contact: ContactResult) -> list[str]:
     if np.isfinite(contact.resultant.centre).all():
         result.append(f"centre of pressure {centre(contact)}, moment about the origin {moment(contact)}")
     if some := on_bodies(contact):
-        result.append(f"force on the bodies of the target: {some}")
+        result.append(f"force on the bodies of {words(contact.named[1])}: {some}")
     return result
 
 

@@ -17,7 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
-from abut.report.chart import Chart
+from abut.report.chart import Beside, Chart
 from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
@@ -33,8 +33,8 @@ SCRIPTS = ("plots.js", "parts.js", "arrows.js", "view.js", "report.js")
 STYLES = ("libraries.css", "report.css")
 
 
-def page(solution: Solution, origin: Origin) -> str:
-    """The whole report as text of an HTML file."""
+def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> str:
+    """The whole report as text of an HTML file. beside: another solution of the same problem, compared with this one."""
     picture = scene(solution)
     data = {
         "scene": picture.data,
@@ -43,6 +43,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "lines": _lines(solution, origin),
         "probes": _charts(charts(solution)),
         "paths": _charts(paths(solution)),
+        "beside": _charts(beside.charts if beside else ()),
     }
     parts = {
         "title": escape(origin.title),
@@ -53,6 +54,7 @@ def page(solution: Solution, origin: Origin) -> str:
         "comparison": _comparison(solution, origin),
         "trouble": _trouble(solution),
         "probes": _probes(solution),
+        "beside": "" if beside is None else _beside(beside),
         "contacts": _contacts(solution) + _rigid(solution),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
@@ -187,7 +189,7 @@ def _contacts(solution: Solution) -> str:
         ]
         for c in solution.contacts
     ]
-    head = ["contact", "force on the contactor", "largest pressure", "area", "penetration", "active", "covered"]
+    head = ["contact", "force on the side named first", "largest pressure", "area", "penetration", "active", "covered"]
     text = _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
     rubbing = friction_rows(solution)
     return text + (_table(HEAD, rubbing, "Friction") if rubbing else "")
@@ -203,11 +205,11 @@ def _statistics(solution: Solution) -> str:
         "largest where less than half covered": [number(c.statistics.partly_covered) for c in solution.contacts],
         "centre of pressure": [centre(c) for c in solution.contacts],
         "moment about the origin": [moment(c) for c in solution.contacts],
-        "force on bodies of the target": [on_bodies(c) for c in solution.contacts],
+        "force on bodies of the side named second": [on_bodies(c) for c in solution.contacts],
     }
     shown = {head: cells for head, cells in columns.items() if not set(cells) <= {"none", ""}}
     return _table(
-        list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the contactor"
+        list(shown), zip(*shown.values()), "Pressure over the loaded area, and its resultant on the side named first"
     )
 
 
@@ -218,6 +220,13 @@ def _rigid(solution: Solution) -> str:
     ]
     head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
     return _table(head, rows) if rows else ""
+
+
+def _beside(beside: Beside) -> str:
+    return (
+        f"<section><h2>{escape(beside.title)}</h2><p>{escape(beside.text)}</p>{_table(beside.head, beside.rows)}"
+        '<div class="plots" id="beside"></div></section>'
+    )
 
 
 def _probes(solution: Solution) -> str:

@@ -9,6 +9,7 @@ from math import inf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.sides import Names
 from abut.mesh.surface import Surface
 
 
@@ -81,8 +82,8 @@ class PressureStatistics:
 
 @dataclass(frozen=True)
 class Resultant:
-    """Resultant of the nodal forces of a contact on its contactor, in undeformed coordinates; with finite kinematics in
-    deformed ones.
+    """Resultant of the nodal forces of a contact on the side named first, in undeformed coordinates; with finite kinematics
+    in deformed ones.
 
     force: (dim,), in 2D per unit thickness, axisymmetric (radial sum, axial force) of the full circumference; moment: (1,)
     or (3,) about the origin of coordinates, zero in axisymmetric models; centre: (dim,) of pressure, the point of the
@@ -107,9 +108,10 @@ class FrictionResult:
     sticking_area, slipping_area: as ``ContactResult.area``.
     work, total_work: that friction takes, force times length, in this step and in all; work_per_area, total_work_per_area:
     (n_contactor_facets, 9) the same at the nodes.
-    force: (dim,) resultant of the traction on the contactor; force_by_area: of its size wherever it points, the integral
-    of the size of the traction over the area; force_limit: what that can be at most, the integral of the coefficient times
-    the pressure, infinite for "rough"; all of the full circumference in axisymmetric models, per unit thickness in 2D.
+    force: (dim,) resultant of the traction on the side named first; force_by_area: of its size wherever it points, the
+    integral of the size of the traction over the area; force_limit: what that can be at most, the integral of the
+    coefficient times the pressure, infinite for "rough"; all of the full circumference in axisymmetric models, per unit
+    thickness in 2D.
     largest_share: the largest traction over the coefficient times the pressure at one point, 1 where anything slips; NaN
     where nothing is pressed, and for "rough".
     """
@@ -156,7 +158,8 @@ def _largest(values: NDArray[np.float64], at: NDArray[np.bool_]) -> float:
 class ContactResult:
     """One contact pair at the end of a step.
 
-    force: (dim,) resultant on the contactor, force (2D: per unit thickness); the target gets its opposite.
+    named: the two sides as the user named them; force: (dim,) resultant on the first of these (the contactor, where roles
+    are given), force (2D: per unit thickness); the other one gets its opposite.
     pressure, gap: (n_contactor_facets, 9) at the facets' own nodes, NaN where padded; force per area and length. The
     pressure is recovered from the multiplier's averages over the corners' functions, theory (P10): on facets of first order
     these, on those of second order values at all nodes, theory (P18).
@@ -165,13 +168,14 @@ class ContactResult:
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
     target_pressure: (n_target_facets, 9), the pressure transferred, 0 where the target is not in contact.
     covered_share: covered area over the contactor's area; checks: the certificate of this step.
-    statistics: of the pressure over the loaded area; resultant: force, moment and centre of the contactor's nodal forces.
+    statistics: of the pressure over the loaded area; resultant: force and moment on the side named first, and their centre.
     contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;
-    body_forces: body of the target -> (dim,) its part of their resultant; friction: where there is any.
+    body_forces: body of the side named second -> (dim,) its part of their resultant; friction: where there is any.
     For tied pairs ``pressure`` is the normal part of the tie traction (compression positive), the forces are all of it.
     """
 
     name: str
+    named: tuple[Names, Names]
     contactor: Surface
     target: Surface
     force: NDArray[np.float64]

@@ -74,6 +74,7 @@ def _test(model: Model, contact: Contact) -> InterfacePatch:
             f"verify: contact '{contact.name}' is {contact.method}, whose pressure is not unique; take another method"
         )
     contact = replace(contact, kind="contact", law="complementarity", offset=0.0, friction=0.0, friction_amplitude=None)
+    contact = contact.forced(contact.contactor, contact.target)  # the sides that the run has
     sides = model.sides(contact)
     normal = _plane_normal(model.mesh.axisymmetric, sides)
     bodies = Model(

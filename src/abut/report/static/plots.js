@@ -94,6 +94,10 @@ function drawPlots(data) {
     }));
     plot(document.getElementById("probes"), chart.title, chart.label, chart.x, series);
   }
+  if (data.beside.length) at("beside");
+  for (const chart of data.beside) {
+    plot(document.getElementById("beside"), chart.title, chart.label, chart.x, chart.series.map((s, i) => ({ ...s, colour: colours[i], dash: i ? [6, 5] : undefined, spans: true, points: false })));
+  }
   const paths = at("paths");
   paths.closest("section").hidden = !data.paths.length;
   for (const path of data.paths) {
