@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.pressure_error import ALTERNATING, AVERAGED, CHANGE, STRAIGHT, STRESS_FIRST, pressure_error
+from abut.analysis.pressure_error import ALTERNATING, AVERAGED, CHANGE, STRESS, pressure_error
 from abut.analysis.surface_stress import normal_stress
 from abut.diagnosis.cures import cure
 from abut.mesh.make import box, rectangle
@@ -67,12 +67,15 @@ HERTZ = {
 @pytest.mark.parametrize("name", HERTZ)
 def test_it_is_near_the_true_error(name: str) -> None:
     """Of contacts with two to five facets from the edge to the middle, a third of it to three times it: on so few the true
-    error of linear cells is that of where the edge of contact falls between nodes, which the middle does not tell."""
+    error of linear cells is that of where the edge of contact falls between nodes, which the middle does not tell. Of those
+    of second order that are better than 2 % by then, below what is too much."""
     model, truth = HERTZ[name]
     solution = abut.solve(model())
-    error = truth(solution)
-    assert error > 0.04  # none of them is fine
-    assert 0.3 < checked(solution).value / error < 3.0
+    error, estimate = truth(solution), checked(solution).value
+    second = not any(cell in name for cell in ("quad4", "tri3", "hex8", "wedge6", "tet4"))
+    assert error > (0.003 if second else 0.04)
+    assert estimate > 0.3 * error
+    assert estimate < (3.0 * error if error > 0.02 else 0.08)
 
 
 def test_it_falls_with_the_facets() -> None:
@@ -132,9 +135,9 @@ def test_it_counts_where_the_pressure_is_largest() -> None:
 
 def test_the_cure_names_a_size() -> None:
     """Half of the facets in contact."""
-    solution = abut.solve(line("quad4", (6, 6)))
+    solution = abut.solve(line("tri3", (8, 8)))
     assert cure(checked(solution), solution).startswith(
-        "refine both surfaces where they touch: facets of half the size (0.67)"
+        "refine both surfaces where they touch: facets of half the size (0.5)"
     )
 
 
@@ -180,12 +183,10 @@ def test_both_differences_count() -> None:
     assert pressure_error(own, even, share, 2.0, None) == pytest.approx(0.0, abs=1e-12)
     alternating = ALTERNATING * np.sqrt(0.1 * 0.05)  # second differences of 0.2 at the node and -0.1 beside it, over 2
     change = CHANGE * 0.5 * (0.1 + 0.05)
-    assert pressure_error(own, off, share, 2.0, None) == pytest.approx((AVERAGED + STRAIGHT) * 0.1 + alternating)
-    assert pressure_error(own, off, share, 2.0, None, straight=False) == pytest.approx(
-        AVERAGED * 0.1 + max(alternating, change)
-    )
-    assert pressure_error(own, even, share, 2.0, off) == pytest.approx(STRESS_FIRST * 0.1)
+    assert pressure_error(own, off, share, 2.0, None) == pytest.approx(AVERAGED * 0.1 + max(alternating, change))
+    assert pressure_error(own, even, share, 2.0, None, average=off) == pytest.approx(0.1)  # what was taken off
+    assert pressure_error(own, even, share, 2.0, off) == pytest.approx(STRESS * 0.1)
     assert pressure_error(own, even, share, 2.0, 1e-9 * off) == pytest.approx(0.0, abs=1e-12)  # a rigid body has none
     partly = share.copy()
     partly[middle] = 0.5
-    assert pressure_error(own, even, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)
+    assert pressure_error(own, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)

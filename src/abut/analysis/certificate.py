@@ -12,7 +12,7 @@ from abut.analysis.edge_load import edge_load
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.peaks import Peaks, peaks_of
-from abut.analysis.pressure_error import pressure_error, straight_between
+from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution
 from abut.contact.contactor_choice import Side
 from abut.contact.geometry import full_moments, split_at_creases
@@ -198,8 +198,7 @@ def _pressure(case: _Case, residual: float) -> Iterator[Check]:
     yield case.check("resolution", facets if counts else 0.0, RESOLUTION,
         "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
     yield _of_largest(case, seen, counts)
-    straight = straight_between(smooth, case.nodal)
-    estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, straight, average)
+    estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, average)
     off = estimate * largest / matters
     unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
     edges = edge_load(pair, case.values, case.nodal) if counts else 0.0

@@ -6,19 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, WHOLE, Graph
-from abut.cells import CELLS
-from abut.contact.geometry import by_kind, side_normals
-from abut.mesh.surface import Surface
+from abut.contact.geometry import side_normals
 from abut.problem.contact_pairs import Pair
 
-AVERAGED, STRAIGHT = (
-    1.0 / 6.0,
-    1.0 / 4.0,
-)  # of half the second difference: averages, and lines between them, theory (P17)
-CHANGE = 0.4  # of the change of that from node to node, where nothing is reported between nodes, theory (P17)
+AVERAGED = 1.0 / 6.0  # of half the second difference: averages, theory (P17)
+CHANGE = 0.4  # of the change of that from node to node, theory (P17)
 ALTERNATING = 0.75  # of what changes its sign from node to node, theory (P17)
-STRESS, STRESS_FIRST = 0.6, 0.4  # of the difference from the stress, of cells of second and first order, theory (P17)
-EVEN_MIDDLE = 1e-6  # of the largest pressure: how far values at mid-nodes of lines are off the mean of their ends
+STRESS = 0.4  # of the difference from the stress, theory (P17)
 ON_AXIS = 1e-9  # radius over the contactor's largest
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 TRIFLE = 1e-6  # stress over pressure from which down a body does not deform
@@ -28,32 +22,32 @@ Array = NDArray[np.float64]
 
 def pressure_error(
     pair: Pair, pressure: Array, share: Array, largest: float, stress: Array | None, carried: float = np.inf,
-    straight: bool = True, average: Array | None = None,
+    average: Array | None = None,
 ) -> float:  # fmt: skip
     """Estimate of the largest error of the pressure at nodes inside contact over ``largest``, NaN where there are none.
 
     pressure, average, share: (n_points,) at the corners, of the contactor split at its creases: as reported, what that was
     recovered from (by default it itself), and the covered share of their supports; stress: (n_points,) as from
     ``normal_stress``; carried: pressure that those at edges of bodies, which may have no limit, are taken for at most;
-    straight: whether values between corners lie on lines; theory (P17)."""
+    theory (P17)."""
     surface, normals = side_normals(pair.contactor)
     graph = Graph.of_nodes(surface)
-    closed = (graph.degree > 0) & ((pressure if average is None else average) > CLOSED * largest)
+    average = pressure if average is None else average
+    closed = (graph.degree > 0) & (average > CLOSED * largest)
     partly = (share > 0.0) & (np.abs(share - 1.0) > WHOLE)
     inside = closed & graph.all_of(closed) & ~partly
     axis, mirrored = _mirrored(pair, graph)
     edge = (graph.rim & ~axis & ~mirrored) | partly
+    taken_off = np.abs(pressure - average)
     pressure = np.where(edge, np.minimum(pressure, carried), pressure)
     within = inside & (~graph.rim | axis | mirrored)
     planes = _planes(pair, len(graph.rim))
     bent = np.where(within, _between(graph, surface.points, normals, pressure, *planes) - pressure, 0.0)
-    uneven = ALTERNATING * _alternating(graph, bent)
-    if not straight:
-        uneven = np.maximum(uneven, CHANGE * _change(graph, bent, within))
-    parts = [((AVERAGED + (STRAIGHT if straight else 0.0)) * np.abs(bent) + uneven)[within]]
+    alternating = ALTERNATING * _alternating(graph, bent)
+    averaged = AVERAGED * np.abs(bent) + np.maximum(alternating, CHANGE * _change(graph, bent, within))
+    parts = [np.where(taken_off > 0.0, taken_off + alternating, averaged)[within]]
     if stress is not None and np.nanmax(np.abs(stress[within]), initial=0.0) > TRIFLE * largest:
-        first = all(CELLS[kind].degree == 1 for kind, _ in by_kind(surface))
-        parts.append((STRESS_FIRST if first else STRESS) * np.abs(stress - pressure)[within & ~np.isnan(stress)])
+        parts.append(STRESS * np.abs(stress - pressure)[within & ~np.isnan(stress)])
     off = np.concatenate(parts)
     return float(off.max()) / largest if len(off) else float("nan")
 
@@ -72,23 +66,6 @@ def _alternating(graph: Graph, bent: Array) -> Array:
     result = np.zeros(len(bent))
     np.maximum.at(result, edges.row, product)
     return np.asarray(np.sqrt(result))
-
-
-def straight_between(surface: Surface, nodal: Array) -> bool:
-    """Whether there are mid-nodes and reported values (n_facets, 9) there lie on the lines between corners."""
-    some = False
-    largest = np.nanmax(np.abs(nodal), initial=0.0)
-    for kind, facets in by_kind(surface):
-        cell = CELLS[kind]
-        if cell.degree < 2:
-            continue
-        n, some = cell.corners, True
-        ends = [(0, 1)] if cell.dim == 1 else [(i, (i + 1) % n) for i in range(n)]
-        for k, (i, j) in enumerate(ends):
-            middle = nodal[facets, n + k] - 0.5 * (nodal[facets, i] + nodal[facets, j])
-            if np.abs(middle).max(initial=0.0) > EVEN_MIDDLE * largest:
-                return False
-    return some
 
 
 def _mirrored(pair: Pair, graph: Graph) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
