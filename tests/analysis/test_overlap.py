@@ -141,8 +141,7 @@ def test_contact_narrower_than_a_facet() -> None:
     assert check(sound).passed
     assert false.contacts[0].max_pressure < 0.2 * fine
     assert not check(false).passed
-    assert "swap the sides" in remedies(false)[0].action
-    assert "refine" in remedies(false)[1].action
+    assert "refine" in remedies(false)[0].action
 
 
 def test_penetration_without_any_pressure_fails() -> None:

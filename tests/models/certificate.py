@@ -132,7 +132,7 @@ def ball(cell: str = "quad8", cells: int = 10, **options: object) -> abut.Model:
 
 
 def balls(cell: str, cells: tuple[int, int], young: tuple[float, float]) -> abut.Model:
-    """Axisymmetric, a ball of radius 8 (contactor) on another, of other stiffness."""
+    """Axisymmetric, a ball of radius 8 on another, of other stiffness."""
     mesh = join(
         {
             "upper": quarter_disc(8.0, (0.0, 8.0), fine=1.5, cells=cells[0], cell=cell),
@@ -144,7 +144,7 @@ def balls(cell: str, cells: tuple[int, int], young: tuple[float, float]) -> abut
         [abut.Solid(body, steel(e)) for body, e in zip(("upper", "lower"), young)],
         [abut.Support("lower.flat", x=0, y=0)],
         [abut.Force("upper.flat", (0.0, -BALL_FORCE))],
-        [abut.Contact(contactor="upper.round", target="lower.round")],
+        [abut.Contact("upper.round", "lower.round")],
         plane="axisymmetric",
     )
 

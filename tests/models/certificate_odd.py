@@ -222,7 +222,7 @@ def punch(cell: str, cells: tuple[int, int], stiff: float = 1e4) -> abut.Model:
         [abut.Solid(body, abut.LinearElastic(e, NU)) for body, e in zip(mesh.bodies, (1000.0 * stiff, 1000.0))],
         [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
         [abut.Pressure("punch.top", 1.0)],
-        [abut.Contact("punch.bottom", "block.top")],
+        [abut.Contact(contactor="punch.bottom", target="block.top")],
         plane="strain",
     )
 

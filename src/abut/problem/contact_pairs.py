@@ -44,6 +44,7 @@ SQUARE = (
 SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
+STILL = 1e-9  # of the largest displacement prescribed: a plane that is moved or bent does not mirror
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 
 
@@ -291,13 +292,15 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
 
 
 def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes:
-    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim but not its normal, and the
-    target ends there too."""
+    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim, where it is, but not its
+    normal, and the target ends there too."""
     mirrored = ~beyond
     out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
     for end in border.ends.T:
         mirrored &= constraints.held_share(end, out) > SQUARE
         mirrored &= constraints.held_share(end, border.normal) < HELD
+        moved = constraints.prescribed.reshape(*contactor.points.shape, -1)[end]
+        mirrored &= np.abs(np.einsum("md,mdh->mh", out, moved)).max(axis=1, initial=0.0) <= STILL * constraints.largest
     return planes(contactor, border, mirrored)
 
 
