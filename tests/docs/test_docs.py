@@ -153,7 +153,7 @@ def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.Capture
         path = tmp_path / f"{name}.toml"
         path.write_text(text)
         assert main(["run", str(path)]) == 0
-        (force,) = (line for line in capsys.readouterr().out.splitlines() if "force on the contactor" in line)
+        (force,) = (line for line in capsys.readouterr().out.splitlines() if ": force on '" in line)
         assert force.partition(", largest penetration")[0] in tour
         assert main(["infsup", str(path), "--levels", "2"]) == (name == "p0")
         for line in capsys.readouterr().out.splitlines():
