@@ -1,4 +1,4 @@
-"""The smooth surface over flat facets: how far it bulges out over each chord, theory (S14) to (S16)."""
+"""The smooth surface over flat facets: how far it bulges out over each chord, theory (S13), (S14), (S15), (S16)."""
 
 from __future__ import annotations
 
