@@ -167,9 +167,7 @@ def without_normal(surface: Surface) -> NDArray[np.bool_]:
     return np.bincount(facet[flat], minlength=len(surface)) > 0
 
 
-def _flat(
-    vectors: NDArray[np.float64], facet: NDArray[np.int64], length: NDArray[np.float64]
-) -> NDArray[np.bool_]:
+def _flat(vectors: NDArray[np.float64], facet: NDArray[np.int64], length: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.asarray(length <= FLAT * np.linalg.norm(vectors, axis=2).max(axis=1)[facet])
 
 
