@@ -53,7 +53,8 @@ def solids(mesh: abut.Mesh, young: tuple[float, ...]) -> list[abut.Solid]:
 
 
 def sides(one: str, other: str, swap: bool, **options: object) -> list[abut.Contact]:
-    return [abut.Contact(*((other, one) if swap else (one, other)), **options)]
+    contactor, target = (other, one) if swap else (one, other)
+    return [abut.Contact(contactor=contactor, target=target, **options)]
 
 
 def everywhere(x: Array) -> NDArray[np.bool_]:

@@ -77,7 +77,7 @@ def model(cell: str, facets: float, contactor: str = "ball", **contact: object) 
             abut.Support("block.far", z=0.0),
             abut.Support("ball.far", z=-2.0 * DOWN),
         ],
-        contacts=[abut.Contact(*sides, **contact)],
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], **contact)],
     )
 
 

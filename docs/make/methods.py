@@ -93,9 +93,10 @@ def hertz_solution(cell: str, contactor: str, name: str, level: int) -> Solution
     """An example's model with its method and law replaced, cells halved ``level`` times."""
     model = load_job(EXAMPLES / "hertz-line" / f"{cell}.toml", refine=level).model
     method, law = LAWS[name]
-    contact = replace(model.contacts[0], method=method, law=law)
+    sides = ("block.top", "cylinder.round")
     if contactor == "cylinder":
-        contact = replace(contact, contactor=contact.target, target=contact.contactor)
+        sides = sides[::-1]
+    contact = replace(model.contacts[0], method=method, law=law).forced(*sides)
     return abut.solve(replace(model, contacts=[contact], probes=()))
 
 

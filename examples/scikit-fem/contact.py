@@ -25,6 +25,7 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 
 import abut
 from abut.cells import CELLS, MAX_FACET_NODES
+from abut.contact.bulge import with_bulge
 from abut.contact.coupling import couple
 from abut.contact.laws import Complementarity, LawState
 from abut.contact.pressure_space import pressure_space, resolve
@@ -80,7 +81,8 @@ def solve() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Displacements (n_points, 3) of punch and block together, the force on the punch, and which multipliers are in contact:
     without a model of abut's."""
     punch, block = meshes()
-    contactor, target = surface(punch, "bottom"), surface(block, "top")
+    # abut's gaps are those of the smooth surfaces that flat facets stand for
+    contactor, target = (with_bulge(side) for side in (surface(punch, "bottom"), surface(block, "top")))
     name, degree = resolve("auto", contactor)
     coupling = couple(contactor, target, degree)
     space = pressure_space(name, contactor, coupling)
@@ -140,7 +142,7 @@ def solve_with_abut() -> tuple[np.ndarray, np.ndarray]:
         mesh,
         solids=[abut.Solid(name, material) for name in bodies],
         supports=[abut.Support("block.bottom", x=0, y=0, z=0), abut.Support("punch.top", x=0, y=0, z=-PRESSED)],
-        contacts=[abut.Contact("punch.bottom", "block.top")],
+        contacts=[abut.Contact(contactor="punch.bottom", target="block.top")],
     )
     solution = abut.solve(model)
     return solution.displacement, solution.contacts[0].force

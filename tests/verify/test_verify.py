@@ -75,8 +75,8 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
         (["patch-punsh"], "no benchmark named 'patch-punsh'; did you mean 'patch-punch'?"),
         (["nonsense"], "no benchmark named 'nonsense'; abut verify --list names them"),
         (["patch-punch", "--levels", "0"], "--levels: expected a whole number >= 1, got 0"),
-        (["--job", BLOCKS, "patch-punch"], "--job goes without benchmark names and --levels"),
-        (["--job", BLOCKS, "--levels", "2"], "--job goes without benchmark names and --levels"),
+        (["--job", BLOCKS, "patch-punch"], "a job goes without benchmark names and --levels"),
+        (["--job", BLOCKS, "--levels", "2"], "a job goes without benchmark names and --levels"),
         (["--job", "nowhere.toml"], "cannot read job file nowhere.toml"),
     ],
 )

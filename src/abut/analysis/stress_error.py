@@ -1,4 +1,4 @@
-"""How far the stresses of the elements are off, by the recovered ones: theory (Z6) to (Z8)."""
+"""How far the stresses of the elements are off, by the recovered ones: theory (Z6), (Z7), (Z8)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stresses at the nodes by superconvergent patch recovery (Zienkiewicz and Zhu 1992); theory (Z1) to (Z5)."""
+"""Stresses at the nodes by superconvergent patch recovery (Zienkiewicz and Zhu 1992); theory (Z1), (Z2), (Z5)."""
 
 from __future__ import annotations
 

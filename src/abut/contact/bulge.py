@@ -1,4 +1,4 @@
-"""The smooth surface over flat facets: how far it bulges out over each chord, theory (S14) to (S16)."""
+"""The smooth surface over flat facets: how far it bulges out over each chord, theory (S13), (S14), (S15), (S16)."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _sagitta(edge: Array, normal: Array, other: Array) -> Array:
     """Height (n,) of arcs over their chords ``edge`` (n, dim) between unit normals at both ends: theory (S15). The harmonic
     mean of both slopes is that of an arc where they agree, and none where the surface bends at one end only, as the flat
     beside a fillet does."""
-    length = np.linalg.norm(edge, axis=1)
+    length = np.maximum(np.linalg.norm(edge, axis=1), 1e-300)  # collapsed hexahedra have edges without length
     one, two = -(normal * edge).sum(axis=1) / length, (other * edge).sum(axis=1) / length
     both = one * two > 0.0
     slope = np.where(both, 2.0 * one * two / np.where(both, one + two, 1.0), 0.0)

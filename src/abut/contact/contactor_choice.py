@@ -1,7 +1,8 @@
 """Which of two surfaces should be the contactor: the one rule, by which abut chooses, and `abut check` and the advice judge
 what the user has named.
 
-1. A rigid side never, nor one whose points supports hold: the pressure needs the displacements of its own side.
+1. A rigid side never, nor one whose points supports hold: the pressure needs the displacements of its own side. Nor one
+   with a facet that has no normal somewhere: pressure is integrated along the contactor's normals.
 2. The softer side, which takes the shape of the other one: a stiff contactor that is finer than its target touches the
    target's corners one by one (``abut.benchmarks.contrast``).
 3. But not a side that is mostly bare while the other is covered: its pressure would stand on facets of which a small part
@@ -32,6 +33,7 @@ NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they fa
 
 REASONS = {
     "rigid": "the other side is rigid, or held",
+    "normals": "a facet of the other side has no normal at one of its points",
     "softer": "softer",
     "covered": "the facets of the other side reach far beyond this one",
     "coarser": "coarser",
@@ -44,11 +46,12 @@ class Side:
     """What the choice looks at, of those facets of a surface that face the other one.
 
     modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets where contact begins, a length; covered:
-    share of the area of all of them that lies opposite the other side."""
+    share of the area of all of them that lies opposite the other side; normals: whether each facet has one everywhere."""
 
     modulus: float
     size: float
     covered: float
+    normals: bool = True
 
 
 @dataclass(frozen=True)
@@ -74,10 +77,12 @@ class Choice:
         return self.reason
 
 
-def side(size: NDArray[np.float64], area: NDArray[np.float64], opposite: float, modulus: float) -> Side:
+def side(
+    size: NDArray[np.float64], area: NDArray[np.float64], opposite: float, modulus: float, normals: bool = True
+) -> Side:
     """Measure a side. size: (n,) of its facets where contact begins; area: (m,) of all that face the other side, as if plane
     where the surface is axisymmetric; opposite: how much of that area lies opposite the other side."""
-    return Side(modulus, float(np.median(size)), min(opposite / float(area.sum()), 1.0))
+    return Side(modulus, float(np.median(size)), min(opposite / float(area.sum()), 1.0), normals)
 
 
 def where_contact_begins(gap: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -92,6 +97,8 @@ def choose(one: Side, other: Side) -> Choice:
     stiff = sides[1 - soft].modulus
     if np.isinf(stiff) and np.isfinite(sides[soft].modulus):
         return Choice(soft, "rigid", True)
+    if one.normals != other.normals:
+        return Choice(int(other.normals), "normals", True)
     if stiff > ALIKE * sides[soft].modulus and not _bare(sides[soft], sides[1 - soft]):
         return Choice(soft, "softer", True)
     for number in (0, 1):

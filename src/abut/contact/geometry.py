@@ -150,13 +150,25 @@ def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float6
 def check_normals(surface: Surface, vectors: NDArray[np.float64], length: NDArray[np.float64]) -> None:
     """vectors: (n_facets, 9, dim) area vectors; length: (n_visits, 1) of what is to become a unit vector."""
     facet, local = _visits(surface)
-    flat = np.flatnonzero(length[:, 0] <= FLAT * np.linalg.norm(vectors, axis=2).max(axis=1)[facet])
+    flat = np.flatnonzero(_flat(vectors, facet, length[:, 0]))
     if len(flat):
         raise InputError(
             f"surface '{surface.name}': facet {facet[flat[0]]} has no normal at its point "
             f"{surface.points[surface.nodes[facet[flat[0]], local[flat[0]]]].tolist()}: points of it coincide or lie on "
             "a line; give the cell distinct points (a prism instead of a collapsed hexahedron)"
         )
+
+
+def without_normal(surface: Surface) -> NDArray[np.bool_]:
+    """Which facets have no normal at one of their nodes, (n_facets,): such a surface can be a target, not a contactor."""
+    vectors = area_vectors(surface)
+    facet, local = _visits(surface)
+    flat = _flat(vectors, facet, np.linalg.norm(vectors[facet, local], axis=1))
+    return np.bincount(facet[flat], minlength=len(surface)) > 0
+
+
+def _flat(vectors: NDArray[np.float64], facet: NDArray[np.int64], length: NDArray[np.float64]) -> NDArray[np.bool_]:
+    return np.asarray(length <= FLAT * np.linalg.norm(vectors, axis=2).max(axis=1)[facet])
 
 
 def mean_normals(surface: Surface) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""The reported pressure: values at the facets' nodes from averages over corner functions, theory (P18)-(P22)."""
+"""The reported pressure: values at the facets' nodes from averages over corner functions, as in theory (P18) and after."""
 
 from __future__ import annotations
 
@@ -127,9 +127,10 @@ class Recovery:
 
 
 def recovered(at: Averages, average: Array, plain: Array, places: Places, tied: bool = False) -> Recovery:
-    """The pressure of averages (n_points,) at the points of ``at.surface``, theory (P18)-(P20); ``plain`` (n_points,) where
-    it is not known any better: on facets of first order, of whose cells the nodal averages are values at the nodes
-    already, at points that facets without target belong to, and at ends of the contactor. tied: a tie, which may pull."""
+    """The pressure of averages (n_points,) at the points of ``at.surface``, theory (P18), (P19), (P20); ``plain``
+    (n_points,) where it is not known any better: on facets of first order, of whose cells the nodal averages are values at
+    the nodes already, at points that facets without target belong to, and at ends of the contactor. tied: a tie, which may
+    pull."""
     closed = at.weight > 0.0 if tied else average > CLOSED * average.max(initial=0.0)
     stars, of = _stars(at, closed, places), supports(at.surface)
     for _ in range(ROUNDS):
@@ -219,7 +220,7 @@ def _range(stars: _Stars, average: Array) -> tuple[Array, Array]:
 def _smooth(
     surface: Surface, average: Array, before: PointValues, stars: _Stars, fits: StarFits, of: Supports, across: Array
 ) -> PointValues:
-    """Theory (P18) at inner points; at outer ones with the polynomials of inner neighbours, (P19)."""
+    """By theory (P18), (P19): at inner points, and at outer ones with the polynomials of inner neighbours."""
     value, slope, points = before.value.copy(), np.zeros_like(surface.points), fits.points
     found = fits.to_averages(average)
     value[points], slope[points] = found.value, found.gradient
@@ -236,7 +237,7 @@ def _smooth(
 def _at_edge(
     at: Averages, average: Array, before: PointValues, stars: _Stars, fits: StarFits, across: Array
 ) -> PointValues:
-    """Theory (P20): at the edge of contact and next to it."""
+    """By theory (P20): at the edge of contact and next to it."""
     surface, points, own = at.surface, fits.points, np.flatnonzero(stars.near)
     edge, other = stars.models(stars.edge, across)
     here, model = np.concatenate([own, edge]), np.concatenate([own, other])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.contactor_choice import NEAR, Side, choose, side, where_contact_begins
 from abut.contact.coupling import CouplingOptions, couple, default_reach
-from abut.contact.geometry import facet_sizes, full_moments, straight
+from abut.contact.geometry import facet_sizes, full_moments, straight, without_normal
 from abut.contact.sides import Sides, words
 from abut.errors import InputError
 from abut.materials.material import Material
@@ -62,8 +62,8 @@ def measured(
         first = [np.unique(of[begins]) for of in (at.facet, at.target_facet)]
     moduli = [_modulus(mesh, materials, held, surface, facets) for surface, facets in zip(surfaces, facing)]
     one, other = (
-        side(size[f], full_moments(surface, 0)[around, 0], opposite, modulus)
-        for surface, size, f, around, modulus in zip(flat, sizes, first, facing, moduli)
+        side(size[f], full_moments(flat_side, 0)[around, 0], opposite, modulus, not without_normal(surface).any())
+        for surface, flat_side, size, f, around, modulus in zip(surfaces, flat, sizes, first, facing, moduli)
     )
     return one, other
 
