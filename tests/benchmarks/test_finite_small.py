@@ -16,7 +16,11 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 COARSE = {
     "two-blocks/job": [("[6, 6, 6]", "[3, 3, 2]"), ("[5, 5, 4]", "[2, 2, 2]")],
     "pushed-block/job": [
-        ("[32, 8]", "[12, 3]"), ("[22, 10]", "[8, 4]"), ("0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0", "0.5, 1.0"),
+        ("[32, 8]", "[12, 3]"), ("[22, 10]", "[8, 4]"),
+        # The plate, the coarser side now, has nodes under the block's edges: slides of 1e-8 would cover slivers of its next
+        # facets, whose pressure functions the undeformed mesh does not have.
+        ('surfaces = ["block.bottom", "plate.top"]', 'contactor = "block.bottom"\ntarget = "plate.top"'),
+        ("0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0", "0.5, 1.0"),
     ],
     "hertz-line/quad4": [],
     "hertz-line/quad8": [("cells = 12", "cells = 4"), ("[24, 12]", "[8, 4]")],

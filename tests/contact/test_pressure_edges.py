@@ -134,7 +134,8 @@ def test_isolated_loaded_nodes_fail() -> None:
     loaded = p > 0.1 * p.max()
     assert loaded.sum() >= 3
     assert not (loaded[1:] & loaded[:-1]).any()
-    assert [check.value for check in solution.certificate if check.name == "oscillation"] == [pytest.approx(1.0)]
+    (alternates,) = (check.value for check in solution.certificate if check.name == "oscillation")
+    assert alternates > 1.0 - 1e-9  # all of it; more, as it is compared with what more than such peaks carry
 
 
 @pytest.mark.parametrize("space", ["auto", "dual"])

@@ -61,4 +61,5 @@ def test_an_arm_swings_over_a_pad() -> None:
     assert len(early) > 1
     assert all(pair.active == 0 for step in early for pair in step.contacts)
     failed = {check.name for check in swung.certificate if not check.passed}
-    assert failed == {"resolution", "overlap", "faceting"}  # the pad touches within four coarse facets: true alarms
+    # The pad touches within four coarse facets, and one layer of cells bends: true alarms. The pad's bulge counts.
+    assert failed == {"resolution", "overlap", "stress error"}

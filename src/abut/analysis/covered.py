@@ -12,7 +12,7 @@ from abut.analysis.friction import touches_itself
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import full_moments
 from abut.contact.pressure_space import PressureSpace, only
-from abut.contact.rim import rim
+from abut.contact.rim import rim_of_sides
 from abut.contact.symmetry_planes import Planes
 from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.contact_pairs import Pair, planes_of
@@ -65,7 +65,7 @@ def covered(
 
 def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
-    border = rim(pair.contactor)
+    border = rim_of_sides(pair.contactor)
     return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 

@@ -3,13 +3,13 @@ singular."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.contact.geometry import by_kind, nodal_normals
+from abut.contact.geometry import by_kind, nodal_normals, split_at_creases
 from abut.contact.node_to_segment import feet
 from abut.mesh.surface import Surface
 
@@ -38,6 +38,13 @@ def rim(surface: Surface) -> Rim:
     out = out - along * ((out * along).sum(axis=1) / size)[:, None]
     normal = nodal_normals(surface)[facet].sum(axis=1)
     return Rim(facet, ends, out, normal / np.linalg.norm(normal, axis=1, keepdims=True))
+
+
+def rim_of_sides(surface: Surface) -> Rim:
+    """The rims of a surface's smooth sides: where it ends, and along its creases. Raises InputError as ``rim`` does."""
+    smooth, owner = split_at_creases(surface)
+    border = rim(smooth)
+    return border if smooth is surface else replace(border, ends=owner[border.ends])
 
 
 def goes_on(contactor: Surface, rim: Rim, target: Surface, reach: float) -> NDArray[np.bool_]:

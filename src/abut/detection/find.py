@@ -105,7 +105,7 @@ def find_contacts(
         a, b = (every.names[i] for i in patch.bodies)
         surface = f"{AUTO}{a}-{b}{number}", f"{AUTO}{b}-{a}{number}"
         grown = [_widened(every, facets) for facets in patch.facets]
-        grown[1 - first] = np.union1d(grown[1 - first], seen_by(every, grown[first], grown[1 - first]))
+        grown[1 - first] = seen_by(every, grown[first], grown[1 - first])
         result.append(
             FoundContact(
                 contactor=surface[first], target=surface[1 - first], bodies=(a, b) if first == 0 else (b, a),

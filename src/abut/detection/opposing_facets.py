@@ -27,9 +27,11 @@ SEEN_TWICE = 1.2  # covered area over a facet's area from which on what lies beh
 @dataclass(frozen=True)
 class Outside:
     """All exterior facets of some bodies. rows: (n, 2) of the mesh; body: (n,) number among ``names``; solid: (n,) number of
-    the bodies that share points; normal: (n, dim) mean unit normals; size, area: (n,)."""
+    the bodies that share points; normal: (n, dim) mean unit normals; size, area: (n,); surface: with straight edges;
+    curved: as a run sees it."""
 
     surface: Surface
+    curved: Surface
     rows: NDArray[np.int64]
     names: tuple[str, ...]
     body: NDArray[np.int64]
@@ -61,8 +63,8 @@ def outside(mesh: Mesh, names: Sequence[str]) -> Outside:
         number[mesh.bodies[name]] = i
     rows = exterior(mesh)
     rows = rows[number[rows[:, 0]] >= 0]
-    plain = straight(replace(mesh, axisymmetric=False).facets(rows, "exterior"))
-    surface = replace(with_bulge(replace(plain, parts=number[rows[:, 0]])), parts=None)
+    curved = replace(replace(mesh, axisymmetric=False).facets(rows, "exterior"), parts=number[rows[:, 0]])
+    surface, curved = (replace(with_bulge(side), parts=None) for side in (straight(curved), curved))
     normal = mean_normals(surface)
     area = full_moments(surface, 0)[:, 0]
     member = np.zeros((len(names), len(mesh.points)), dtype=np.int32)
@@ -71,7 +73,7 @@ def outside(mesh: Mesh, names: Sequence[str]) -> Outside:
     sparse = sp.csr_matrix(member)
     solid = connected_components(sparse @ sparse.T, directed=False)[1].astype(np.int64)
     body = number[rows[:, 0]]
-    return Outside(surface, rows, tuple(names), body, solid[body], normal, facet_sizes(surface), area)
+    return Outside(surface, curved, rows, tuple(names), body, solid[body], normal, facet_sizes(surface), area)
 
 
 def facing(all_of: Outside, reach: float | None) -> Facing:
@@ -93,16 +95,19 @@ def facing(all_of: Outside, reach: float | None) -> Facing:
 
 
 def seen_by(all_of: Outside, contactor: NDArray[np.int64], target: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Facets of the target's body that a contactor, and so its pressure, sees within the reach of the two, and does not lie
-    deep inside of."""
+    """The target with the facets of its body that a contactor, and so its pressure, sees within the reach of the two, and
+    does not lie deep inside of. Larger facets among these reach further: until there are no more."""
     body = np.flatnonzero(all_of.body == all_of.body[target[0]])
-    part, other = all_of.surface.part(contactor), all_of.surface.part(body)
-    far = default_reach(part, all_of.surface.part(target))
-    at = couple(part, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
-    if at is None:
-        return target[:0]
-    near = NEAR * (all_of.size[contactor[at.facet]] + all_of.size[body[at.target_facet]])
-    return np.unique(body[at.target_facet[-at.gap <= near]])
+    part, other = all_of.curved.part(contactor), all_of.curved.part(body)
+    far, before = default_reach(part, all_of.curved.part(target)), 0.0
+    while far > before:
+        at = couple(part, other, 0, CouplingOptions(points=1, reach=far, keep_points=True)).points
+        if at is None:
+            break
+        near = NEAR * (all_of.size[contactor[at.facet]] + all_of.size[body[at.target_facet]])
+        target = np.union1d(target, body[at.target_facet[-at.gap <= near]])
+        far, before = default_reach(part, all_of.curved.part(target)), far
+    return target
 
 
 def _joined(parts: Sequence[Facing]) -> Facing:

@@ -159,6 +159,15 @@ def lifted(system: Linearised, before: State) -> str:
     return f"the loads carry it off what it touches: {motion}; hold it by a support, or move it to where it rests"
 
 
+def overcome(system: Linearised) -> str:
+    """Which body the loads of ``system`` move although contact pushes and rubs, where the mesh has it, all that it can; empty
+    where none."""
+    motion = system.restraint.at(system.factors).unbalanced(system.forces)
+    if not motion:
+        return ""
+    return f"the loads at time {system.time:.4g} are more than contact bears where the mesh has it: {motion}"
+
+
 def thrown_apart(system: Linearised, before: State, now: State) -> str:
     """Why the state ``now`` does not follow from the converged state ``before``; empty where it may.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.hanging import hanging
-from abut.nonlinear.holding import lifted
+from abut.nonlinear.holding import lifted, overcome
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
@@ -75,13 +75,16 @@ def _attempts(setting: Setting, before: State, guess: State | None, time: float,
 
 def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequence[Attempt]:
     """The parts of a step under a drag, where all others have ``failed``; that with the reasons if there are none."""
-    time = failed.time
+    time, goal = failed.time, pace.goal
     led = led_on(setting, before, pace)
     if led.converged:
         return led.attempts
     where = hanging(setting.problem, before, failed.cycling)
     away = lifted(setting.problem.ahead(before, time), before)
-    return [replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, led.attempts[-1].reason))))]
+    more = "" if away or goal is None else overcome(setting.problem.ahead(before, goal))
+    return [
+        replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, more, led.attempts[-1].reason))))
+    ]
 
 
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:

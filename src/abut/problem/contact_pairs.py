@@ -18,7 +18,7 @@ from abut.contact.pressure_space import (
     reduce,
     with_plain_facets,
 )
-from abut.contact.rim import Rim, ends_on_target, goes_on, rim
+from abut.contact.rim import Rim, ends_on_target, goes_on, rim, rim_of_sides
 from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
@@ -242,7 +242,7 @@ def pair(
         free = (rows @ constraints.free).tocsr()
     constant, varying = offsets(model, contact)
     border = rim(contactor)
-    beyond = goes_on(contactor, border, target, reach)
+    beyond, sides_end = goes_on(contactor, border, target, reach), rim_of_sides(contactor)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
@@ -251,7 +251,7 @@ def pair(
         components=(space,), compliance=both.compliance,
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=planes_of(contactor, border, beyond, constraints),
+        planes=planes_of(contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
@@ -292,14 +292,15 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
 
 
 def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes:
-    """Where the contactor ends at planes of symmetry: supports hold what is square to its rim, where it is, but not its
-    normal, and the target ends there too."""
+    """Where a contactor's smooth sides end at planes of symmetry: supports hold what is square to their rim, where it is,
+    but not their normal, and the target ends there too. A body's whole outside goes on there, round an edge. border: of the
+    sides; beyond: (m,) where the target goes on."""
     mirrored = ~beyond
     out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
     for end in border.ends.T:
         mirrored &= constraints.held_share(end, out) > SQUARE
         mirrored &= constraints.held_share(end, border.normal) < HELD
-        moved = constraints.prescribed.reshape(*contactor.points.shape, -1)[end]
+        moved = constraints.prescribed.reshape(-1, contactor.dim, constraints.prescribed.shape[1])[end]
         mirrored &= np.abs(np.einsum("md,mdh->mh", out, moved)).max(axis=1, initial=0.0) <= STILL * constraints.largest
     return planes(contactor, border, mirrored)
 
