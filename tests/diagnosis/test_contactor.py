@@ -43,6 +43,14 @@ def advice(one: abut.Model, contact: abut.Contact) -> str:
     return "".join(f.line for f in sides(one, contact) if f.severity == "advice" and "swap" in f.cure)
 
 
+def test_a_side_without_normals_is_the_target() -> None:
+    """Pressure is integrated along the contactor's normals; but the other side must have displacements."""
+    collapsed, sound = Side(1.0, 1.0, 1.0, normals=False), Side(10.0, 0.1, 1.0)
+    assert choose(collapsed, sound).contactor == 1
+    assert choose(sound, collapsed).contactor == 0
+    assert choose(collapsed, replace(sound, modulus=np.inf)).contactor == 0
+
+
 SAME = (210e3, 210e3)
 CASES = {  # model, contactor, what speaks against the other way round ("": no clear rule)
     "alike": (model(plates((8, 8)), SAME), "a", ""),
