@@ -82,7 +82,9 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     where = hanging(setting.problem, before, failed.cycling)
     away = lifted(setting.problem.ahead(before, time), before)
     more = "" if away or goal is None else overcome(setting.problem.ahead(before, goal))
-    return [replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, more, led.attempts[-1].reason))))]
+    return [
+        replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, more, led.attempts[-1].reason))))
+    ]
 
 
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
