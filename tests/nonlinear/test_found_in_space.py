@@ -18,7 +18,8 @@ def found(mesh: Mesh, *held: abut.Support, rotations: tuple[abut.Rotation, ...] 
     """Every body of a mesh may meet every other and itself."""
     solids = [abut.Solid(body, SOFT) for body in mesh.bodies]
     contacts = [pair.contact() for pair in every_pair(mesh, solids)]
-    # The whole outside of a body with sharp edges is no good contactor yet: the arm's stops here, whichever is coarser.
+    # Between whole outsides with sharp edges, coarse facets that reach beyond an edge of the other side do not converge yet,
+    # which the arm's, the coarser ones, do.
     contacts = [each.forced("pad", "arm") if each.named == ("arm", "pad") else each for each in contacts]
     assert len(contacts) == 3
     return abut.Model(mesh, solids, held, contacts=contacts, rotations=rotations, kinematics="finite")

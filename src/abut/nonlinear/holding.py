@@ -160,7 +160,7 @@ def lifted(system: Linearised, before: State) -> str:
 
 
 def overcome(system: Linearised) -> str:
-    """Which body the loads of ``system`` move although contact pushes and rubs, where the mesh has it, all that it can; empty
+    """Which body the loads of ``system`` move although contact pushes and rubs all that it can, where the mesh has it; empty
     where none."""
     motion = system.restraint.at(system.factors).unbalanced(system.forces)
     if not motion:
