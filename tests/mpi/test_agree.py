@@ -14,7 +14,7 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 PROGRAM = str(Path(__file__).with_name("agree.py"))
 # Equilibrium of iterations is met to 1e-11 of the forces; pressures follow from it with the condition of the interface,
 # some tens to hundreds. Factorisations are met to rounding.
-AGREE = 2e-8  # of the largest value: iterations end at 1e-8 of the forces, on any number of processes
+AGREE = 2e-8
 PATCHES = ["hex8", "tet10-hex20", "wedge6-tet4", "hex27-wedge15", "plane", "tied", "smooth", "node-to-segment"]
 
 
