@@ -126,3 +126,53 @@ def bearing(cell: str, around: tuple[int, int], contactor: str = "shaft", **give
         supports=[abut.Support("bore.outer", x=0, y=0), abut.Support("shaft.inner", x=0, y=-0.06)],
         contacts=[abut.Contact(contactor=sides[0], target=sides[1], **options)],  # type: ignore[arg-type]
     )  # fmt: skip
+
+
+def turned(cell: str, around: tuple[int, int], angle: float = 0.35, steps: int = 12) -> abut.Model:
+    """The bearing with its bore pushed instead, in the first fifth of the time; then the shaft turns by ``angle``."""
+    pushed = abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0)))
+    turns = abut.Amplitude(((0.0, 0.0), (0.2, 0.0), (1.0, 1.0)))
+    return replace(
+        bearing(cell, around, kinematics="finite"),
+        supports=[abut.Support("bore.outer", x=0, y=0.06, amplitude=pushed)],
+        rotations=[abut.Rotation("shaft.inner", angle, (0.0, 0.0), amplitude=turns)],
+        solve=abut.SolveOptions(times=tuple(np.linspace(0.2, 1.0, steps + 1))),
+    )
+
+
+def tapered_hub(cell: str, facets: tuple[int, int], contactor: str = "shaft", interference: float = 0.01) -> abut.Model:
+    """A hollow shaft (R .5 inside) in a hub (R 2.2 outside), both of height 1, that meet on a cone of radius 1 to 1.15; ends
+    held along the axis. facets: over a quarter, of shaft and hub; cell: of 3D, or of the plane for the meridian section,
+    with ``facets`` along it."""
+    flat = cell in ("quad4", "quad8")
+    parts = {}
+    for part, n in zip(("shaft", "hub"), facets, strict=True):
+        if flat:
+            square = make.rectangle([0, 1], [0, 1], cells=[n, n], cell=cell)
+            along, height = square.points.T
+            parts[part] = replace(square, points=np.column_stack([_radius(part, along, height), height]))
+            continue
+        deep = max(2, round({"shaft": 0.55, "hub": 1.1}[part] * n / (0.5 * np.pi)))
+        box = make.box([0, 1], [0, 90], [0, 1], cells=[deep, n, max(2, round(n / (0.5 * np.pi)))], cell=cell)
+        r, turn, height = (
+            _radius(part, box.points[:, 0], box.points[:, 2]),
+            np.deg2rad(box.points[:, 1]),
+            box.points[:, 2],
+        )
+        parts[part] = replace(box, points=np.column_stack([r * np.cos(turn), r * np.sin(turn), height]))
+    sides = ("shaft.right", "hub.left") if contactor == "shaft" else ("hub.left", "shaft.right")
+    held = [abut.Support(f"{part}.{end}", **{"y" if flat else "z": 0.0}) for part in parts for end in ("bottom", "top")]
+    if not flat:
+        held += [abut.Support(f"{part}.{side}", normal=0.0) for part in parts for side in ("front", "back")]
+    return abut.Model(
+        make.join(parts), plane="axisymmetric" if flat else None,
+        solids=[abut.Solid(part, abut.LinearElastic(1000.0, 0.3)) for part in parts], supports=held,
+        contacts=[abut.Contact(contactor=sides[0], target=sides[1], offset=-interference)],
+    )  # fmt: skip
+
+
+def _radius(part: str, through: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """Of points a share ``through`` of the wall at a ``height`` of the tapered hub."""
+    cone = 1.0 + 0.15 * height
+    inner, outer = (0.5, cone) if part == "shaft" else (cone, 2.2)
+    return np.asarray(inner + through * (outer - inner))

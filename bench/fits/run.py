@@ -1,7 +1,8 @@
 """Pressures of round fits whose facets do not match, against closed forms: ``python bench/fits/run.py [--faceted]``.
 
 Mean, largest and least error of the reported pressure at the contactor's nodes, with the lines of the certificate that warn
-or fail. --faceted: the same with ``geometry = "faceted"`` beside it.
+or fail. --faceted: the same with ``geometry = "faceted"`` beside it. Then a tapered hub against its meridian section, finely
+meshed, and a bearing, pushed and turned.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 from exact import Layer
 
 import abut
-from models import bearing, fit
+from models import bearing, fit, tapered_hub, turned
 
 TWO = [Layer(1, 2, 1000.0), Layer(2, 3, 1000.0)]
 SOFT = [Layer(1, 2, 1000.0), Layer(2, 2.5, 20.0), Layer(2.5, 3.5, 1000.0)]
@@ -67,12 +68,51 @@ def main() -> None:
             for geometry in ("faceted", "curved") if options.faceted else ("curved",):
                 model, exact = fit(*arguments, **given, geometry=geometry)  # type: ignore[arg-type]
                 print(f"{title:42} {geometry:8} {error(model, exact)}", flush=True)
+    if options.only in "tapered hub":
+        tapered_hubs()
+    if options.only in "bearing":
+        bearings()
+
+
+def tapered_hubs() -> None:
+    """Over the inner nine tenths of the height: at its ends the pressure rises too steeply for these meshes."""
+    height, fine = reported(abut.solve(tapered_hub("quad8", (48, 48))), axis=1)
+    order = np.argsort(height)
+    for cell in ("hex8", "tet4", "wedge6"):
+        for facets, side in (((8, 12), "shaft"), ((8, 12), "hub"), ((12, 8), "hub"), ((16, 24), "shaft")):
+            z, p = reported(abut.solve(tapered_hub(cell, facets, side)), axis=2)
+            errors = 100.0 * (p / np.interp(z, height[order], fine[order]) - 1.0)[np.abs(z - 0.5) < 0.45]
+            numbers = f"mean {errors.mean():+.1f}  largest {errors.max():+.1f}  least {errors.min():+.1f}"
+            print(f"tapered hub {cell} {facets} {side:6} {numbers}", flush=True)
+
+
+def reported(solution: abut.Solution, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places along an axis and pressures at the contactor's nodes."""
+    contact = solution.contacts[0]
+    used = (contact.contactor.nodes >= 0) & contact.covered[:, None]
+    return contact.contactor.points[contact.contactor.nodes[used], axis], contact.pressure[used]
+
+
+def bearings() -> None:
     for kinematics in ("small", "finite"):
         for around in ((24, 36), (36, 24), (48, 72), (36, 36), (144, 216)):
-            if options.only in "bearing":
-                solution = abut.solve(bearing("quad4", around, kinematics=kinematics))
-                force, most = np.linalg.norm(solution.contacts[0].force), solution.contacts[0].max_pressure
-                print(f"bearing {kinematics:6} {around!s:12} force {force:8.1f} N  largest pressure {most:7.1f} MPa")
+            solution = abut.solve(bearing("quad4", around, kinematics=kinematics))
+            force, most = np.linalg.norm(solution.contacts[0].force), solution.contacts[0].max_pressure
+            print(f"bearing {kinematics:6} {around!s:12} force {force:8.1f} N  largest pressure {most:7.1f} MPa")
+    for cell, around in (
+        ("quad4", (24, 36)),
+        ("quad4", (36, 24)),
+        ("quad4", (48, 72)),
+        ("tri3", (24, 36)),
+        ("tri3", (36, 24)),
+    ):
+        steps = abut.solve(turned(cell, around)).steps
+        forces = [float(np.linalg.norm(step.contacts[0].force)) for step in steps]
+        change = 100.0 * (max(forces) / min(forces) - 1.0)
+        print(
+            f"bearing turned {cell} {around!s:9} force {min(forces):.1f} to {max(forces):.1f} N, {change:.2f} %",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":
