@@ -163,3 +163,11 @@ def test_a_model_decides_anew_what_it_was_left() -> None:
 def test_mixtures_are_refused(sides: dict[str, str]) -> None:
     with pytest.raises(InputError, match="name two surfaces, of which abut chooses the contactor, or both"):
         abut.Contact(**sides)  # type: ignore[arg-type]
+
+
+def test_a_built_contact_keeps_its_sides() -> None:
+    """Other sides by ``dataclasses.replace`` would be overruled by the choice among those named: refused."""
+    (contact,) = stacked(BOTH).contacts
+    with pytest.raises(InputError, match=r'not "upper.left" and "lower.top"; .* forced\(contactor, target\)'):
+        replace(contact, contactor="upper.left")
+    assert replace(contact, name="other").contactor == contact.contactor

@@ -205,7 +205,12 @@ def compare(name: str, team: Team) -> dict[str, Any]:
         for c, d in zip(p.contacts, q.contacts, strict=True):
             worst["pressure"] = max(worst["pressure"], far(c.pressure, d.pressure))
             assert [check.passed for check in c.checks] == [check.passed for check in d.checks]
-            assert (c.segments, c.active) == (d.segments, d.active)
+            told = f"{name} at {p.factor}: {c.segments, c.active} and {d.segments, d.active} segments and closed nodes"
+            # Where nodes of both surfaces lie on each other rounding decides whether there is a sliver between them.
+            assert abs(c.segments - d.segments) <= 0.02 * c.segments + 2, told
+            # At the edge of contact a node whose pressure is rounding counts as open or closed.
+            doubtful = np.count_nonzero(np.abs(c.pressure) < 1e-6 * np.nanmax(np.abs(c.pressure)))
+            assert abs(c.active - d.active) <= min(doubtful, 2), told
             if c.friction is not None:
                 assert np.array_equal(c.friction.status, d.friction.status)
                 worst["traction"] = max(worst.get("traction", 0.0), far(c.friction.traction, d.friction.traction))

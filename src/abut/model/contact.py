@@ -153,6 +153,11 @@ class Contact:
             )
         for side in given:
             object.__setattr__(self, side, normalised(getattr(self, side), f"{where}: {side}"))
+        if self.first and self.contactor and {*self.named} != {self.contactor, self.target}:
+            raise InputError(
+                f"{where}: its sides are {code(self.first)} and {code(self.second)}, not {code(self.contactor)} and "
+                f"{code(self.target)}; to give a contact other sides, or roles, use its method forced(contactor, target)"
+            )
 
     def _check_friction(self, where: str) -> None:
         object.__setattr__(self, "friction", checked(self.friction, f"{where}: friction"))
