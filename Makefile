@@ -13,11 +13,12 @@ SOURCES := $(wildcard cpp/* web/*) $(shell find src \( -name '*.py' -o -path '*/
 demo: .venv/installed-demo
 	$(BIN)/abut run examples/pin-lug/job.toml
 
+# One thread for each of the two workers: with more they wait for each other, for two thirds more processor time.
 test: .venv/installed-test
-	ABUT_CPP_TESTS=required $(BIN)/python -m pytest -n 2 --durations=10
+	OMP_NUM_THREADS=1 ABUT_CPP_TESTS=required $(BIN)/python -m pytest -n 2 --durations=10
 
 exhaustive: .venv/installed-test
-	$(BIN)/python -m pytest -n 2 -m exhaustive --durations=5
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "exhaustive or long" --durations=5
 
 # Many processes: petsc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
 MPI_PYTHON ?= /usr/bin/python3

@@ -36,6 +36,7 @@ def failed(solution: Solution) -> set[str]:
     return {check.name for check in solution.certificate if not check.passed}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", ["accordion", "crushed-ring", pytest.param("o-ring", marks=LONG), pytest.param("snap-joint", marks=LONG)]
 )

@@ -97,6 +97,7 @@ def test_what_the_steps_leave_open_falls_with_their_square() -> None:
     assert abs(fine) < 1e-3 * total(energies(bent(8)), "stored")
 
 
+@pytest.mark.long
 def test_friction_takes_what_tractions_do() -> None:
     """What is left open beside friction goes to zero with the steps; that of one falls with its square or so, the first
     in which everything slips only in proportion."""

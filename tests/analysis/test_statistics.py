@@ -222,6 +222,7 @@ def over_a_hole(cell: str = "quad4") -> abut.Solution:
     )
 
 
+@pytest.mark.long
 def test_a_node_over_nothing_sets_no_scale(tmp_path: Path) -> None:
     """Beside the target's edge a node has 2 % of its support covered, where the pressure of an edge is: it is larger than
     elsewhere, and named apart; headline, place and colours are those of the other nodes."""

@@ -15,6 +15,7 @@ from abut.benchmarks.finite_capstan import MIDDLE, RADIUS, Capstan, belt
 CELLS = 24  # too few for the pressure, enough for the ratio of the forces to follow the coefficient
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

@@ -12,6 +12,7 @@ from abut.benchmarks import BENCHMARKS, run
 from abut.benchmarks.finite_contact import ironing
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

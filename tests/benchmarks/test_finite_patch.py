@@ -90,6 +90,7 @@ PAIRS = [*itertools.product(PLANE, PLANE), *itertools.product(CELL_OF, CELL_OF)]
 SOME = {("tri3", "quad4"), ("quad4", "tri3"), ("quad8", "quad4"), ("quad9", "quad9"), ("tri6", "quad8")}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("contactor", "target"),
     [p if p[0] in PLANE or p in SOME else pytest.param(*p, marks=pytest.mark.exhaustive) for p in PAIRS],

@@ -96,6 +96,7 @@ CASES = [
 ]  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "pressure", "contact"), CASES)
 def test_same_pressures(name: str, pressure: str, contact: dict[str, Any], tmp_path: Path) -> None:
     model = example(name, tmp_path)
@@ -103,6 +104,7 @@ def test_same_pressures(name: str, pressure: str, contact: dict[str, Any], tmp_p
     assert differences(small, large, reported=name in REPORTED) < SAME
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("pressure", "friction", "angle"), [("P1", 0.0, 70.0), ("dual", 0.3, -40.0)])
 def test_rigid_motions_change_nothing(pressure: str, friction: float, angle: float, tmp_path: Path) -> None:
     """Both blocks, held at a side each, pressed by a load that follows, and turned about a skew axis far away at once."""

@@ -140,6 +140,7 @@ def suite() -> dict[str, bool]:
     return verdicts
 
 
+@pytest.mark.long
 def test_the_unbroken_coupling_passes() -> None:
     assert all(suite().values())
 
@@ -157,6 +158,7 @@ def test_taking_apart_and_putting_together_changes_nothing(monkeypatch: pytest.M
     assert all(suite().values())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda m: m.__name__)
 def test_a_broken_coupling_is_found(mutation: Core, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(coupling, "couple_surfaces", mutation)

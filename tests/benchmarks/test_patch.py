@@ -50,6 +50,7 @@ def test_tetrahedra(facet: str) -> None:
     assert max(errors(model(two_blocks(facet, facet, ((2, 3, 2), (3, 2, 2)))))) < EXACT
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ratio", [1e4, 1e-4])
 @pytest.mark.parametrize("cells", [((1, 1, 1), (10, 10, 2)), ((10, 10, 2), (1, 1, 1))], ids=["coarse", "fine"])
 @pytest.mark.parametrize("kind", ["wedge6", "hex8", "hex20", "hex27", "tet10"])

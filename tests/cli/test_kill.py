@@ -69,6 +69,7 @@ def assert_whole(path: Path) -> None:
         assert all(json.loads(line) for line in text.splitlines())
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_files_are_whole_after_kill(tmp_path: Path) -> None:
     path = job(tmp_path, steps=12)

@@ -36,6 +36,7 @@ def test_silent(option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert (json.loads(out)["status"] == "converged") if option == "--json" else (out == "")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo terminal")
 def test_live_line_on_a_terminal(tmp_path: Path) -> None:
     import pty

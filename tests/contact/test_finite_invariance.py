@@ -84,6 +84,7 @@ def test_sides_swapped(pressure: str) -> None:
     assert np.abs(here - there).max() < 0.1 * np.abs(here).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("dim", "pressure", "friction", "offset", "cell"),
     [

@@ -127,6 +127,7 @@ def _blocks(transfer: object, nodes: NDArray[np.int32]) -> NDArray[np.float64]:
     return np.take_along_axis(dense, nodes[:, None, :2].astype(np.int64), axis=2)
 
 
+@pytest.mark.long
 def test_ordinary_functions_inside_closed_contact() -> None:
     """dual-P1 is P1 where all is closed, in the first step too, and dual where a part opens; frictionless states have no
     past: there and back again is the same."""

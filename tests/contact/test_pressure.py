@@ -55,6 +55,7 @@ def test_hertz_line_at_all_nodes(cell: str, n: int, limit: float, contactor: str
     assert found[1] <= (limit if contactor == "block" else max(limit, 0.0045))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", BODIES)
 @pytest.mark.parametrize(("cell", "mean", "most"), [("hex20", 0.013, 0.045), ("tet10", 0.02, 0.065)])
 def test_quarter_ball_at_all_nodes(cell: str, mean: float, most: float, contactor: str) -> None:
@@ -65,6 +66,7 @@ def test_quarter_ball_at_all_nodes(cell: str, mean: float, most: float, contacto
     assert found[1] <= most
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("first", "last", "limit"), [(5, 12, 0.019), (13, 17, 0.015), (18, 24, 0.005)])
 def test_hertz_line_wherever_the_edge_lies(first: int, last: int, limit: float) -> None:
     """quad8, every mesh of a range: the edge is at another place of its facet in each, which counts as much as the mesh."""
@@ -72,6 +74,7 @@ def test_hertz_line_wherever_the_edge_lies(first: int, last: int, limit: float) 
         assert errors(abut.solve(line("quad8", n)), LINE, LINE_PEAK)[0] <= limit
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", SIDES)
 @pytest.mark.parametrize(
     ("cell", "sizes"),
@@ -96,6 +99,7 @@ def test_hertz_line_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: st
     assert means[-1] < 0.4 / sizes[-1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", BODIES)
 @pytest.mark.parametrize(
     ("cell", "m", "inside", "rms"),
@@ -116,6 +120,7 @@ def test_quarter_ball_on_a_block(cell: str, m: int, inside: float, rms: float, c
     assert all(check.passed for check in default.certificate)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", BODIES)
 @pytest.mark.parametrize(
     ("cell", "sizes"),
@@ -151,6 +156,7 @@ def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
     assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.3 * limit
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cells", [12, 16, 20, 28])
 def test_at_the_pole_of_tetrahedra(cells: int) -> None:
     """tet4 octant on a rigid plane, growing fast outside the contact, which costs 3 to 4 %: nodes on the planes of symmetry

@@ -93,6 +93,7 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
         assert integral == pytest.approx(force, rel=close)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n", [6, 12, 24])
 def test_no_bias_at_a_rim(n: int) -> None:
     """Contact that is closed at the contactor's rim and opens elsewhere: the average there would lag behind by a third of

@@ -83,6 +83,7 @@ def test_a_side_that_cannot_move_is_never_the_contactor() -> None:
         assert abut.solve(model).converged
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 @pytest.mark.parametrize("cells", [(8, 16), (16, 8)])
 def test_results_do_not_depend_on_who_chose(cells: tuple[int, int], kinematics: str) -> None:

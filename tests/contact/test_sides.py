@@ -158,6 +158,7 @@ def test_three_bars_in_a_triangle(suffix: str) -> None:
 THREE = [pair("pin.round", f"{body}.inner", name=body) for body in ("eye", "arm1", "arm2")]
 
 
+@pytest.mark.long
 def test_a_pin_in_eye_and_fork() -> None:
     """One surface in three pairs and one contact with all three: forces to rounding (where the pin spins to nobody knows).
     The same split by hand: but for the bulges of facets next to the cuts, where the surface ends."""
@@ -172,6 +173,7 @@ def test_a_pin_in_eye_and_fork() -> None:
     assert forces["arm1"][0] == pytest.approx(-0.5 * forces["eye"][0], rel=2e-2)  # symmetric but for the spin
 
 
+@pytest.mark.long
 def test_multigrid_takes_shared_contactors() -> None:
     direct, amg = (abut.solve(clevis(*THREE, linear=linear)) for linear in ("direct", "amg"))
     size = np.abs(direct.contacts[0].force).max()

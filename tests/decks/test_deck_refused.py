@@ -149,6 +149,7 @@ def test_ignore_is_checked(tmp_path):
     assert main(["run", str(job), "--ignore", "FRICTION"]) == 2
 
 
+@pytest.mark.long
 def test_cards_without_effect_are_noted(tmp_path):
     for name in QUIET:
         notes = load(tmp_path, DECK.replace("*STEP", f"*{name}\n*STEP")).notes

@@ -78,6 +78,7 @@ def test_bytes_of_windows_in_comments(tmp_path: Path) -> None:
     assert load_job(path).model.contacts
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "line",
     ["*NODE" + ", X" * 300_000, "*" + "N" * 1_000_000, "BAD," * 250_000, "A" * 1_000_000 + ", 1, 3", '"' * 1_000_000,

@@ -177,6 +177,7 @@ def test_facets_may_belong_to_several_pairs() -> None:
     abut.Model(abut.add_surfaces(mesh, found), solids, contacts=[f.contact() for f in found])
 
 
+@pytest.mark.long
 def test_hertz_found_by_itself() -> None:
     """The found pair gives the force and the pressure of the named one (the area of contact lies inside both)."""
     model = load_job(EXAMPLES / "hertz-line" / "quad8.toml").model

@@ -98,6 +98,7 @@ def facing_pairs(name: str) -> list[tuple[int, int]]:
     ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ASSEMBLIES)
 def test_bodies_that_face_each_other(name: str) -> None:
     """All pairs of bodies, and no others: not the neighbours of a ball, nor a bolt and what a washer hides."""
@@ -105,6 +106,7 @@ def test_bodies_that_face_each_other(name: str) -> None:
     assert {frozenset(found.bodies) for found in assembly.found()} == assembly.pairs
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ASSEMBLIES)
 def test_every_facet_that_faces_another(name: str) -> None:
     """Belongs to a pair with that one's body."""
@@ -119,6 +121,7 @@ def test_every_facet_that_faces_another(name: str) -> None:
     assert missing == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ASSEMBLIES)
 def test_no_facet_sees_a_wrong_one(name: str) -> None:
     """What the run integrates: no target lies behind the thickness of a body (opposite faces of a lobe), and none behind
@@ -142,6 +145,7 @@ def test_no_facet_sees_a_wrong_one(name: str) -> None:
         assert not crossed.any()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long) if name in ("wall", "bearing") else name for name in ASSEMBLIES]
 )

@@ -36,6 +36,7 @@ def ringing(solution: abut.Solution) -> list[str]:
     return [text for check, text in cures(solution) if check.name == "oscillation"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("adjust", [0.0, 0.2])
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 def test_no_step_within_the_contact_passes(kinematics: str, adjust: float) -> None:

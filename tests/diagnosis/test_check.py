@@ -60,6 +60,7 @@ def test_faulty_jobs_are_explained_in_one_line(name: str, capsys: pytest.Capture
     assert cure in lines[0].split("; ", 1)[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("job", ["two-blocks/job", "hertz-line/quad4", "pin-lug/job"])
 def test_sound_jobs_have_nothing_to_mend(job: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(EXAMPLES / f"{job}.toml")]) == 0
@@ -360,6 +361,7 @@ VALUES = [
 ]
 
 
+@pytest.mark.long
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(line=st.sampled_from(LINES), value=st.sampled_from(VALUES), drop=st.booleans(), auto=st.booleans())
 def test_any_broken_line_ends_in_findings(

@@ -81,6 +81,7 @@ def test_check_and_auto_agree(name: str) -> None:
     assert any(word in said for word in against.split("|")) if against else said == ""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ASSEMBLIES)
 def test_check_and_auto_agree_on_assemblies(name: str) -> None:
     """Wherever `auto` chose for a reason that is no trace, `check` tells when the sides are swapped."""

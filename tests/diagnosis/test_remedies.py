@@ -219,6 +219,7 @@ def pulled(force: float, **more: Any) -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_what_friction_no_longer_holds_is_said() -> None:
     """Both faces slip when the pull is as large as their bounds; the parts of the step end just below, and what is said
     names both with what they carry."""
@@ -233,6 +234,7 @@ def test_what_friction_no_longer_holds_is_said() -> None:
         assert f"'{name}' carries" in remedy.reason
 
 
+@pytest.mark.long
 def test_what_friction_never_held_is_said() -> None:
     """The first step failed, so that nothing is known but that loads push what supports leave free."""
     solution = abut.solve(pulled(40.0))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 import abut
 from abut.diagnosis import check
 from abut.mesh import make
@@ -30,6 +32,7 @@ def apart(x: float, scale: float = 1.0, target: str = "plate.top") -> abut.Model
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_large_sliding_may_bring_bodies_together_later() -> None:
     """What does not face its target at the outset is no error where the run moves it there, and is said."""
     assert abut.solve(apart(5.0)).contacts[0].area > 0.0

@@ -146,6 +146,7 @@ def test_python_on_the_front_page_runs(tmp_path: Path, monkeypatch: pytest.Monke
     assert all(check.passed for check in scope["solution"].certificate)
 
 
+@pytest.mark.long
 def test_the_tour_prints_what_abut_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its job, with P1 and with P0: contact forces, and the verdicts on stability."""
     tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")

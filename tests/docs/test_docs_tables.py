@@ -145,6 +145,7 @@ def test_integration_without_segments() -> None:
             assert methods.facet_row(*facets, points=(2,)) == [*row[:4], row[-1]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("table", "key", "row"),
     [
@@ -173,6 +174,7 @@ def test_rates_are_those_of_the_benchmarks() -> None:
     assert [list(r.values()) for r in read_table(pressure.PAGE, "rates")] == pressure.rate_rows()
 
 
+@pytest.mark.long
 def test_friction_beside_calculix() -> None:
     """What the page says of abut, and that CalculiX is no further away than the text has it."""
     printed = read_table(methods.PAGE, "friction")

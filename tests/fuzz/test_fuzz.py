@@ -10,7 +10,7 @@ import pytest
 from abut.cli import main
 from fuzz.harness import SEEDS, make, run_all
 
-FAST, MANY, ALL = 300, 1_500, 10_000
+FAST, MANY, ALL = 100, 1_000, 6_000
 
 
 def check(numbers: range, folder: Path) -> None:
@@ -37,6 +37,7 @@ def test_all_damaged_inputs(tmp_path: Path) -> None:
     check(range(MANY, ALL), tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [1461, 3007])
 def test_a_target_without_a_normal_somewhere_has_its_report(number: int, tmp_path: Path) -> None:
     """Solved and written; the report, which comes last, used to refuse such a facet."""
@@ -44,6 +45,7 @@ def test_a_target_without_a_normal_somewhere_has_its_report(number: int, tmp_pat
     assert (result.status, result.problem) == (0, "")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [4384, 8472])
 def test_a_coefficient_of_nearly_nothing_is_none(number: int, tmp_path: Path) -> None:
     """In the constraint function: tractions over such a bound were too large to be squared."""

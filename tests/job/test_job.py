@@ -130,6 +130,7 @@ LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not l
 VALUES = ["nan", "-1", "0", "1e400", '""', '"lower.top"', "[]", "[1, 2]", "{}", "true", "inf", "1e-320", "10000000000"]
 
 
+@pytest.mark.long
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(line=st.sampled_from(LINES), value=st.sampled_from(VALUES), drop=st.booleans())
 def test_any_broken_line_ends_in_a_message(

@@ -127,6 +127,7 @@ def test_every_command_and_option_is_run() -> None:
     assert valued == set(VALUES)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("command", "subject", "chosen"), cases(), ids=lambda v: "".join(v) if isinstance(v, tuple) else str(v)
 )

@@ -72,6 +72,7 @@ def cushion(friction: float, cell: str, cells: tuple[int, int]) -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cell", "friction", "cells"), [("hex8", 0.3, (4, 3)), ("tet10", 0.3, (2, 1))])
 def test_pressed_and_slid_in_space(cell: str, friction: float, cells: tuple[int, int]) -> None:
     solution = assert_same(cushion(friction, cell, cells))
@@ -112,6 +113,7 @@ def stacked() -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_rigid_body_equations_and_what_only_friction_holds() -> None:
     solution = assert_same(stacked())
     assert solution.steps[-1].rigid["back"].displacement[2] < -1e-3

@@ -29,6 +29,7 @@ def residual(matrix: sp.csr_matrix, x: np.ndarray, rhs: np.ndarray) -> float:
     return float(np.abs(matrix @ x - rhs).max() / np.abs(rhs).max())
 
 
+@pytest.mark.long
 def test_old_factors_serve_a_matrix_that_changes_little() -> None:
     """Exact for the new matrix all the same."""
     repeated, first, second = Repeated(), saddle(20, 1, 60), saddle(20, 2, 60)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pytest
 import scipy.sparse as sp
 
 import abut
@@ -68,6 +69,7 @@ def laplace(model: abut.Model) -> Laplace:
     return Laplace(model, sp.kron(scalar, sp.identity(2)).tocsr())
 
 
+@pytest.mark.long
 def test_iterations_are_fewer_than_published() -> None:
     """MOOSE stops at 1e-8 of a step's first residual, in which the displacements prescribed count with their size, 0.2 and
     more: some 1e-7 of the forces, which are 0.02. abut goes on to 1e-9."""

@@ -65,6 +65,7 @@ def test_wedge_into_round_block(aside: float, most: int) -> None:
     assert iterations <= most
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("cell", "plate_is_contactor", "most"), [("quad4", False, 40), ("quad8", False, 48), ("quad4", True, 170)]
 )
@@ -78,6 +79,7 @@ def test_corner_of_a_peg(cell: str, plate_is_contactor: bool, most: int) -> None
     assert friction.force_by_area == pytest.approx(friction.force_limit, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("cell", "cells", "on_corner"),
     [
@@ -92,6 +94,7 @@ def test_cube_that_lands(cell: str, cells: int, on_corner: bool) -> None:
     assert solution.steps[-1].contacts[0].force[2] > 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "tilt", [20.0, pytest.param(10.0, marks=pytest.mark.long), pytest.param(30.0, marks=pytest.mark.long)]
 )

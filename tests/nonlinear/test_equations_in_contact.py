@@ -40,6 +40,7 @@ def level_cubes(friction: float, slide: float = 0.0) -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_level_faces(friction: float) -> None:
     """Both cubes shorten as a bar does; of all pressures the smallest is taken, the uniform one."""
@@ -54,6 +55,7 @@ def test_level_faces(friction: float) -> None:
     assert any("one of many" in note for note in solution.notes)
 
 
+@pytest.mark.long
 def test_level_faces_slide() -> None:
     """One cube slides by a quarter over the other: friction is 0.3 of the force that presses."""
     solution = abut.solve(level_cubes(0.3, slide=0.25))

@@ -95,6 +95,7 @@ def test_tangent_in_space() -> None:
         assert max(tangent_errors(finite(with_contact(pressed_in_space(friction), **given)), 3e-3)) < 1e-7
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "given",
     [
@@ -145,6 +146,7 @@ def test_adjusted_gaps_turn_with_the_bodies() -> None:
         assert mean.max() <= most
 
 
+@pytest.mark.long
 def test_an_adjusted_block_slides_as_one_without_a_gap() -> None:
     """Pressed and dragged with friction. The gap of 0.02 shows where the surfaces turn: by a hundredth."""
     forces = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import abut
 from abut.detection import every_pair
@@ -33,6 +34,7 @@ def pad() -> Mesh:
     )
 
 
+@pytest.mark.long
 def test_an_arm_swings_over_a_pad() -> None:
     """Out of reach at the outset, turned by a right angle, then pressed by the pad: as if it had been built there. On
     the way it passes close over the pad: that they see each other's far sides through themselves is no penetration."""

@@ -97,6 +97,7 @@ def drawn(model: abut.Model, seed: int) -> None:
     settles(model if name is None else in_units(model, MILLIMETRES_TO[name]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(DRAWS))
 def test_plane_assemblies(seed: int) -> None:
     drawn(plane(seed), seed)
@@ -108,7 +109,7 @@ def test_solid_assemblies(seed: int) -> None:
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", range(100))
 def test_every_plane_assembly(seed: int) -> None:
     drawn(plane(seed), seed)
 
@@ -131,18 +132,21 @@ def test_a_slide_that_some_contacts_do_not_see() -> None:
     settles(in_units(plane(7035), MILLIMETRES_TO["inch"]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [12, 26, 33, 38, 233])
 def test_hard_ones(seed: int) -> None:
     """Piles that friction holds, of which Newton's method makes nothing, and a pin for which bold steps get stuck."""
     settles(plane(seed))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [171, 249, 319])
 def test_contacts_pressed_by_rounding(seed: int) -> None:
     """Beside others that are pressed: their tractions were held against their own pressures, rounding against rounding."""
     settles(plane(seed))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PARTS)
 def test_parts(name: str) -> None:
     model = PARTS[name]()
@@ -152,6 +156,7 @@ def test_parts(name: str) -> None:
     assert len(rubbing.steps[0].iterations) <= 1.5 * len(smooth.steps[0].iterations) + 4.5  # 1.5 more for the press fit
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cell", ["tet4", "hex8", "tet10"])
 @pytest.mark.parametrize("hub", [True, False], ids=["hub", "shaft"])
 def test_press_fits_that_friction_alone_holds(cell: str, hub: bool) -> None:

@@ -36,6 +36,7 @@ def solutions(model: abut.Model, friction: float, linear: str) -> int:
     return max(len(step.iterations) for step in solution.steps)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("linear", ["direct", "amg"])
 @pytest.mark.parametrize("name", MODELS)
 def test_counts(name: str, linear: str) -> None:

@@ -80,11 +80,13 @@ def test_it_sticks_and_slips(cell: str) -> None:
         assert min(count) > 0.15 * sum(count)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cell", CELLS)
 def test_frame(cell: str) -> None:
     same(solved(cell), abut.solve(pushed(cell, TURN)), lambda v: v @ TURN)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", MILLIMETRES_TO)
 @pytest.mark.parametrize("cell", CELLS)
 def test_units(cell: str, name: str) -> None:

@@ -69,6 +69,7 @@ def two_on_a_plate(**contact: object) -> abut.Model:
     )
 
 
+@pytest.mark.long
 def test_coefficient_over_position() -> None:
     """0.1 under the left block and 0.3 under the right one: each drags with its own."""
     model = two_on_a_plate(friction=lambda x: np.where(x[:, 0] < 2.5, 0.1, 0.3))

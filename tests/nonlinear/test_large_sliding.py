@@ -193,6 +193,7 @@ def test_turned_small_example() -> None:
         assert np.nanmax(np.abs(solution.contacts[0].multiplier - small)) < 1e-6 * np.nanmax(small)
 
 
+@pytest.mark.long
 def test_quadratic_convergence() -> None:
     """Whole steps from a fresh guess end quadratically: what is left falls from below 1e-3 to below 1e-8 at most two
     iterations later."""
@@ -219,6 +220,7 @@ def test_sliding_with_friction() -> None:
     assert [check for check in solution.certificate if not check.passed and check.name not in coarse] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_contact_found_again(friction: float) -> None:
     """A block that leaves the edge of the other one keeps its multipliers, open where nothing is opposite; back again,
@@ -262,6 +264,7 @@ def test_no_past_no_traction() -> None:
     assert (after.multipliers[~mask] != 0.0).all()
 
 
+@pytest.mark.long
 def test_what_comes_under_an_edge_is_not_said_to_have_slipped() -> None:
     """Nodes that were hardly covered at the end of the last step have no slip in this one, and no line of the certificate
     finds that they moved while they stick."""
@@ -270,6 +273,7 @@ def test_what_comes_under_an_edge_is_not_said_to_have_slipped() -> None:
     assert all(check.passed for check in solution.certificate if check.name == "sticking")
 
 
+@pytest.mark.long
 def test_what_comes_under_an_edge_carries_friction_at_once() -> None:
     """Nodes of a plate under the front edge of a block, where the pressure peaks: the drag is the coefficient times the load
     in every step in which the block slides, to the inclination of the indented plate."""
@@ -280,6 +284,7 @@ def test_what_comes_under_an_edge_carries_friction_at_once() -> None:
     assert forces[:, 0] / -forces[:, 1] == pytest.approx(0.3, rel=0.01)
 
 
+@pytest.mark.long
 def test_restart_goes_on_the_same_way() -> None:
     saved: list[Any] = []
     whole = abut.solve(arched(0.3), on_step=lambda _, own: saved.append(own))
@@ -290,6 +295,7 @@ def test_restart_goes_on_the_same_way() -> None:
     assert np.abs(again.displacement - whole.displacement).max() < 1e-10 * np.abs(whole.displacement).max()
 
 
+@pytest.mark.long
 def test_analyses_last_over_load_steps() -> None:
     """Facets change as the block slides, but more load steps than analyses: what one leaves serves the next."""
     solution = abut.solve(arched(0.3, solve=abut.SolveOptions(steps=20)))
@@ -299,6 +305,7 @@ def test_analyses_last_over_load_steps() -> None:
     assert analyses < len(solution.steps)
 
 
+@pytest.mark.long
 def test_too_much_ends_with_words() -> None:
     """Pressed through the other block: no step is short enough, the run keeps the last state that it found and says why."""
     notes: list[str] = []
@@ -323,6 +330,7 @@ def test_refused(what: dict[str, Any], words: str) -> None:
         abut.solve(replace(model, contacts=[replace(model.contacts[0], **what)]))
 
 
+@pytest.mark.long
 def test_restrained_friction_alone() -> None:
     """A block that rests on another one by a pressure, and is dragged by less than friction bears: it sticks, and
     the traction is the drag's; by more, and the run, which ends on the way there, says what it is that moves."""

@@ -28,6 +28,7 @@ def test_tangent_where_slip_counts_at_late_points() -> None:
     assert max(tangent_errors(problem, 3e-3, forgetful(problem, 3e-3))) < 1e-7
 
 
+@pytest.mark.long
 def test_sliding() -> None:
     """Quadratic convergence to a state in which what slips carries the coefficient times the pressure against its motion;
     forces on both sides add up to none."""

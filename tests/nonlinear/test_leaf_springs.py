@@ -28,6 +28,7 @@ def leaves(kinematics: str, friction: float) -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.0, 0.1])
 def test_leaves_open_as_at_small_displacements(friction: float) -> None:
     """The tip moves by a sixtieth of the thickness, where both kinematics must agree but for the pressures' functions, which

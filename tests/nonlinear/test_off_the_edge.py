@@ -42,6 +42,7 @@ def over_the_edge(dim: int, friction: float, aside: float = 0.0) -> abut.Model:
     )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("dim", "friction", "aside"), [(2, 0.0, 0.0), (2, 0.3, 0.0), (3, 0.0, 0.0), (3, 0.3, 0.7)])
 def test_off_the_edge_and_back(dim: int, friction: float, aside: float) -> None:
     """The force never rises on the way out (by more than 1 %, as nodes pass), and nothing is left of it beyond the end.

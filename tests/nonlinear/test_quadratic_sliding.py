@@ -18,6 +18,7 @@ def _ironed() -> abut.Model:
     return replace(ironing(0), solve=abut.SolveOptions(steps=60))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "model",
     [

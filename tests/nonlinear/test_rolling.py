@@ -9,6 +9,7 @@ import abut
 from models.rolling import DOWN, FRICTION, LENGTH, LOAD, TURN, pushed_across, roller, wheel
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.4, 0.2])
 def test_a_roller_goes_half_as_far_as_the_plate_that_rolls_it(friction: float) -> None:
     """Rolling without slip; the roller must not be thrown out where for an iteration everything seems to slip. To the
@@ -22,6 +23,7 @@ def test_a_roller_goes_half_as_far_as_the_plate_that_rolls_it(friction: float) -
     assert all(contact.active for contact in solution.contacts)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cells", "friction"), [(24, 0.3), (16, 0.1)])
 def test_a_wheel_rolls(cells: int, friction: float) -> None:
     """As far as its rim turns, to the two hundredths by which the indented slab stretches (p0 / E = 0.08). It comes down on
@@ -39,6 +41,7 @@ def test_a_wheel_without_friction_turns_where_it_is() -> None:
     assert abs(solution.steps[-1].rigid["wheel"].displacement[0]) < 1e-3 * TURN
 
 
+@pytest.mark.long
 def test_a_block_that_slips_all_over_may_be_free_across() -> None:
     """Pushed along a plate by a smooth pusher, nothing but friction holds it across, and all of it slips: it takes the
     coefficient times the load and no more."""

@@ -52,6 +52,7 @@ SMALL = {  # of each of the problems, sizes that take no time
 QUICK = ("quad4", "quad8", "hex8", "quad8, auto")  # cells by the slower ways
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", bench.PATHS)
 @pytest.mark.parametrize("name", SMALL)
 def test_counts_do_not_grow(name: str, path: str) -> None:

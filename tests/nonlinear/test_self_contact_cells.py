@@ -49,6 +49,7 @@ def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
     assert np.abs(whole.displacement - named.displacement).max() < tolerance * 0.3
 
 
+@pytest.mark.long
 def test_extruded_by_one_cell() -> None:
     """Between two planes hex8 is quad4 in plane strain, contact included: the means of gaps through the depth are those in
     the plane. (Quadratic facets have pressure functions of their own through the depth: 0.5 % in force.) Bulges are left

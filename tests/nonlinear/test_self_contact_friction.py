@@ -40,6 +40,7 @@ def same(one: Solution, other: Solution, tolerance: float) -> None:
     assert a.friction.work == pytest.approx(b.friction.work, rel=tolerance, abs=tolerance)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cell", ["quad4", "hex8", pytest.param("hex20", marks=pytest.mark.exhaustive)])
 def test_a_clamp_closes_as_between_two_surfaces(cell: str) -> None:
     """The body named twice is its two arms as contactor and target, to rounding; hex20: to the rule of integration, which is
@@ -58,6 +59,7 @@ def test_a_flattened_tube_touches_itself_inside() -> None:
     same(whole, named, 1e-5)
 
 
+@pytest.mark.long
 def test_extruded_by_one_cell() -> None:
     """Between two planes hex8 is quad4 in plane strain: to the square of the turn of normals within a facet, by which a
     traction that is laid on the surface at each point (3D) is shorter than one that turns with it (2D), and to the other
@@ -74,6 +76,7 @@ def test_extruded_by_one_cell() -> None:
     assert np.abs(deep.friction.force[:2] / DEPTH - flat.friction.force).max() < 2e-5 * np.abs(flat.force).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cell", ["hex8", pytest.param("tet10", marks=pytest.mark.exhaustive)])
 def test_jaws_pushed_across_and_turned(cell: str) -> None:
     """Nothing of it is plane. The jaws slip all over: each function carries the coefficient times its pressure against its

@@ -22,6 +22,7 @@ def with_law(model: abut.Model, **options: object) -> abut.Model:
     return replace(model, contacts=[replace(contact, **SMOOTH, **options) for contact in model.contacts])
 
 
+@pytest.mark.long
 def test_tends_to_coulomb() -> None:
     """Pushed to and fro, stick and slip side by side: the distance falls with the square root of ``epsilon``."""
     exact, far = abut.solve(pushed()), []

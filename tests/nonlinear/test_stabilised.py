@@ -36,6 +36,7 @@ def crown(solution: Solution) -> float:
     return -float(solution.displacement[np.flatnonzero(at < 1e-9)].min())
 
 
+@pytest.mark.long
 def test_an_arch_snaps_through(pushed: tuple[Solution, list[Saved]]) -> None:
     """What is reached is an equilibrium without a drag: a punch moved by the same way takes the same force."""
     solution, saved = pushed
@@ -86,6 +87,7 @@ def test_no_drag_where_none_is_needed() -> None:
     assert "stabilisation" not in {check.name for check in solution.certificate}
 
 
+@pytest.mark.long
 def test_a_ball_on_one_node_rolls_half_as_far_as_its_plate() -> None:
     """Nothing resists its spin, and at first nothing at all: every step under a drag, which is gone at its end. Where it
     sticks to both plates its middle goes half the way."""

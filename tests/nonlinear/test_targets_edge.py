@@ -50,6 +50,7 @@ def test_two_rings_at_large_displacements() -> None:
             assert other.body_forces[ring] == pytest.approx(force, abs=1e-4 * np.linalg.norm(one.force))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])
 def test_a_sharp_block_slides_across(cell: str, friction: float) -> None:

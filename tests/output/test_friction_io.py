@@ -198,6 +198,7 @@ def test_materials_of_ones_own() -> None:
     )
 
 
+@pytest.mark.long
 def test_a_step_that_does_not_converge_is_halved(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two iterations are too few for the push, and enough for parts of it. In the end all of it slides: the same force."""
     monkeypatch.setattr("abut.nonlinear.friction.search", lambda *_: None)  # nothing takes over
@@ -216,6 +217,7 @@ def test_a_step_that_does_not_converge_is_halved(monkeypatch: pytest.MonkeyPatch
     assert all(check.passed for check in few.certificate)
 
 
+@pytest.mark.long
 def test_restart_after_a_step_in_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """All of the results, those of the steps done before among them."""
     monkeypatch.setattr("abut.nonlinear.friction.search", lambda *_: None)

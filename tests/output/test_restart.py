@@ -79,6 +79,7 @@ def multigrid(_: pytest.MonkeyPatch) -> dict[str, str]:
     return {"linear": "amg"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("solver", "number"), [(elimination, 2), (sparse_saddle, 3), (multigrid, 4)])
 def test_restarted_run_equals_the_whole_one(
     solver: Callable[[pytest.MonkeyPatch], dict[str, str]], number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -99,6 +100,7 @@ def test_restarted_run_equals_the_whole_one(
     assert_same_results(whole.parent / "results", results)
 
 
+@pytest.mark.long
 def test_restart_with_the_constraint_function(tmp_path: Path) -> None:
     """Its start depends on displacements and pressures, not on the active set alone."""
     text = BALL.replace('"plane.top"]', '"plane.top"]\nlaw = "constraint-function"')
@@ -110,6 +112,7 @@ def test_restart_with_the_constraint_function(tmp_path: Path) -> None:
     assert_same_results(whole.parent / "results", parts.parent / "results")
 
 
+@pytest.mark.long
 def test_restart_with_more_steps(tmp_path: Path) -> None:
     """How it is solved may change: what is left of the load comes in smaller steps, to the same end."""
     path = job(tmp_path)
@@ -173,6 +176,7 @@ def test_restart_without_anything_to_go_on_with(tmp_path: Path, capsys: pytest.C
     assert "a run there has finished" in capsys.readouterr().err
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("keep", [0, 10, 0.5])
 def test_damaged_restart_file_is_refused(keep: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = job(tmp_path)
@@ -216,6 +220,7 @@ def wait_for_step(process: subprocess.Popen[str], number: int) -> None:
     raise AssertionError(process.communicate())
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 @pytest.mark.parametrize(("sent", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
 def test_ctrl_c_keeps_the_steps_done(sent: str, status: int, tmp_path: Path) -> None:

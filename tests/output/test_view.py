@@ -140,6 +140,7 @@ def test_pyvista_gets_bodies_and_contacts(cell: str) -> None:
         solution.to_pyvista(2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", ["pressure", "von Mises"])
 def test_a_picture_has_a_picture_in_it(what: str, tmp_path: Path) -> None:
     pytest.importorskip("pyvista")

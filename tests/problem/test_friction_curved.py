@@ -80,6 +80,7 @@ def test_in_any_unit(unit: float) -> None:
     assert np.abs(v / unit - u).max() < 1e-8 * np.abs(u).max()
 
 
+@pytest.mark.long
 def test_more_load_steps_tend_to_one_limit() -> None:
     def runs(count: int) -> tuple[Array, Array]:
         times = [*((i + 1) / (2 * count) for i in range(count)), 1.0]

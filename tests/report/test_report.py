@@ -380,6 +380,7 @@ TOUCH_EVERYTHING = """<script>(() => {
 })();</script>"""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 @pytest.mark.parametrize("case", ["hex20", "quad8", "axisymmetric"])
 def test_a_browser_draws_it(case: str, tmp_path: Path) -> None:
@@ -414,6 +415,7 @@ STATUS_ONLY = """<script>(() => {
 })();</script>"""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_browser_draws_friction(dim: int, tmp_path: Path) -> None:

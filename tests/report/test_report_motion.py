@@ -111,6 +111,7 @@ PLAY = """<script>(() => {
 })();</script>"""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])
 def test_a_browser_plays_the_steps(cell: str, tmp_path: Path) -> None:

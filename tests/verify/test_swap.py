@@ -114,6 +114,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "the two differ at 'blocks'" in capsys.readouterr().out  # sharp edges of a block on six facets
 
 
+@pytest.mark.long
 def test_json_decks_and_mistakes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     deck = EXAMPLES / "deck" / "pad.inp"
     main(["verify", str(deck), "--swap", "--json", "--output", str(tmp_path)])

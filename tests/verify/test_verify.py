@@ -205,7 +205,15 @@ def test_records_are_complete(name: str) -> None:
 ELSEWHERE = (  # run by tests of their own
     *("smooth-", "signorini-", "shallow-ironing", "crushed-ring", "gears", "die-drawn", "wires", "capstan"),
 )
-LONG = ("hertz-sphere", "mindlin-ball", "mindlin-cycle")
+LONG = (
+    "hertz-sphere",
+    "mindlin-ball",
+    "mindlin-cycle",
+    "belt-on-drum",
+    "spence-ball",
+    "contrast-hertz",
+    "cattaneo-quad8",
+)
 
 
 @pytest.mark.parametrize(
