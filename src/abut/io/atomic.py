@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
 
 from abut.errors import InputError
+
+LONGEST = 200  # bytes of a file's name in a temporary one: most file systems allow 255
 
 
 def write_file(path: Path, write: Callable[[Path], None]) -> None:
@@ -14,7 +17,7 @@ def write_file(path: Path, write: Callable[[Path], None]) -> None:
 
     Raises InputError where the folder cannot be written to; nothing is left behind on failure.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp{path.suffix}")
+    temporary = path.with_name(f".{_short(path.name)}.{os.getpid()}.tmp{path.suffix}")
     try:
         write(temporary)
         os.replace(temporary, path)
@@ -22,6 +25,12 @@ def write_file(path: Path, write: Callable[[Path], None]) -> None:
         raise InputError(f"cannot write {path}: {error.strerror or error}; choose another output directory") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _short(name: str) -> str:
+    """A name that leaves room for what temporary ones have beside it."""
+    data = os.fsencode(name)
+    return name if len(data) <= LONGEST else hashlib.sha256(data).hexdigest()
 
 
 def write_text(path: Path, text: str) -> None:
