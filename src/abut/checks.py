@@ -49,7 +49,7 @@ def array(value: object, name: str, *, dtype: Any = np.float64, shape: Sequence[
     """Return ``value`` as a C-contiguous array of ``dtype``; ``None`` in ``shape`` matches any extent."""
     try:
         result = np.ascontiguousarray(value, dtype=dtype)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{name}: expected an array of {np.dtype(dtype)}, got {type(value).__name__} ({error})"
         ) from None

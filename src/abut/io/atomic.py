@@ -46,8 +46,9 @@ def make_directory(path: Path) -> None:
     """Create an output directory. Raises InputError where a file is in the way or it is not allowed."""
     try:
         path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot create the output directory {path}: {error.strerror}; choose another") from None
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot create the output directory {path}: {why}; choose another") from None
 
 
 def remove_leftovers(folder: Path) -> None:

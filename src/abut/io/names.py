@@ -7,6 +7,7 @@ import hashlib
 import re
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 
 LONGEST = 100  # characters: with what stands around it below the 143 bytes that the shortest file systems allow
 DIGITS = 8  # of the mark that tells names apart
@@ -27,6 +28,14 @@ def file_labels(names: Sequence[str]) -> list[str]:
         label if count[label.lower()] == 1 and len(label) <= LONGEST else other for label, other in zip(plain, marked)
     ]
     return result if len({label.lower() for label in result}) == len(result) else marked
+
+
+def is_file(path: Path) -> bool:
+    """Whether a file is there; of a name that no file can have it is not."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _mark(name: str) -> str:

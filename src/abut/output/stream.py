@@ -45,7 +45,7 @@ class Stream:
         self._resumed = len(resumed)
         self._written: set[int] = set()
         self.time = resumed[-1].state.time if resumed else 0.0  # that the steps in the directory reach
-        self._made = [p for p in (directory, *directory.parents) if not p.exists()]
+        self._made = [p for p in (directory, *directory.parents) if not os.path.lexists(p)]
         make_directory(directory)
         remove_leftovers(directory)
         try:
