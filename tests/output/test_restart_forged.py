@@ -32,12 +32,15 @@ ARRAYS: dict[str, dict[str, Any]] = {
     "time": {"time": np.array(5.0)}, "no time": {"time": np.array(np.nan)}, "inside": {"inside": np.zeros(2)},
     "head": {"head": np.zeros(3)},
 }  # fmt: skip
-# fmt: off
 NPYS = {
-    "more than memory": NPY.format("<f8", (10**13,)), "more bits": NPY.format("<f8", (2**70,)), "negative": NPY.format("<f8", (-1,)),
-    "objects": NPY.format("|O", (1,)), "unended": "{'descr': 3\n", "nested": "(" * 9000 + "\n", "records": NPY.format([("a", "<f8")], (2,)),
+    "more than memory": NPY.format("<f8", (10**13,)),
+    "more bits": NPY.format("<f8", (2**70,)),
+    "negative": NPY.format("<f8", (-1,)),
+    "objects": NPY.format("|O", (1,)),
+    "unended": "{'descr': 3\n",
+    "nested": "(" * 9000 + "\n",
+    "records": NPY.format([("a", "<f8")], (2,)),
 }
-# fmt: on
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from abut.errors import InputError
-from abut.io.names import is_file
 from abut.io.deck.reasons import DeckError, Place, Reasons, UnknownName
+from abut.io.names import is_file
 
 DEEPEST = 20  # includes within includes
 FLAGS = frozenset(  # parameters without a value, by which a line shows that it goes on with its card
