@@ -156,11 +156,11 @@ def _solve(
         progress(text)
     directory = arguments.output or job.directory
     model = restart.description(job.model)
-    before = restart.load_steps(directory, model) if arguments.restart else []
-    if before:
-        progress(restart.last(before))
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
-    with Stream(directory, model, before, fields) as stream:
+    with Stream(directory, model, arguments.restart, fields, progress) as stream:
+        before = stream.resumed
+        if before:
+            progress(restart.last(before))
 
         def told(solution: Solution) -> Solution:
             size = 1 if team is None else team.size

@@ -19,6 +19,7 @@ def write_file(path: Path, write: Callable[[Path], None]) -> None:
     """
     temporary = path.with_name(f".{_short(path.name)}.{os.getpid()}.tmp{path.suffix}")
     try:
+        temporary.unlink(missing_ok=True)  # a link of that name would lead elsewhere
         write(temporary)
         os.replace(temporary, path)
     except OSError as error:

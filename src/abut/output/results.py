@@ -30,6 +30,7 @@ from abut.output.contact_rows import (
     more_values,
     number,
 )
+from abut.output.earlier import INDEX, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
@@ -69,6 +70,7 @@ def write(
     make_directory(folder)
     write_steps(folder, solution, solution.steps if steps is None else steps, fields)
     write_index(folder, solution)
+    remove_others(folder, len(solution.steps), [*INDEX, *_files(solution)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
@@ -138,6 +140,13 @@ def status(solution: Solution) -> str:
 def is_written(folder: Path, step: Step) -> bool:
     """Whether all files of a step are there."""
     return is_whole(folder, step.number) and all((folder / name).is_file() for name in _contact_files(step))
+
+
+def _files(solution: Solution) -> list[str]:
+    """Names of all files of contacts and probes."""
+    of_contacts = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
+    tables = probes.table_names([probe.name for probe in solution.model.probes])
+    return [*of_contacts, *tables, *(name for step in solution.steps for name in _contact_files(step))]
 
 
 def _contact_labels(step: Step) -> list[str]:
