@@ -9,7 +9,7 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from abut.cli.check import add_check
@@ -32,16 +32,19 @@ EXAMPLES = """examples:
 PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 0 must get to its message first
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None, loaded: Callable[[], None] | None = None) -> int:
     """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
     124 out of time, 130 stopped by Ctrl-C (143 by SIGTERM), 1 internal error. Of several processes all but
-    the first keep silent about it."""
+    the first keep silent about it. loaded: called when what commands import is there."""
     if processes() > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when NumPy and the core are imported
     arguments = _parse(argv)
     if rank() and not arguments.together:
         return DONE  # process 0 does it alone
     try:
+        if loaded is not None:
+            _load()
+            loaded()
         return int(arguments.command(arguments))
     except AbutError as error:
         if rank():
@@ -70,6 +73,15 @@ def main(argv: Sequence[str] | None = None) -> int:
             "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
         )
         return BUG
+
+
+def _load() -> None:
+    """Import what commands need, which they would otherwise do on the way."""
+    import abut.analysis
+    import abut.cli.interrupt
+    import abut.cli.progress
+    import abut.job
+    import abut.output.stream  # noqa: F401
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:

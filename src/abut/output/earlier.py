@@ -16,7 +16,7 @@ _HEAD = b"step,factor,converged,point"  # of a probe's table; other tables are t
 
 
 def remove_others(folder: Path, steps: int, kept: Collection[str]) -> None:
-    """Remove results of steps after number ``steps``, and of contacts and probes whose files are not among those ``kept``."""
+    """Remove results of steps after number ``steps``, and of contacts and probes whose files are not ``kept``."""
     for path in _results(folder):
         found = _OF_STEP.fullmatch(path.name)
         of_fields = path.name.startswith("fields_")
