@@ -11,6 +11,7 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
@@ -67,7 +68,7 @@ def main(argv: Sequence[str] | None = None, loaded: Callable[[], None] | None = 
         return INTERRUPTED
     except Exception as error:
         if getattr(arguments, "debug", False):
-            traceback.print_exc()
+            show(traceback.format_exc(), file=sys.stderr, end="")
         show(f"abut: internal error: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
         show(
             "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
@@ -107,7 +108,7 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="abut",
         description="Finite element contact mechanics that one can trust.",
         epilog=EXAMPLES,
@@ -130,6 +131,13 @@ def _parser() -> argparse.ArgumentParser:
     schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
     schema.set_defaults(command=_schema)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Whatever stands on the command line."""
+        if message:
+            show(message, end="", file=file or sys.stderr)
 
 
 class _Version(argparse.Action):

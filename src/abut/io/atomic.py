@@ -38,7 +38,7 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file whole (UTF-8)."""
 
     def write(temporary: Path) -> None:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", errors="backslashreplace")  # bytes of names that are no text
 
     write_file(path, write)
 
@@ -46,8 +46,9 @@ def write_text(path: Path, text: str) -> None:
 def make_directory(path: Path) -> None:
     """Create an output directory. Raises InputError where a file is in the way or it is not allowed."""
     try:
+        str(path).encode("utf-8")  # VTK takes no other names
         path.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+    except (OSError, ValueError) as error:  # ValueError: bytes that are no text, or zero
         why = getattr(error, "strerror", None) or error
         raise InputError(f"cannot create the output directory {path}: {why}; choose another") from None
 
