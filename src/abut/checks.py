@@ -49,19 +49,56 @@ def array(value: object, name: str, *, dtype: Any = np.float64, shape: Sequence[
     """Return ``value`` as a C-contiguous array of ``dtype``; ``None`` in ``shape`` matches any extent."""
     try:
         result = np.ascontiguousarray(value, dtype=dtype)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{name}: expected an array of {np.dtype(dtype)}, got {type(value).__name__} ({error})"
         ) from None
-    if len(shape) != result.ndim or any(want is not None and want != got for want, got in zip(shape, result.shape)):
-        expected = "(" + ", ".join("any" if extent is None else str(extent) for extent in shape) + ")"
-        raise InputError(f"{name}: expected shape {expected}, got {result.shape}")
+    result = _shaped(result, name, shape)
     if np.issubdtype(result.dtype, np.floating) and not np.isfinite(result).all():
         where = np.argwhere(~np.isfinite(result))[0].tolist()
         raise InputError(f"{name}: entry {where} is not a finite number")
     if np.issubdtype(result.dtype, np.floating) and np.abs(result).max(initial=0.0) > LARGEST:
         where = np.argwhere(np.abs(result) > LARGEST)[0].tolist()
         raise InputError(f"{name}: entry {where} is larger than {LARGEST:g}; check the units")
+    return result
+
+
+def numbers(value: object, name: str, shape: Sequence[int | None]) -> Array:
+    """Return ``value`` as a C-contiguous array of floats, itself where it is one, whatever they are: inf and nan, too."""
+    try:
+        given = np.asarray(value)
+        result = np.ascontiguousarray(given, dtype=np.float64) if given.dtype.kind in "iufO" else None
+    except (TypeError, ValueError, OverflowError):
+        result = None
+    if result is None:
+        raise InputError(f"{name}: expected an array of numbers, got {_kind(value)}")
+    return _shaped(result, name, shape)
+
+
+def whole_numbers(value: object, name: str, dtype: type[np.integer[Any]], shape: Sequence[int | None]) -> Array:
+    """Return whole numbers as a C-contiguous array of ``dtype``, itself where it is one. Raises InputError for numbers that are
+    not whole, and those that do not fit."""
+    if isinstance(value, np.ndarray) and value.dtype == dtype and value.flags.c_contiguous:
+        return _shaped(value, name, shape)
+    try:
+        given = np.asarray(value)
+        result = np.ascontiguousarray(given, dtype=dtype) if given.dtype.kind in "iufO" else None
+    except (TypeError, ValueError, OverflowError):
+        result = None
+    if result is None or not np.array_equal(result, given):
+        raise InputError(f"{name}: expected an array of whole numbers of {np.dtype(dtype)}, got {_kind(value)}")
+    return _shaped(result, name, shape)
+
+
+def _kind(value: object) -> str:
+    """What an argument is, in words."""
+    return f"an array of {value.dtype}" if isinstance(value, np.ndarray) else type(value).__name__
+
+
+def _shaped(result: Array, name: str, shape: Sequence[int | None]) -> Array:
+    if len(shape) != result.ndim or any(want is not None and want != got for want, got in zip(shape, result.shape)):
+        expected = "(" + ", ".join("any" if extent is None else str(extent) for extent in shape) + ")"
+        raise InputError(f"{name}: expected shape {expected}, got {result.shape}")
     return result
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from abut.model import Amplitude
+from abut.errors import InputError
+from abut.model import Amplitude, SolveOptions
 from abut.nonlinear.pace import Pace, pace_of
 
 
@@ -60,6 +61,42 @@ def test_points_of_a_straight_history_are_met_in_passing() -> None:
         assert not pace.turned
     assert 0.5 in found
     assert lengths[found.index(0.5) + 1] > lengths[0]
+
+
+@pytest.mark.parametrize("time", [1e-15, 1e-12, 0.9999999999999, 0.9999999999999998])
+@pytest.mark.parametrize(
+    ("steps", "times"), [("auto", None), (4, None), ("auto", (0.5, 1.0)), ("auto", (0.5, 1 - 1e-16))]
+)
+def test_points_of_a_history_at_its_ends_but_for_rounding(
+    time: float, steps: int | str, times: tuple[float, ...] | None
+) -> None:
+    """As dividing by the last time gives them: they are the ends, so that steps are those of a history without them."""
+    rounded = Amplitude(((-1e-13, 0.0), (time, 1.0), (1.0, 1.5)))
+    found = ends(pace_of(steps, times, (rounded,)), 3)
+    assert found == ends(pace_of(steps, times, (None,)), 3)
+
+
+def test_points_of_histories_that_are_one_but_for_rounding() -> None:
+    """7 times 0.1 of one is 0.7 of another: one step ends there, the way ahead is new, and a time that is given counts."""
+    other = 7 * 0.1
+    assert other != 0.7
+    turns = [Amplitude(((0.0, 0.0), (time, 1.0), (1.0, 0.0))) for time in (0.7, other)]
+    pace = pace_of(1, None, turns)
+    assert ends(pace, 3) == [min(0.7, other), 1.0]
+    pace = pace_of("auto", (0.7, 1.0), turns)
+    pace.take(3)
+    assert (pace.time, pace.turned) == (0.7, True)
+
+
+def test_a_jump_of_a_history_is_one_goal() -> None:
+    jump = Amplitude(((0.0, 0.0), (0.5, 0.0), (0.5 + 1e-10, 1.0), (1.0, 1.0)))
+    assert ends(pace_of(1, None, (jump,)), 3) == [0.5, 1.0]
+
+
+@pytest.mark.parametrize("times", [(1e-12, 1.0), (0.5, 0.5 + 1e-12, 1.0), (0.5, 1.0 - 1e-12, 1.0)])
+def test_times_that_are_one_are_refused(times: tuple[float, ...]) -> None:
+    with pytest.raises(InputError, match="are one time, as they differ by 1e-09 at most; leave one out"):
+        SolveOptions(times=times)
 
 
 def test_given_numbers_and_times() -> None:

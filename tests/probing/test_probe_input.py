@@ -59,7 +59,6 @@ BAD_MODELS: dict[str, tuple[Sequence[dict[str, Any]], str]] = {
     "unknown body": ([{"at": [1, 0.5], "body": "lover"}], "probes[0].body: no body named 'lover'; did you mean 'lower'?"),
     "unknown contact": ([{"at": [1, 1], "contact": "block"}], "no contact named 'block'; did you mean 'blocks'?"),
     "twice": ([{"at": [1, 0.5]}, {"at": [1, 0.6]}], "probes[1].name: 'p' is used twice"),
-    "one file": ([{"name": "a b", "at": [1, 0.5]}, {"name": "a_b", "at": [1, 0.6]}], "would have the same name"),
 }  # fmt: skip
 BAD_PLACES: dict[str, tuple[dict[str, Any], str]] = {
     "outside": ({"at": [1.0, 2.25]}, "(1, 2.25) lies outside every body, 0.25 from the nearest, 'upper'; move it"),

@@ -9,8 +9,9 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
@@ -32,16 +33,19 @@ EXAMPLES = """examples:
 PAUSE = 10.0  # seconds; mpiexec ends all processes when one fails, and process 0 must get to its message first
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None, loaded: Callable[[], None] | None = None) -> int:
     """Run the command line and return its exit status: 0 done, 2 bad input, 3 not converged, 4 no unique solution,
     124 out of time, 130 stopped by Ctrl-C (143 by SIGTERM), 1 internal error. Of several processes all but
-    the first keep silent about it."""
+    the first keep silent about it. loaded: called when what commands import is there."""
     if processes() > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when NumPy and the core are imported
     arguments = _parse(argv)
     if rank() and not arguments.together:
         return DONE  # process 0 does it alone
     try:
+        if loaded is not None:
+            _load()
+            loaded()
         return int(arguments.command(arguments))
     except AbutError as error:
         if rank():
@@ -64,12 +68,21 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except Exception as error:
         if getattr(arguments, "debug", False):
-            traceback.print_exc()
+            show(traceback.format_exc(), file=sys.stderr, end="")
         show(f"abut: internal error: this is a bug in abut: {type(error).__name__}: {error}", file=sys.stderr)
         show(
             "abut: please report it with the job file and the output of the same command with --debug", file=sys.stderr
         )
         return BUG
+
+
+def _load() -> None:
+    """Import what commands need, which they would otherwise do on the way."""
+    import abut.analysis
+    import abut.cli.interrupt
+    import abut.cli.progress
+    import abut.job
+    import abut.output.stream  # noqa: F401
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -95,7 +108,7 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="abut",
         description="Finite element contact mechanics that one can trust.",
         epilog=EXAMPLES,
@@ -118,6 +131,13 @@ def _parser() -> argparse.ArgumentParser:
     schema.add_argument("--output", type=Path, metavar="FILE", help="write it to a file")
     schema.set_defaults(command=_schema)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Whatever stands on the command line."""
+        if message:
+            show(message, end="", file=file or sys.stderr)
 
 
 class _Version(argparse.Action):

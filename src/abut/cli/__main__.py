@@ -2,6 +2,6 @@
 
 import sys
 
-from abut.cli import main
+from abut.__main__ import main
 
 sys.exit(main())

@@ -15,11 +15,6 @@ from abut.cli.terminal import show
 from abut.errors import ConvergenceError, InputError, OutOfTime, Stopped
 from abut.parallel.launch import processes, unused
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
 if TYPE_CHECKING:
     from abut.cli.interrupt import Interrupt
     from abut.cli.progress import Progress
@@ -90,9 +85,11 @@ def _uses_petsc(job: Path) -> bool:
     """Several processes, or a job that asks for PETSc; of one that cannot be read, load_job says why."""
     if processes() > 1:
         return True
+    from abut.io.toml import read_toml
+
     try:
-        solve = tomllib.loads(job.read_text(encoding="utf-8")).get("solve")
-    except (OSError, ValueError, RecursionError):
+        solve = read_toml(job)[1].get("solve")
+    except InputError:
         return False
     return isinstance(solve, dict) and solve.get("linear") == "petsc"
 
@@ -159,11 +156,11 @@ def _solve(
         progress(text)
     directory = arguments.output or job.directory
     model = restart.description(job.model)
-    before = restart.load_steps(directory, model) if arguments.restart else []
-    if before:
-        progress(restart.last(before))
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
-    with Stream(directory, model, before, fields) as stream:
+    with Stream(directory, model, arguments.restart, fields, progress) as stream:
+        before = stream.resumed
+        if before:
+            progress(restart.last(before))
 
         def told(solution: Solution) -> Solution:
             size = 1 if team is None else team.size

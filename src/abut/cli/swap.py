@@ -7,6 +7,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from abut.cli.terminal import show
+
 if TYPE_CHECKING:
     from abut.job import Job
     from abut.types import Json
@@ -20,20 +22,20 @@ def verify_swap(arguments: argparse.Namespace, job: Job) -> int:
     """Solve the job and its mirror image, print both and write the report. Returns the exit status."""
     from abut.verify.swap import swap
 
-    tell = (lambda _: None) if arguments.json else (lambda text: print(f"{text} ...", flush=True))
+    tell = (lambda _: None) if arguments.json else (lambda text: show(f"{text} ...", flush=True))
     found = swap(job.model, tell)
     path = _report(found, job, arguments.output or job.directory / "swap")
     if arguments.json:
-        print(json.dumps(_plain(found), indent=2))
+        show(json.dumps(_plain(found), indent=2))
         return DONE if found.passed else FAILED
     table = rows(found)
     widths = [max(map(len, column)) for column in zip(*table)]
     for row in table:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+        show("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
     for name, why in found.left.items():
-        print(f"contact '{name}' stays as it is: {why}")
-    print(_verdict(found))
-    print(f"report: {path}")
+        show(f"contact '{name}' stays as it is: {why}")
+    show(_verdict(found))
+    show(f"report: {path}")
     return DONE if found.passed else FAILED
 
 

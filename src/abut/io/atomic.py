@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
 
 from abut.errors import InputError
+
+LONGEST = 200  # bytes of a file's name in a temporary one: most file systems allow 255
 
 
 def write_file(path: Path, write: Callable[[Path], None]) -> None:
@@ -14,8 +17,9 @@ def write_file(path: Path, write: Callable[[Path], None]) -> None:
 
     Raises InputError where the folder cannot be written to; nothing is left behind on failure.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp{path.suffix}")
+    temporary = path.with_name(f".{_short(path.name)}.{os.getpid()}.tmp{path.suffix}")
     try:
+        temporary.unlink(missing_ok=True)  # a link of that name would lead elsewhere
         write(temporary)
         os.replace(temporary, path)
     except OSError as error:
@@ -24,11 +28,17 @@ def write_file(path: Path, write: Callable[[Path], None]) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def _short(name: str) -> str:
+    """A name that leaves room for what temporary ones have beside it."""
+    data = os.fsencode(name)
+    return name if len(data) <= LONGEST else hashlib.sha256(data).hexdigest()
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text file whole (UTF-8)."""
 
     def write(temporary: Path) -> None:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", errors="backslashreplace")  # bytes of names that are no text
 
     write_file(path, write)
 
@@ -36,9 +46,11 @@ def write_text(path: Path, text: str) -> None:
 def make_directory(path: Path) -> None:
     """Create an output directory. Raises InputError where a file is in the way or it is not allowed."""
     try:
+        str(path).encode("utf-8")  # VTK takes no other names
         path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot create the output directory {path}: {error.strerror}; choose another") from None
+    except (OSError, ValueError) as error:  # ValueError: bytes that are no text, or zero
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot create the output directory {path}: {why}; choose another") from None
 
 
 def remove_leftovers(folder: Path) -> None:

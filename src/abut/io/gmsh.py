@@ -6,6 +6,7 @@ physical groups of a cell, and Gmsh's own library is under the GPL (docs/archite
 
 from __future__ import annotations
 
+import codecs
 from collections import defaultdict
 from pathlib import Path
 from typing import Any, NoReturn
@@ -90,7 +91,7 @@ def read_gmsh(path: Path) -> RawMesh:
     Raises InputError for files that are truncated, of another kind or version, or hold unsupported elements.
     """
     try:
-        source = _Source(path, path.read_bytes())
+        source = _Source(path, path.read_bytes().removeprefix(codecs.BOM_UTF8))
     except OSError as error:
         raise InputError(f"cannot read mesh file {path}: {error.strerror}") from None
     if not source.data.lstrip().startswith(b"$MeshFormat"):

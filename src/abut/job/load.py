@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
+from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable, NeoHookeTable
 from abut.job.values import values
@@ -43,11 +43,6 @@ from abut.model import (
     Traction,
 )
 from abut.types import Json
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 GENERATORS: Mapping[str, Callable[..., Mesh]] = {
     name.replace("_", "-"): getattr(make, name) for name in make.__all__ if name != "join"
@@ -97,18 +92,7 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
         raise InputError(f"{path}: --soft-contact is for decks ({DECK}); give the law of each contact in the job file")
     if ignore:
         raise InputError(f"{path}: --ignore is for decks ({DECK}); a job file has no cards")
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"cannot read job file {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file in UTF-8; is it a job file?") from None
-    try:
-        data = tomllib.loads(text)
-    except ValueError as error:  # TOMLDecodeError is one, and so is a number of too many digits
-        raise InputError(f"{path}: not valid TOML: {error}") from None
-    except RecursionError:
-        raise InputError(f"{path}: not valid TOML: lists or tables nested too deeply") from None
+    text, data = read_toml(path)
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from abut import checks
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.errors import InputError, nearest
 from abut.mesh.cell_block import CellBlock
@@ -26,6 +27,9 @@ class Mesh:
     node_sets: name -> (n,) int64 point numbers, sorted.
     axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
     notes:     what was changed when the mesh was read, in words.
+
+    Arrays of other types, lists, and arrays that are not contiguous are copied. Raises InputError for other shapes, and
+    numbers of points, cells and facets that are not whole or do not fit.
 
     >>> import numpy as np
     >>> import abut
@@ -47,6 +51,20 @@ class Mesh:
     node_sets: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     axisymmetric: bool = False
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        points = checks.numbers(self.points, "mesh: points", (None, None))
+        if points.shape[1] not in (2, 3):
+            raise InputError(f"mesh: points: expected 2 or 3 coordinates each, got {points.shape[1]}")
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "blocks", tuple(self.blocks))
+        for kind, shape in (("bodies", (None,)), ("surfaces", (None, 2)), ("node_sets", (None,))):
+            given = getattr(self, kind)
+            parts = {
+                name: checks.whole_numbers(part, f"mesh: {kind}: '{name}'", np.int64, shape)
+                for name, part in given.items()
+            }
+            object.__setattr__(self, kind, parts)
 
     @classmethod
     def read(cls, path: str | Path) -> Mesh:

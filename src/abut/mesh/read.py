@@ -17,6 +17,7 @@ from abut.checks import LARGEST
 from abut.errors import InputError
 from abut.io.deck import read_abaqus
 from abut.io.gmsh import read_gmsh
+from abut.io.names import is_file
 from abut.io.raw import RawMesh
 from abut.io.vtu import read_vtu
 from abut.mesh.cell_block import CellBlock
@@ -37,7 +38,7 @@ def read_mesh(kind: type[Mesh], path: Path) -> Mesh:
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: unknown mesh format '{path.suffix}'; supported: {', '.join(READERS)}")
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"mesh file {path} does not exist")
     mesh = build(kind, reader(path), str(path))
     check_mesh(mesh)

@@ -27,6 +27,7 @@ from abut.contact.sides import (
 )
 from abut.errors import InputError
 from abut.materials.material import Material
+from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Load
 from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
@@ -100,6 +101,7 @@ class Model:
             "couplings",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        check_entries(self.mesh)
         self._check_plane()
         check_rigid(self.mesh, self.rigid)
         check_couplings(self.mesh, self.couplings, self.rigid, self.finite)

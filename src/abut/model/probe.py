@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -88,16 +87,10 @@ class Probe:
 
 def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str]) -> None:
     """Names and dimensions of probes against the mesh and the names of the contacts. Raises InputError."""
-    files: dict[str, str] = {}
     for i, probe in enumerate(probes):
         where = f"probes[{i}]"
         if any(probe.name == before.name for before in probes[:i]):
             raise InputError(f"{where}.name: '{probe.name}' is used twice; give each probe its own name")
-        other = files.setdefault(label(probe.name), probe.name)
-        if other != probe.name:
-            raise InputError(
-                f"{where}.name: files of '{probe.name}' and '{other}' would have the same name; change one"
-            )
         for key, points in (("at", [probe.at]), ("line", probe.line or ())):
             for point in points:
                 if point is not None and len(point) != mesh.dim:
@@ -110,11 +103,6 @@ def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str])
             raise InputError(f"{where}.of: the model has no contacts, and so no {wanted[0]}; take it out")
         if probe.on is not None and not len(mesh.nodes_of(probe.on)):
             raise InputError(f"{where}.on: '{probe.on}' is empty")
-
-
-def label(name: str) -> str:
-    """A name as part of a file name."""
-    return re.sub(r"[^A-Za-z0-9._-]+", "_", name)
 
 
 def _known(name: str | None, known: Collection[str], where: str, what: str) -> None:

@@ -8,6 +8,7 @@ from typing import Literal
 
 from abut import checks
 from abut.errors import InputError
+from abut.model.step_ends import SAME
 
 LINEAR = ("auto", "direct", "amg", "petsc")
 AUTO = "auto"
@@ -58,6 +59,11 @@ class SolveOptions:
             raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
         if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
             raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
+        for before, time in pairwise((0.0, *times)):
+            if time - before <= SAME:
+                raise InputError(
+                    f"solve.times: {before!r} and {time!r} are one time, as they differ by {SAME:g} at most; leave one out"
+                )
         if self.steps not in (AUTO, 1, len(times)):
             raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")
         object.__setattr__(self, "times", times)

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 
 from abut.model.conditions import History
-from abut.model.step_ends import named_times
+from abut.model.step_ends import SAME as NEAR
+from abut.model.step_ends import apart, named_times
 
 FIRST = 0.1  # of the way to the next goal
 EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
@@ -27,7 +28,7 @@ class Pace:
         kinks: Sequence[float] = (),
     ) -> None:  # fmt: skip
         self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
-        self._legs = [*legs, goals[-1]]
+        self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
         self.time = 0.0
         self._length = self._fresh()
 
@@ -50,7 +51,7 @@ class Pace:
     @property
     def turned(self) -> bool:
         """Whether the way ahead is new."""
-        return any(abs(self.time - kink) < SAME for kink in self._kinks)
+        return any(abs(self.time - kink) <= NEAR for kink in self._kinks)
 
     @property
     def stuck(self) -> bool:
@@ -113,7 +114,7 @@ def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence
     are met, each in one step if it can be."""
     named, turns = named_times(histories)
     if times:
-        goals = [time for time in sorted({*named, *times}) if time <= times[-1]]
+        goals = sorted([*times, *apart([time for time in named if time < times[-1]], times)])
         return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
     if isinstance(steps, str):
         return Pace([*named, 1.0], legs=turns, kinks=turns)

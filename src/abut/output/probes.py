@@ -8,15 +8,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from abut.model.probe import label
+from abut.io.names import file_labels
 from abut.probing.table import columns, peaks
 from abut.solution import ProbeResult, Step
 from abut.types import Json
 
 
-def table_name(probe: str) -> str:
-    """The file of a probe."""
-    return f"probe_{label(probe)}.csv"
+def table_names(probes: Sequence[str]) -> list[str]:
+    """The files of a model's probes, by their names."""
+    return [f"probe_{label}.csv" for label in file_labels(probes)]
 
 
 def table(steps: Sequence[Step], number: int) -> str:
@@ -47,9 +47,10 @@ def _place(result: ProbeResult) -> Json:
 
 def summary(step: Step) -> list[Json]:
     """Each probe in a few numbers: of one point its values, of several the values farthest from zero; None where none."""
+    files = table_names([result.name for result in step.probes])
     return [
-        {"name": result.name, "file": table_name(result.name), "points": len(result.points), **peaks(result)}
-        for result in step.probes
+        {"name": result.name, "file": file, "points": len(result.points), **peaks(result)}
+        for result, file in zip(step.probes, files)
     ]
 
 

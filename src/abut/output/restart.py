@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,12 +15,15 @@ from numpy.typing import NDArray
 import abut
 from abut.errors import InputError
 from abut.io.atomic import make_directory, write_file
+from abut.io.names import is_file
 from abut.model import Model
 from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
+from abut.solution.state import CLOSED, OPEN, SLIPPING
 
 FOLDER = "restart"
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY = "history."  # what the names of the other ones begin with
+COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
 NAMED = 4  # differences of a changed model that the message lists
 
 
@@ -90,19 +92,26 @@ def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
 
 
 def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[State, NDArray[np.bool_]]:
-    """The same from arrays by name."""
+    """The same from arrays by name. Raises ValueError where they are none of a state."""
     history = {name.removeprefix(of + HISTORY): data[name] for name in names if name.startswith(of + HISTORY)}
     arrays = {name: data[of + name] for name in ARRAYS}
-    largest = Largest(*map(float, data[of + "largest"]))
-    return State(float(data[of + "time"]), **arrays, history=History(history), largest=largest), data[of + "inside"]
+    time, largest, inside = float(data[of + "time"]), data[of + "largest"], data[of + "inside"]
+    unknowns, multipliers, status = arrays.values()
+    sound = all(values.dtype == float and np.isfinite(values).all() for values in (unknowns, multipliers, largest))
+    if not (sound and status.dtype == np.int8 and np.isin(status, (OPEN, CLOSED, SLIPPING)).all()):
+        raise ValueError("not the arrays of a state")
+    if not (unknowns.ndim == 1 and multipliers.shape == status.shape and inside.dtype == bool and 0.0 < time <= 1.0):
+        raise ValueError("not the arrays of a state")
+    state = State(time, **arrays, history=History(history), largest=Largest(*map(float, largest)))
+    return state, inside
 
 
 def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:
     """The records of steps 1, 2, ... as far as they go. Raises InputError where there are none, where one is damaged, or
     where it belongs to another model than the one described."""
     steps: list[Saved] = []
-    while (path := directory / FOLDER / f"{len(steps) + 1:04d}.npz").is_file():
-        steps.append(_load(path, model))
+    while is_file(path := directory / FOLDER / f"{len(steps) + 1:04d}.npz"):
+        steps.append(_load(path, len(steps) + 1, model))
     if not steps:
         raise InputError(
             f"nothing to go on with in {directory}: it has no restart data, because a run there has finished, or none has "
@@ -111,22 +120,13 @@ def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:
     return steps
 
 
-def _load(path: Path, model: Mapping[str, str]) -> Saved:
+def _load(path: Path, number: int, model: Mapping[str, str]) -> Saved:
+    """The record of a step from its file."""
     try:
-        with np.load(path, allow_pickle=False) as data:
-            head = json.loads(str(data["head"]))
-            state, inside = _state(data, data.files, "")
-            parts = [(*_state(data, data.files, f"part{i}."), count) for i, count in enumerate(head["parts"])]
-            version, before = head["abut"], head["model"]
-            saved = Saved(
-                number=head["number"],
-                state=state,
-                inside=inside,
-                linear=head["linear"],
-                iterations=tuple(Iteration(**row) for row in head["iterations"]),
-                parts=tuple(SavedPart(*part) for part in parts),
-            )
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
+        saved, version, before = _read(path)
+        if saved.number != number:
+            raise ValueError("the record of another step")
+    except Exception:  # zipfile, tokenize, json and NumPy each have errors of their own for what no run has written
         raise InputError(
             f"{path}: not a whole restart file; remove it and the later ones, and the run goes on from the step before"
         ) from None
@@ -143,6 +143,25 @@ def _load(path: Path, model: Mapping[str, str]) -> Saved:
             "without --restart"
         )
     return saved
+
+
+def _read(path: Path) -> tuple[Saved, str, dict[str, str]]:
+    """What a file holds: the record, the version that wrote it, the description of its model. Raises any exception where it
+    is no restart file."""
+    with np.load(path, allow_pickle=False) as data:
+        head = json.loads(str(data["head"]))
+        state, inside = _state(data, data.files, "")
+        parts = [(*_state(data, data.files, f"part{i}."), count) for i, count in enumerate(head["parts"])]
+    rows = tuple(Iteration(**row) for row in head["iterations"])
+    texts = [head["abut"], head["linear"], *head["model"].keys(), *head["model"].values()]
+    counts = [head["number"], *head["parts"], *(getattr(row, name) for row in rows for name in COUNTS)]
+    sizes = [getattr(row, name) for row in rows for name in SIZES]
+    if not (rows and all(type(text) is str for text in texts) and all(type(n) is int and n >= 0 for n in counts)):
+        raise ValueError("not the head of a record")
+    if not all(type(size) in (int, float) for size in sizes):
+        raise ValueError("not the head of a record")
+    saved = Saved(head["number"], state, inside, head["linear"], rows, tuple(SavedPart(*part) for part in parts))
+    return saved, head["abut"], head["model"]
 
 
 def differences(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:

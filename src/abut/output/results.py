@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.io.atomic import make_directory, write_text
+from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.model.probe import label
 from abut.output import probes
 from abut.output.contact_rows import (
     OF_CONTACT,
@@ -30,6 +30,7 @@ from abut.output.contact_rows import (
     more_values,
     number,
 )
+from abut.output.earlier import INDEX, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
@@ -69,6 +70,7 @@ def write(
     make_directory(folder)
     write_steps(folder, solution, solution.steps if steps is None else steps, fields)
     write_index(folder, solution)
+    remove_others(folder, len(solution.steps), [*INDEX, *_files(solution)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
@@ -77,20 +79,19 @@ def write_steps(folder: Path, solution: Solution, steps: Sequence[Step], fields:
     """The VTU files of some steps."""
     for step in steps:
         fields(folder, solution.model, step)
-        for contact in step.contacts:
+        for contact, name in zip(step.contacts, _contact_files(step)):
             grid = contact_grid(step, contact)
-            path = folder / _contact_file(contact.name, step)
-            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
+            write_vtu(folder / name, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
 
 
 def write_index(folder: Path, solution: Solution) -> None:
     """The files that tell of all steps."""
     _write_collection(folder, "fields", solution.steps, [found_name(folder, step.number) for step in solution.steps])
-    for contact in solution.contacts:
-        files = [_contact_file(contact.name, step) for step in solution.steps]
-        _write_collection(folder, f"contact_{label(contact.name)}", solution.steps, files)
-    for index, probe in enumerate(solution.model.probes):
-        write_text(folder / probes.table_name(probe.name), probes.table(solution.steps, index))
+    files = [_contact_files(step) for step in solution.steps]
+    for index, label in enumerate(_contact_labels(solution.steps[-1])):
+        _write_collection(folder, label, solution.steps, [names[index] for names in files])
+    for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
+        write_text(folder / name, probes.table(solution.steps, index))
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")
@@ -138,12 +139,23 @@ def status(solution: Solution) -> str:
 
 def is_written(folder: Path, step: Step) -> bool:
     """Whether all files of a step are there."""
-    contacts = [_contact_file(contact.name, step) for contact in step.contacts]
-    return is_whole(folder, step.number) and all((folder / name).is_file() for name in contacts)
+    return is_whole(folder, step.number) and all((folder / name).is_file() for name in _contact_files(step))
 
 
-def _contact_file(contact: str, step: Step) -> str:
-    return f"contact_{label(contact)}_{step.number:04d}.vtu"
+def _files(solution: Solution) -> list[str]:
+    """Names of all files of contacts and probes."""
+    of_contacts = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
+    tables = probes.table_names([probe.name for probe in solution.model.probes])
+    return [*of_contacts, *tables, *(name for step in solution.steps for name in _contact_files(step))]
+
+
+def _contact_labels(step: Step) -> list[str]:
+    """What the names of the files of each contact begin with."""
+    return [f"contact_{label}" for label in file_labels([contact.name for contact in step.contacts])]
+
+
+def _contact_files(step: Step) -> list[str]:
+    return [f"{label}_{step.number:04d}.vtu" for label in _contact_labels(step)]
 
 
 def _step_summary(step: Step) -> Json:
@@ -160,7 +172,9 @@ def _step_summary(step: Step) -> Json:
         "load": step.load.tolist(),
         "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
-        "contacts": [contact_summary(c) for c in step.contacts],
+        "contacts": [
+            {**contact_summary(c), "file": f"{label}.pvd"} for c, label in zip(step.contacts, _contact_labels(step))
+        ],
         **energy_summary(step),
         **_stress_error(step),
         "rigid": {

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
 
-from abut.errors import InputError
-from abut.io.atomic import make_directory, remove_leftovers
+from abut.errors import InputError, Stopped
+from abut.io.atomic import remove_leftovers
+from abut.output.earlier import remove_all, set_aside
 from abut.output.fields import WriteFields, write_fields
-from abut.output.restart import clear, save_step
+from abut.output.lock import Lock
+from abut.output.restart import clear, load_steps, save_step
 from abut.output.results import is_written, write, write_index, write_steps
 from abut.report import Origin
 from abut.solution import Iteration, Phase, Saved, Solution, Step
@@ -27,38 +29,52 @@ class Stream:
     an iteration at once and becomes ``run.jsonl`` at the end. A run that ends before its first step leaves nothing, not
     even a directory that was not there before.
 
-    model: what a restart compares (``abut.output.restart.description``); resumed: records of the steps done before; fields:
-    what writes the fields of a step.
-    Raises InputError where the directory cannot be written.
+    No other run writes there meanwhile. Results of an earlier run go when this one has its first step; where it fails before
+    that, they are moved aside.
+
+    model: what a restart compares (``abut.output.restart.description``); restart: whether to go on after the steps of an
+    earlier run, which are ``resumed``; fields: what writes the fields of a
+    step; tell: gets a note.
+    Raises InputError where the directory cannot be written or another run writes there, and where there is nothing to go on
+    with.
     """
 
     def __init__(
         self,
         directory: Path,
         model: Mapping[str, str],
-        resumed: Sequence[Saved] = (),
+        restart: bool = False,
         fields: WriteFields = write_fields,
+        tell: Callable[[str], None] | None = None,
     ) -> None:
         self.directory = directory
+        self._tell = tell
         self._fields = fields
         self._model = model
-        self._resumed = len(resumed)
         self._written: set[int] = set()
-        self.time = resumed[-1].state.time if resumed else 0.0  # that the steps in the directory reach
-        self._made = [p for p in (directory, *directory.parents) if not p.exists()]
-        make_directory(directory)
-        remove_leftovers(directory)
+        self._lock = Lock(directory)
         try:
-            self._log = os.open(directory / LOG, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o666)
+            self.resumed: list[Saved] = load_steps(directory, model) if restart else []
+            self._log = self._open_log()
+        except BaseException:
+            self._lock.release(empty=True)
+            raise
+        self.time = self.resumed[-1].state.time if self.resumed else 0.0  # that the steps in the directory reach
+
+    def _open_log(self) -> int:
+        """Its file, always a fresh one: a link of that name may lead elsewhere."""
+        remove_leftovers(self.directory)
+        path = self.directory / LOG
+        try:
+            path.unlink(missing_ok=True)
+            return os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o666)
         except OSError as error:
-            raise InputError(
-                f"cannot write {directory / LOG}: {error.strerror}; choose another output directory"
-            ) from None
+            raise InputError(f"cannot write {path}: {error.strerror}; choose another output directory") from None
 
     @property
     def steps(self) -> int:
         """How many steps the directory holds."""
-        return max(self._resumed, *self._written, 0)
+        return max(len(self.resumed), *self._written, 0)
 
     def observe(self, item: Iteration | Phase | str) -> None:
         """Append an iteration or a note to the log."""
@@ -72,8 +88,7 @@ class Stream:
 
     def step(self, solution: Solution, saved: Saved) -> None:
         """Write the last step of the solution so far."""
-        if not self._resumed and not self._written:
-            clear(self.directory)  # of an earlier run: it would no longer fit
+        self._make_room()
         write_steps(self.directory, solution, self._missing(solution), self._fields)
         self._written.add(saved.number)
         self.time = saved.state.time
@@ -83,10 +98,17 @@ class Stream:
     def finish(self, solution: Solution, origin: Origin | None = None) -> None:
         """Write what is still to be written, and the report, which says where the job comes from (``origin``); restart data
         stay only where there is something left to do."""
+        self._make_room()
         write(solution, self.directory, origin, self._missing(solution), self._fields)
         self._written.add(len(solution.steps))
         if solution.converged and solution.complete:
             clear(self.directory)
+
+    def _make_room(self) -> None:
+        """Before the first results of this run: those of an earlier one no longer fit."""
+        if not self.resumed and not self._written:
+            clear(self.directory)
+            remove_all(self.directory)
 
     def _missing(self, solution: Solution) -> list[Step]:
         """Steps not written in this run; those done before it only where their files are gone."""
@@ -94,7 +116,7 @@ class Stream:
             step
             for step in solution.steps
             if step.number not in self._written
-            and not (step.number <= self._resumed and is_written(self.directory, step))
+            and not (step.number <= len(self.resumed) and is_written(self.directory, step))
         ]
 
     def __enter__(self) -> Stream:
@@ -105,8 +127,12 @@ class Stream:
     ) -> None:
         os.close(self._log)
         (self.directory / LOG).unlink(missing_ok=True)
-        if not self._written:
-            for folder in self._made:
-                if any(folder.iterdir()):
-                    break
-                folder.rmdir()
+        failed = error is not None and not isinstance(error, (Stopped, KeyboardInterrupt))
+        try:
+            if failed and not self._written and not self.resumed:
+                clear(self.directory)
+                aside = set_aside(self.directory)
+                if aside is not None and self._tell is not None:
+                    self._tell(f"results of an earlier run are now in {aside}")
+        finally:
+            self._lock.release(empty=not self._written)

@@ -37,7 +37,9 @@ def write_report(
     'bar.html'
     """
     path = Path(path)
-    data = page(solution, origin or Origin(path.stem), beside).encode("utf-8")
+    data = page(solution, origin or Origin(path.stem), beside).encode(
+        "utf-8", "backslashreplace"
+    )  # names of files may be no text
 
     def write(temporary: Path) -> None:
         temporary.write_bytes(data)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from abut.errors import InputError
 from abut.io.deck.reasons import DeckError, Place, Reasons, UnknownName
+from abut.io.names import is_file
 
 DEEPEST = 20  # includes within includes
 FLAGS = frozenset(  # parameters without a value, by which a line shows that it goes on with its card
@@ -294,10 +295,10 @@ def _included(
 ) -> Iterator[tuple[str, Place]]:
     """A file is looked for beside the deck, as CalculiX does it, then beside the file that includes it."""
     first = (*above, path)[0].parent / file
-    inner = path.parent / file if not first.is_file() and (path.parent / file).is_file() else first
+    inner = path.parent / file if not is_file(first) and is_file(path.parent / file) else first
     if inner in (*above, path) or len(above) >= DEEPEST:
         raise DeckError(place, f"the file {file} includes itself; take the *INCLUDE out")
-    if not inner.is_file():
+    if not is_file(inner):
         missing = DeckError(place, f"included file {inner} does not exist")
         reasons.add(missing, defines=True)
         return

@@ -12,7 +12,7 @@ from abut import checks
 from abut.errors import InputError
 from abut.mesh.cell_block import CellBlock
 from abut.mesh.make.block import axis, grid
-from abut.mesh.make.grading import graded
+from abut.mesh.make.grading import MOST, graded
 from abut.mesh.mesh import Mesh
 from abut.mesh.promote import middles
 
@@ -153,8 +153,8 @@ def _lines(
     fine = 0.1 * radius if fine is None else checks.positive(fine, "fine")
     if fine >= np.sqrt(0.5) * radius:
         raise InputError(f"fine: expected a length below 0.7 of the radius {radius:g}, got {fine!r}")
-    if isinstance(cells, bool) or not isinstance(cells, int) or cells < 1:
-        raise InputError(f"cells: expected a whole number >= 1, got {cells!r}")
+    if isinstance(cells, bool) or not isinstance(cells, int) or not 1 <= cells <= MOST:
+        raise InputError(f"cells: expected a whole number from 1 to {MOST}, got {cells!r}")
     # On the rim the map to the disc shortens lengths by sqrt(1/2).
     return radius, _graded(np.sqrt(2.0) * fine, cells, radius, growth), -1.0 + _graded(fine / cells, 1, radius, growth)
 
