@@ -17,6 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
+from abut.report.arrays import Packer
 from abut.report.chart import Beside, Chart
 from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
@@ -25,19 +26,21 @@ from abut.report.lines import Line, pressure_lines
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
+from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
-SCRIPTS = ("plots.js", "parts.js", "arrows.js", "view.js", "report.js")
+SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
 STYLES = ("libraries.css", "report.css")
 
 
 def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> str:
     """The whole report as text of an HTML file. beside: another solution of the same problem, compared with this one."""
-    picture = scene(solution)
+    of_bodies, arrays = extremes(solution), Packer()
+    picture = scene(solution, of_bodies=of_bodies)
     data = {
-        "scene": picture.data,
+        "scene": arrays.all(picture.data),
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
@@ -56,10 +59,12 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "probes": _probes(solution),
         "beside": "" if beside is None else _beside(beside),
         "contacts": _contacts(solution) + _rigid(solution),
+        "bodies": _table(*largest_by_body(solution, of_bodies), _all_steps(solution)),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
         "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
+        "arrays": arrays.text,
         "libraries": f"<script>{_static('libraries.js')}</script>",
         "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>",
     }
@@ -69,6 +74,10 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         name, after = piece.split("}}", 1)
         text += [parts[name], after]
     return "".join(text)
+
+
+def _all_steps(solution: Solution) -> str:
+    return "At the nodes of each body" + (", of all steps" if len(solution.steps) > 1 else "")
 
 
 def _static(name: str) -> str:
