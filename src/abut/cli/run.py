@@ -163,7 +163,7 @@ def _solve(
     if before:
         progress(restart.last(before))
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
-    with Stream(directory, model, before, fields) as stream:
+    with Stream(directory, model, before, fields, job.output) as stream:
 
         def told(solution: Solution) -> Solution:
             size = 1 if team is None else team.size

@@ -11,6 +11,7 @@ from types import TracebackType
 from abut.errors import InputError
 from abut.io.atomic import make_directory, remove_leftovers
 from abut.output.fields import WriteFields, write_fields
+from abut.output.options import EVERYTHING, Output
 from abut.output.restart import clear, save_step
 from abut.output.results import is_written, write, write_index, write_steps
 from abut.report import Origin
@@ -28,7 +29,7 @@ class Stream:
     even a directory that was not there before.
 
     model: what a restart compares (``abut.output.restart.description``); resumed: records of the steps done before; fields:
-    what writes the fields of a step.
+    what writes the fields of a step; output: which VTU files are written.
     Raises InputError where the directory cannot be written.
     """
 
@@ -38,12 +39,14 @@ class Stream:
         model: Mapping[str, str],
         resumed: Sequence[Saved] = (),
         fields: WriteFields = write_fields,
+        output: Output = EVERYTHING,
     ) -> None:
         self.directory = directory
-        self._fields = fields
+        self._fields, self._output = fields, output
         self._model = model
         self._resumed = len(resumed)
         self._written: set[int] = set()
+        self._whole: set[int] = set()  # those of them with VTU files
         self.time = resumed[-1].state.time if resumed else 0.0  # that the steps in the directory reach
         self._made = [p for p in (directory, *directory.parents) if not p.exists()]
         make_directory(directory)
@@ -74,16 +77,18 @@ class Stream:
         """Write the last step of the solution so far."""
         if not self._resumed and not self._written:
             clear(self.directory)  # of an earlier run: it would no longer fit
-        write_steps(self.directory, solution, self._missing(solution), self._fields)
+        write_steps(self.directory, solution, self._missing(solution), self._fields, self._output, final=False)
+        if self._output.wants(saved.number):
+            self._whole.add(saved.number)
         self._written.add(saved.number)
         self.time = saved.state.time
-        write_index(self.directory, solution)
+        write_index(self.directory, solution, self._output, final=False)
         save_step(self.directory, self._model, saved)
 
     def finish(self, solution: Solution, origin: Origin | None = None) -> None:
         """Write what is still to be written, and the report, which says where the job comes from (``origin``); restart data
         stay only where there is something left to do."""
-        write(solution, self.directory, origin, self._missing(solution), self._fields)
+        write(solution, self.directory, origin, self._missing(solution), self._fields, self._output)
         self._written.add(len(solution.steps))
         if solution.converged and solution.complete:
             clear(self.directory)
@@ -93,8 +98,8 @@ class Stream:
         return [
             step
             for step in solution.steps
-            if step.number not in self._written
-            and not (step.number <= self._resumed and is_written(self.directory, step))
+            if step.number not in self._whole
+            and not (step.number <= self._resumed and is_written(self.directory, step, self._output))
         ]
 
     def __enter__(self) -> Stream:

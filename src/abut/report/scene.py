@@ -33,7 +33,7 @@ FOR_INSIDE = 0.5  # share of the size that the inside may take
 
 @dataclass(frozen=True)
 class Scene:
-    """``data``: what the page's script reads, with arrays; ``reduced``: what was left out to keep the file small, in words."""
+    """``data``: what the page's script reads; ``reduced``: what was left out to keep the file small, in words."""
 
     data: Json
     reduced: tuple[str, ...]
