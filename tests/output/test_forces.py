@@ -120,8 +120,10 @@ def test_no_fields_no_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"steps": 0}, "output.steps: expected"), ({"steps": []}, "output.steps: expected"), ({"steps": "first"}, "output.steps"),
-        ({"steps": True}, "output.steps"), ({"fields": ["stres"]}, "output.fields"), ({"fields": "stress"}, r"\['stress'\]"),
+        ({"steps": 0}, "output.steps: expected"), ({"steps": []}, "output.steps: expected"),
+        ({"steps": "first"}, "output.steps"),
+        ({"steps": True}, "output.steps"), ({"fields": ["stres"]}, "output.fields"),
+        ({"fields": "stress"}, r"\['stress'\]"),
     ],
 )  # fmt: skip
 def test_what_is_not_understood(given: dict[str, object], words: str) -> None:

@@ -221,10 +221,10 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "OutputTable": {
         "directory": "folder of the results, beside the job file",
-        "steps": "steps with VTU files: all, last, n for every n-th, or a list of numbers; the last one always has them. Tables, "
-        "summary and report have every step",
-        "fields": "what VTU files hold: fields of the bodies, and contact for the files of contact surfaces; principal-stress is "
-        "left out unless it is named",
+        "steps": "steps with VTU files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
+        "Tables, summary and report have every step",
+        "fields": "what VTU files hold: fields of the bodies, and contact for the files of contact surfaces; "
+        "principal-stress is left out unless it is named",
     },
 }
 

@@ -49,8 +49,8 @@ class Output:
             numbers = [self.steps] if isinstance(self.steps, int) else list(self.steps)
             if not numbers or any(isinstance(n, bool) or not isinstance(n, int) or n < 1 for n in numbers):
                 raise InputError(
-                    f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 stands for '
-                    "every tenth step, [10] for the tenth"
+                    f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
+                    "every tenth step, [10] the tenth"
                 )
         if isinstance(self.fields, str):
             raise InputError(f"output.fields: expected a list of names, got {self.fields!r}; write [{self.fields!r}]")

@@ -49,9 +49,9 @@ def write(
     """Write everything about a solution to ``directory`` (created if needed) and return it.
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
-    likewise for each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the report; steps:
-    those whose VTU files are still to be written, all of them by default; fields: what writes the fields of a step; output:
-    which steps and fields have VTU files.
+    likewise for each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the
+    report; steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields of
+    a step; output: which steps and fields have VTU files.
     Raises InputError where the directory cannot be written.
 
     >>> from tempfile import TemporaryDirectory

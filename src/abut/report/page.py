@@ -19,7 +19,7 @@ from abut.errors import AbutError
 from abut.io.versions import versions
 from abut.report.arrays import Packer
 from abut.report.chart import Beside, Chart
-from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
+from abut.report.contact_words import ZERO, centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import Line, pressure_lines
@@ -32,6 +32,7 @@ from abut.solution import ContactResult, Solution
 from abut.types import Json
 
 SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
+UNLIKE = 1.001  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
 
 
@@ -116,9 +117,13 @@ def _head(solution: Solution, origin: Origin) -> str:
         top = max(touching, key=lambda c: c.max_pressure)
         most = max(touching, key=lambda c: float(np.linalg.norm(c.force)))
         end = " at the end" if len(solution.steps) > 1 else ""
+        carried = max(c.force_by_area for c in touching)
+        resultant = float(np.linalg.norm(most.force))
+        by_area = [("contact force by area" + end, number(carried))] if carried > UNLIKE * resultant else []
         facts = [
             ("largest pressure" + end, number(top.max_pressure)),
-            ("contact force" + end, number(float(np.linalg.norm(most.force)))),
+            ("resultant of contact" + end if by_area else "contact force" + end, _size(resultant, carried)),
+            *by_area,
             ("contact area" + end, number(sum(c.area for c in touching))),
             *facts,
         ]
@@ -133,6 +138,10 @@ def _head(solution: Solution, origin: Origin) -> str:
         f"<h1>{escape(origin.title)}</h1>"
         f'<p class="verdict {"good" if good else "bad"}"><i>{mark}</i>{escape(verdict)}</p><div class=facts>{chips}</div>'
     )
+
+
+def _size(value: float, scale: float) -> str:
+    return number(value if value > ZERO * scale else 0.0)
 
 
 def _reached(solution: Solution) -> str:
@@ -190,6 +199,7 @@ def _contacts(solution: Solution) -> str:
         [
             c.name,
             force(c),
+            number(c.force_by_area),
             number(c.max_pressure),
             number(c.area),
             number(c.max_penetration),
@@ -198,7 +208,16 @@ def _contacts(solution: Solution) -> str:
         ]
         for c in solution.contacts
     ]
-    head = ["contact", "force on the side named first", "largest pressure", "area", "penetration", "active", "covered"]
+    head = [
+        "contact",
+        "force on the side named first",
+        "by area",
+        "largest pressure",
+        "area",
+        "penetration",
+        "active",
+        "covered",
+    ]
     text = _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
     rubbing = friction_rows(solution)
     return text + (_table(HEAD, rubbing, "Friction") if rubbing else "")
@@ -261,7 +280,7 @@ def _trouble(solution: Solution) -> str:
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
         )
     elif advice := remedies(solution):
-        text += f"<section><h2>Surfaces overlap</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
+        text += f"<section><h2>Contact is narrow for its facets</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
     if solution.ignored:
         text += f"<section><h2>Omitted from the deck, as asked</h2>{_list(solution.ignored)}</section>"
     return text
@@ -319,6 +338,7 @@ def _history(solution: Solution) -> Json:
             {
                 "name": name,
                 "force": _plain(float(np.linalg.norm(c.force)) for c in values),
+                "by_area": _plain(c.force_by_area for c in values),
                 "area": _plain(c.area for c in values),
                 "pressure": _plain(c.max_pressure for c in values),
                 "friction": _friction(values),

@@ -200,3 +200,9 @@ class ContactResult:
     target_forces: NDArray[np.float64]
     body_forces: Mapping[str, NDArray[np.float64]]
     friction: FrictionResult | None = None
+
+    @property
+    def force_by_area(self) -> float:
+        """What the surfaces carry wherever it points, the sum of the sizes of the nodal forces: in a fit, whose two sides
+        press against each other, the resultant is the difference only."""
+        return float(np.linalg.norm(self.contactor_forces, axis=1).sum())
