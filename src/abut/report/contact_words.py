@@ -36,7 +36,7 @@ def centre(contact: ContactResult) -> str:
 
 def force(contact: ContactResult) -> str:
     """The resultant on the side named first; 0 where forces cancel, as round a press fit."""
-    return vector(contact.force, contact.force_by_area)
+    return vector(contact.force, float(np.linalg.norm(contact.contactor_forces, axis=1).sum()))
 
 
 def moment(contact: ContactResult) -> str:

@@ -32,7 +32,7 @@ from abut.solution import ContactResult, Solution
 from abut.types import Json
 
 SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
-UNLIKE = 1.001  # contact force by area over the resultant, from which on both are shown
+UNLIKE = 1.05  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
 
 
@@ -280,7 +280,8 @@ def _trouble(solution: Solution) -> str:
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
         )
     elif advice := remedies(solution):
-        text += f"<section><h2>Contact is narrow for its facets</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
+        listed = _list(map(str, advice), "ol")
+        text += f"<section><h2>Contact is narrow for its facets</h2><p>What to try:</p>{listed}</section>"
     if solution.ignored:
         text += f"<section><h2>Omitted from the deck, as asked</h2>{_list(solution.ignored)}</section>"
     return text

@@ -203,6 +203,7 @@ class ContactResult:
 
     @property
     def force_by_area(self) -> float:
-        """What the surfaces carry wherever it points, the sum of the sizes of the nodal forces: in a fit, whose two sides
-        press against each other, the resultant is the difference only."""
-        return float(np.linalg.norm(self.contactor_forces, axis=1).sum())
+        """The pressure over the area, wherever it points, at nodes at least half of whose support is covered; 0 without
+        contact. In a fit, where both sides of a body carry, the resultant is only their difference."""
+        mean = self.statistics.mean
+        return 0.0 if isnan(mean) else mean * self.statistics.area
