@@ -40,7 +40,7 @@ def write_vtu(
     Raises InputError where the file cannot be written.
     """
     from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+    from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
@@ -64,13 +64,7 @@ def write_vtu(
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             target.AddArray(array)
-
-    for name, texts in (names or {}).items():
-        strings = vtkStringArray()
-        strings.SetName(name)
-        for text in texts:
-            strings.InsertNextValue(text)
-        grid.GetFieldData().AddArray(strings)
+    _add_texts(grid, names or {})
 
     def write(temporary: Path) -> None:
         temporary.touch()  # raises OSError with a reason where VTK would only say no
@@ -83,6 +77,18 @@ def write_vtu(
             raise OSError(f"VTK could not write {path.name}")
 
     write_file(path, write)
+
+
+def _add_texts(grid: Foreign, names: Mapping[str, Sequence[str]]) -> None:
+    """Lists of strings for the whole file."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    for name, texts in names.items():
+        strings = vtkStringArray()
+        strings.SetName(name)
+        for text in texts:
+            strings.InsertNextValue(text)
+        grid.GetFieldData().AddArray(strings)
 
 
 def _compress(writer: Foreign, results: bool) -> None:
