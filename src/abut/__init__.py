@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.output.options import Output
     from abut.output.pyvista_export import plot, to_pyvista
     from abut.output.results import write
     from abut.report import write_report
@@ -45,7 +46,8 @@ if TYPE_CHECKING:
 __version__ = "0.2.0"
 
 _HOME = {  # of public names that do not come from abut.model
-    "solve": "abut.analysis", "write": "abut.output.results", "Mesh": "abut.mesh.mesh", "Solution": "abut.solution",
+    "solve": "abut.analysis", "write": "abut.output.results", "Output": "abut.output.options", "Mesh": "abut.mesh.mesh",
+    "Solution": "abut.solution",
     "write_report": "abut.report", "plot": "abut.output.pyvista_export", "to_pyvista": "abut.output.pyvista_export",
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
@@ -55,7 +57,7 @@ _HOME = {  # of public names that do not come from abut.model
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
     "FoundContact", "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke",
-    "NodalForce", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
+    "NodalForce", "Output", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
     "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot",
     "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip

@@ -76,8 +76,8 @@ def numbers(value: object, name: str, shape: Sequence[int | None]) -> Array:
 
 
 def whole_numbers(value: object, name: str, dtype: type[np.integer[Any]], shape: Sequence[int | None]) -> Array:
-    """Return whole numbers as a C-contiguous array of ``dtype``, itself where it is one. Raises InputError for numbers that are
-    not whole, and those that do not fit."""
+    """Return whole numbers as a C-contiguous array of ``dtype``, itself where it is one. Raises InputError for numbers that
+    are not whole, and those that do not fit."""
     if isinstance(value, np.ndarray) and value.dtype == dtype and value.flags.c_contiguous:
         return _shaped(value, name, shape)
     try:

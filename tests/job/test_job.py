@@ -156,7 +156,7 @@ def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     results = tmp_path / "results"
     names = sorted(p.name for p in results.iterdir())
     assert names == sorted(
-        ["summary.json", "history.csv", "report.html", "run.jsonl", "fields.pvd", "contact_blocks.pvd"]
+        ["summary.json", "history.csv", "forces.csv", "report.html", "run.jsonl", "fields.pvd", "contact_blocks.pvd"]
         + [f"{stem}_{n:04d}.vtu" for stem in ("fields", "contact_blocks") for n in (1, 2)]
     )
     summary = json.loads((results / "summary.json").read_text())

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import shutil
 import subprocess
+import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
@@ -18,8 +22,8 @@ class Page(HTMLParser):
 
     def __init__(self, path: Path) -> None:
         super().__init__()
-        self.text, self.tags, self.addresses, self.data = "", [], [], ""
-        self.inside = ""
+        self.text, self.tags, self.addresses, self.data, self.arrays = "", [], [], "", ""
+        self.inside, self.packed = "", b""
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -34,8 +38,16 @@ class Page(HTMLParser):
     def handle_data(self, data: str) -> None:
         if self.inside == "data":
             self.data += data
+        elif self.inside == "arrays":
+            self.arrays += data
         elif self.inside not in ("script", "style"):
             self.text += data
+
+    def unpack(self, place: dict[str, Any]) -> np.ndarray:
+        """An array of the page, from its place there."""
+        self.packed = self.packed or zlib.decompress(base64.b64decode(self.arrays), -15)
+        own = np.frombuffer(self.packed, np.uint8)[4 * place["at"] : 4 * (place["at"] + place["count"])]
+        return np.ascontiguousarray(own.reshape(4, -1).T).view("<" + place["type"]).ravel()
 
     @property
     def scene(self) -> dict[str, Any]:

@@ -157,7 +157,7 @@ def _solve(
     directory = arguments.output or job.directory
     model = restart.description(job.model)
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
-    with Stream(directory, model, arguments.restart, fields, progress) as stream:
+    with Stream(directory, model, arguments.restart, fields, progress, job.output) as stream:
         before = stream.resumed
         if before:
             progress(restart.last(before))

@@ -36,11 +36,11 @@ def write_vtu(
 
     point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks; names: lists of strings
     for the whole file (VTK's field data). raw: no base64, which takes longer than all the rest, for a third more bytes, but
-    lets VTK notice damage: for results, which viewers read, rather than meshes.
+    lets VTK notice damage, and numbers of points in 32 bits: for results, which viewers read, rather than meshes.
     Raises InputError where the file cannot be written.
     """
-    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
@@ -53,8 +53,9 @@ def write_vtu(
     counts = np.concatenate([np.full(len(nodes), nodes.shape[1]) for _, nodes in blocks])
     cells = vtkCellArray()
     cells.SetData(
-        numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), deep=True),
-        numpy_to_vtkIdTypeArray(np.concatenate([n.ravel() for _, n in blocks]).astype(np.int64), deep=True),
+        *_integers(
+            [np.concatenate([[0], np.cumsum(counts)]), np.concatenate([n.ravel() for _, n in blocks])], short=raw
+        )
     )
     kinds = np.concatenate([np.full(len(nodes), VTK_CODE[kind], np.uint8) for kind, nodes in blocks])
     grid.SetCells(numpy_to_vtk(kinds, deep=True), cells)
@@ -63,25 +64,54 @@ def write_vtu(
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             target.AddArray(array)
-
-    for name, texts in (names or {}).items():
-        strings = vtkStringArray()
-        strings.SetName(name)
-        for text in texts:
-            strings.InsertNextValue(text)
-        grid.GetFieldData().AddArray(strings)
+    _add_texts(grid, names or {})
 
     def write(temporary: Path) -> None:
         temporary.touch()  # raises OSError with a reason where VTK would only say no
         writer = vtkXMLUnstructuredGridWriter()
         writer.SetFileName(str(temporary))
         writer.SetInputData(grid)
-        writer.SetCompressorTypeToLZ4()  # several times as fast as zlib, for a third more bytes
+        _compress(writer, results=raw)
         writer.SetEncodeAppendedData(not raw)
         if not writer.Write():
             raise OSError(f"VTK could not write {path.name}")
 
     write_file(path, write)
+
+
+def _add_texts(grid: Foreign, names: Mapping[str, Sequence[str]]) -> None:
+    """Lists of strings for the whole file."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    for name, texts in names.items():
+        strings = vtkStringArray()
+        strings.SetName(name)
+        for text in texts:
+            strings.InsertNextValue(text)
+        grid.GetFieldData().AddArray(strings)
+
+
+def _compress(writer: Foreign, results: bool) -> None:
+    """Of results zlib leaves a seventh less than LZ4; its higher levels take longer for a hundredth."""
+    if results:
+        writer.SetCompressorTypeToZLib()
+        writer.SetCompressionLevel(1)
+    else:
+        writer.SetCompressorTypeToLZ4()
+
+
+def _integers(lists: Sequence[Array], short: bool) -> list[Foreign]:
+    """VTK's arrays of 64 bits, or ``short`` of 32 where that is enough."""
+    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkTypeInt32Array
+
+    if not short or max(int(numbers.max(initial=0)) for numbers in lists) >= 2**31:
+        return [numpy_to_vtkIdTypeArray(numbers.astype(np.int64), deep=True) for numbers in lists]
+    arrays = [vtkTypeInt32Array() for _ in lists]
+    for array, numbers in zip(arrays, lists):
+        array.SetNumberOfValues(len(numbers))
+        vtk_to_numpy(array)[:] = numbers
+    return arrays
 
 
 def read_vtu(path: Path) -> RawMesh:

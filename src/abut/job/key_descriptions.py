@@ -32,7 +32,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rotations": "surfaces, node sets and bodies that turn about an axis; finite kinematics only",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
-        "output": "where the results go",
+        "output": "where the results go, and which of them are written",
     },
     "MeshTable": {
         "file": "mesh file beside the job file (.msh, .vtu, or .inp, of which the mesh alone is read)",
@@ -219,7 +219,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
         "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
     },
-    "OutputTable": {"directory": "folder of the results, beside the job file"},
+    "OutputTable": {
+        "directory": "folder of the results, beside the job file",
+        "steps": "steps with VTU files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
+        "Tables, summary and report have every step",
+        "fields": "what VTU files hold: fields of the bodies, and contact for the files of contact surfaces; "
+        "principal-stress is left out unless it is named",
+    },
 }
 
 

@@ -42,6 +42,7 @@ from abut.model import (
     Term,
     Traction,
 )
+from abut.output.options import Output
 from abut.types import Json
 
 GENERATORS: Mapping[str, Callable[..., Mesh]] = {
@@ -67,7 +68,7 @@ DECK = ".inp"
 class Job:
     """A loaded job: the model, where its results go, the file and its text; notes: what was found and chosen, or
     replaced in a deck; ignored: what the user had omitted from a deck; own_laws: of a deck's contacts, by name, which exact
-    contact may replace."""
+    contact may replace; output: which VTU files are written."""
 
     model: Model
     directory: Path
@@ -77,6 +78,7 @@ class Job:
     entries: tuple[int, ...] = ()  # which [[contacts]] each contact of the model comes from
     ignored: tuple[str, ...] = ()
     own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
+    output: Output = field(default_factory=Output)
 
 
 def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), soft: bool = False) -> Job:
@@ -102,11 +104,11 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
         raise InputError(f"{path}:\n  {problems}") from None
     try:
         model, resolved = _model(file, path.parent, refine)
+        output = Output(file.output.steps, tuple(file.output.fields))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    return Job(
-        model, path.parent / file.output.directory, path, text, (*model.mesh.notes, *resolved.notes), resolved.entries
-    )
+    notes = (*model.mesh.notes, *resolved.notes)
+    return Job(model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output)
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:

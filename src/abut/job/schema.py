@@ -18,6 +18,7 @@ from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
 from abut.model.solve_options import LINEAR, SolveOptions
+from abut.output.options import FIELDS, STEPS, USUAL
 from abut.types import Json
 
 
@@ -329,6 +330,8 @@ class SolveTable(Table):
 
 class OutputTable(Table):
     directory: str = "results"
+    steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
+    fields: list[Annotated[str, OneOf(FIELDS)]] = list(USUAL)
 
 
 class JobFile(Table):

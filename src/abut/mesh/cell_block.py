@@ -13,8 +13,8 @@ from abut.cells import CELLS
 
 @dataclass(frozen=True)
 class CellBlock:
-    """Cells of one type: ``kind`` a name in ``abut.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32, of which whole numbers of
-    any kind are made. Raises InputError for what is no such array."""
+    """Cells of one type: ``kind`` a name in ``abut.cells.CELLS``, ``nodes`` (n_cells, n_nodes) int32, of which whole numbers
+    of any kind are made. Raises InputError for what is no such array."""
 
     kind: str
     nodes: NDArray[np.int32]

@@ -25,6 +25,7 @@ def contact_summary(contact: ContactResult) -> Json:
         "contactor": contact.contactor.name,
         "target": contact.target.name,
         "force": contact.force.tolist(),
+        "force_by_area": contact.force_by_area,
         "max_pressure": number(contact.max_pressure),
         "area": contact.area,
         "max_penetration": contact.max_penetration,
@@ -108,6 +109,7 @@ def more_columns(dim: int) -> list[str]:
         "loaded_area",
         *(f"centre_{a}" for a in axes),
         *(f"contact_moment_{a}" for a in turns),
+        "force_by_area",
     ]
 
 
@@ -131,7 +133,7 @@ def friction_columns(dim: int) -> list[str]:
 def more_values(contact: ContactResult) -> dict[str, float]:
     """Their values by name, nan where there is no number: readers of the columns before them take it for one."""
     s, r = contact.statistics, contact.resultant
-    values = (*s.place, s.partly_covered, s.mean, s.percentile_95, s.area, *r.centre, *r.moment)
+    values = (*s.place, s.partly_covered, s.mean, s.percentile_95, s.area, *r.centre, *r.moment, contact.force_by_area)
     result = dict(zip(more_columns(contact.contactor.dim), map(float, values)))
     if contact.friction is not None:
         friction = contact.friction

@@ -8,15 +8,16 @@ from pathlib import Path
 
 from abut.io.vtu import write_vtu
 from abut.model import Model
+from abut.output.options import EVERYTHING, Output
 from abut.solution import Step
 from abut.solution.grids import cell_error, field_grid
 
-WriteFields = Callable[[Path, Model, Step], None]  # writes the fields of a step to a directory
+WriteFields = Callable[[Path, Model, Step, Output], None]  # writes the fields of a step to a directory
 
 
-def write_fields(folder: Path, model: Model, step: Step) -> None:
-    """The fields of a step as one VTU file. Raises InputError where the file cannot be written."""
-    grid = field_grid(model.mesh, step.displacement, step.stress, cell_error(step))
+def write_fields(folder: Path, model: Model, step: Step, output: Output = EVERYTHING) -> None:
+    """The fields of a step that ``output`` names as one VTU file. Raises InputError where the file cannot be written."""
+    grid = output.of_bodies(field_grid(model.mesh, step.displacement, step.stress, cell_error(step)))
     write_vtu(folder / whole_name(step.number), grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     (folder / list_name(step.number)).unlink(missing_ok=True)  # of an earlier run on several processes
     remove_pieces(folder, step.number)

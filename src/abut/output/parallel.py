@@ -16,6 +16,7 @@ from abut.io.vtu import write_vtu
 from abut.mesh.mesh import Mesh
 from abut.model import Model
 from abut.output.fields import list_name, piece_name, remove_pieces, whole_name
+from abut.output.options import EVERYTHING, Output
 from abut.parallel.partition import Piece
 from abut.solution import Step
 from abut.solution.grids import Grid, cell_error, field_grid
@@ -23,7 +24,7 @@ from abut.solution.grids import Grid, cell_error, field_grid
 if TYPE_CHECKING:
     from abut.parallel.team import Store, Team
 
-VTK_TYPES = {"float64": "Float64", "int32": "Int32"}
+VTK_TYPES = {"float32": "Float32", "float64": "Float64", "int32": "Int32"}
 
 
 class Pieces:
@@ -32,7 +33,7 @@ class Pieces:
     def __init__(self, team: Team) -> None:
         self._team = team
 
-    def __call__(self, folder: Path, model: Model, step: Step) -> None:
+    def __call__(self, folder: Path, model: Model, step: Step, output: Output = EVERYTHING) -> None:
         """Raises InputError where a file cannot be written."""
         dealt: Sequence[Piece] = self._team.store["pieces"]
         listed = folder / list_name(step.number)
@@ -41,7 +42,7 @@ class Pieces:
         arguments = [
             (
                 folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points],
-                None if error is None else error[p.cells],
+                None if error is None else error[p.cells], output,
             )
             for process, p in enumerate(dealt)
         ]  # fmt: skip
@@ -61,16 +62,17 @@ def write_piece(
     displacement: NDArray[np.float64],
     stress: NDArray[np.float64],
     error: NDArray[np.float64] | None,
+    output: Output,
 ) -> dict[str, list[tuple[str, str, int]]] | InputError | None:
     """Write this process's part of the mesh with displacement (n_points, dim) and stress (n_points, 6) at its points and the
-    estimated error of stresses (n_cells,).
+    estimated error of stresses (n_cells,), as far as ``output`` names them.
 
     Returns the arrays by place (name, type, components); None where it has no cells; the error where it cannot be
     written: one process must not raise while the others wait for it."""
     mesh: Mesh = store["part"].mesh
     if mesh.n_cells == 0:
         return None
-    grid = field_grid(mesh, displacement, stress, error)
+    grid = output.of_bodies(field_grid(mesh, displacement, stress, error))
     try:
         write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     except InputError as error:

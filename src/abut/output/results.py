@@ -18,7 +18,7 @@ from abut.io.atomic import make_directory, write_text
 from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.output import probes
+from abut.output import forces, probes
 from abut.output.contact_rows import (
     OF_CONTACT,
     contact_summary,
@@ -32,6 +32,7 @@ from abut.output.contact_rows import (
 )
 from abut.output.earlier import INDEX, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
+from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
 from abut.solution.grids import contact_grid
@@ -44,12 +45,14 @@ def write(
     origin: Origin | None = None,
     steps: Sequence[Step] | None = None,
     fields: WriteFields = write_fields,
+    output: Output = EVERYTHING,
 ) -> Path:
     """Write everything about a solution to ``directory`` (created if needed) and return it.
 
-    report.html, summary.json, history.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd likewise for
-    each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the report; steps:
-    those whose VTU files are still to be written, all of them by default; fields: what writes the fields of a step.
+    report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
+    likewise for each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the
+    report; steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields of
+    a step; output: which steps and fields have VTU files.
     Raises InputError where the directory cannot be written.
 
     >>> from tempfile import TemporaryDirectory
@@ -64,32 +67,45 @@ def write(
     ... )
     >>> with TemporaryDirectory() as folder:
     ...     sorted(path.name for path in abut.write(abut.solve(bar), folder).iterdir())
-    ['fields.pvd', 'fields_0001.vtu', 'history.csv', 'report.html', 'run.jsonl', 'summary.json']
+    ['fields.pvd', 'fields_0001.vtu', 'forces.csv', 'history.csv', 'report.html', 'run.jsonl', 'summary.json']
     """
     folder = Path(directory)
     make_directory(folder)
-    write_steps(folder, solution, solution.steps if steps is None else steps, fields)
-    write_index(folder, solution)
-    remove_others(folder, len(solution.steps), [*INDEX, *_files(solution)])
+    write_steps(folder, solution, solution.steps if steps is None else steps, fields, output)
+    write_index(folder, solution, output)
+    shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
+    remove_others(folder, len(solution.steps), [*INDEX, *_files(solution, shown, output)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
 
-def write_steps(folder: Path, solution: Solution, steps: Sequence[Step], fields: WriteFields = write_fields) -> None:
-    """The VTU files of some steps."""
+def write_steps(
+    folder: Path, solution: Solution, steps: Sequence[Step], fields: WriteFields, output: Output, final: bool = True
+) -> None:
+    """The VTU files of those of some steps that ``output`` names; final: there are no steps to come."""
     for step in steps:
-        fields(folder, solution.model, step)
-        for contact, name in zip(step.contacts, _contact_files(step)):
-            grid = contact_grid(step, contact)
+        if not _wanted(solution, step, output, final):
+            continue
+        if output.bodies:
+            fields(folder, solution.model, step, output)
+        for contact, name in zip(step.contacts, _contact_files(step)) if output.contacts else ():
+            grid = single(contact_grid(step, contact))
             write_vtu(folder / name, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
 
 
-def write_index(folder: Path, solution: Solution) -> None:
-    """The files that tell of all steps."""
-    _write_collection(folder, "fields", solution.steps, [found_name(folder, step.number) for step in solution.steps])
-    files = [_contact_files(step) for step in solution.steps]
-    for index, label in enumerate(_contact_labels(solution.steps[-1])):
-        _write_collection(folder, label, solution.steps, [names[index] for names in files])
+def _wanted(solution: Solution, step: Step, output: Output, final: bool) -> bool:
+    return output.wants(step.number, final and step.number == solution.steps[-1].number)
+
+
+def write_index(folder: Path, solution: Solution, output: Output, final: bool = True) -> None:
+    """The files that tell of all steps; ``output`` and ``final`` as in ``write_steps``."""
+    shown = [step for step in solution.steps if _wanted(solution, step, output, final)]
+    if output.bodies:
+        _write_collection(folder, "fields", shown, [found_name(folder, step.number) for step in shown])
+    files = [_contact_files(step) for step in shown]
+    for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
+        _write_collection(folder, label, shown, [names[index] for names in files])
+    write_text(folder / forces.FILE, forces.table(solution))
     for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
         write_text(folder / name, probes.table(solution.steps, index))
     write_text(folder / "history.csv", _history(solution))
@@ -137,16 +153,20 @@ def status(solution: Solution) -> str:
     return "converged" if solution.complete else "incomplete"
 
 
-def is_written(folder: Path, step: Step) -> bool:
-    """Whether all files of a step are there."""
-    return is_whole(folder, step.number) and all((folder / name).is_file() for name in _contact_files(step))
+def is_written(folder: Path, step: Step, output: Output = EVERYTHING) -> bool:
+    """Whether all files of a step are there that ``output`` names."""
+    contacts = _contact_files(step) if output.contacts else []
+    whole = is_whole(folder, step.number) or not output.bodies
+    return whole and all((folder / name).is_file() for name in contacts)
 
 
-def _files(solution: Solution) -> list[str]:
-    """Names of all files of contacts and probes."""
-    of_contacts = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
+def _files(solution: Solution, shown: Sequence[Step], output: Output) -> list[str]:
+    """Names of all files of contacts, in the steps shown, and of probes."""
     tables = probes.table_names([probe.name for probe in solution.model.probes])
-    return [*of_contacts, *tables, *(name for step in solution.steps for name in _contact_files(step))]
+    if not output.contacts:
+        return tables
+    collections = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
+    return [*tables, *collections, *(name for step in shown for name in _contact_files(step))]
 
 
 def _contact_labels(step: Step) -> list[str]:

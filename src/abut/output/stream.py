@@ -13,6 +13,7 @@ from abut.io.atomic import remove_leftovers
 from abut.output.earlier import remove_all, set_aside
 from abut.output.fields import WriteFields, write_fields
 from abut.output.lock import Lock
+from abut.output.options import EVERYTHING, Output
 from abut.output.restart import clear, load_steps, save_step
 from abut.output.results import is_written, write, write_index, write_steps
 from abut.report import Origin
@@ -33,8 +34,8 @@ class Stream:
     that, they are moved aside.
 
     model: what a restart compares (``abut.output.restart.description``); restart: whether to go on after the steps of an
-    earlier run, which are ``resumed``; fields: what writes the fields of a
-    step; tell: gets a note.
+    earlier run, which are ``resumed``; fields: what writes the fields of a step; tell: gets a note; output: which VTU files
+    are written.
     Raises InputError where the directory cannot be written or another run writes there, and where there is nothing to go on
     with.
     """
@@ -46,12 +47,14 @@ class Stream:
         restart: bool = False,
         fields: WriteFields = write_fields,
         tell: Callable[[str], None] | None = None,
+        output: Output = EVERYTHING,
     ) -> None:
         self.directory = directory
         self._tell = tell
-        self._fields = fields
+        self._fields, self._output = fields, output
         self._model = model
         self._written: set[int] = set()
+        self._whole: set[int] = set()  # those of them with VTU files
         self._lock = Lock(directory)
         try:
             self.resumed: list[Saved] = load_steps(directory, model) if restart else []
@@ -89,17 +92,19 @@ class Stream:
     def step(self, solution: Solution, saved: Saved) -> None:
         """Write the last step of the solution so far."""
         self._make_room()
-        write_steps(self.directory, solution, self._missing(solution), self._fields)
+        write_steps(self.directory, solution, self._missing(solution), self._fields, self._output, final=False)
+        if self._output.wants(saved.number):
+            self._whole.add(saved.number)
         self._written.add(saved.number)
         self.time = saved.state.time
-        write_index(self.directory, solution)
+        write_index(self.directory, solution, self._output, final=False)
         save_step(self.directory, self._model, saved)
 
     def finish(self, solution: Solution, origin: Origin | None = None) -> None:
         """Write what is still to be written, and the report, which says where the job comes from (``origin``); restart data
         stay only where there is something left to do."""
         self._make_room()
-        write(solution, self.directory, origin, self._missing(solution), self._fields)
+        write(solution, self.directory, origin, self._missing(solution), self._fields, self._output)
         self._written.add(len(solution.steps))
         if solution.converged and solution.complete:
             clear(self.directory)
@@ -115,8 +120,8 @@ class Stream:
         return [
             step
             for step in solution.steps
-            if step.number not in self._written
-            and not (step.number <= len(self.resumed) and is_written(self.directory, step))
+            if step.number not in self._whole
+            and not (step.number <= len(self.resumed) and is_written(self.directory, step, self._output))
         ]
 
     def __enter__(self) -> Stream:

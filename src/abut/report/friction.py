@@ -67,8 +67,8 @@ def friction_fields(friction: FrictionResult, at: Patch) -> dict[str, Vector]:
         "traction": np.linalg.norm(at.nodal(friction.traction), axis=1),
         "slip": np.linalg.norm(at.nodal(friction.total_slip), axis=1),
         "slip in the step": np.linalg.norm(at.nodal(moved), axis=1),
-        "friction work": at.nodal(friction.total_work_per_area),
-        "status": at.nodal(SHOWN[friction.status]),
+        "friction work": at.within(friction.total_work_per_area),
+        "status": at.within(SHOWN[friction.status]),
     }
 
 

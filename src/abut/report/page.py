@@ -17,27 +17,31 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 from abut.io.versions import versions
+from abut.report.arrays import Packer
 from abut.report.chart import Beside, Chart
-from abut.report.contact_words import centre, force, moment, number, on_bodies, place, vector
+from abut.report.contact_words import ZERO, centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import Line, pressure_lines
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
+from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
-SCRIPTS = ("plots.js", "parts.js", "arrows.js", "view.js", "report.js")
+SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
+UNLIKE = 1.05  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
 
 
 def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> str:
     """The whole report as text of an HTML file. beside: another solution of the same problem, compared with this one."""
-    picture = scene(solution)
+    of_bodies, arrays = extremes(solution), Packer()
+    picture = scene(solution, of_bodies=of_bodies)
     data = {
-        "scene": picture.data,
+        "scene": arrays.all(picture.data),
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
@@ -56,10 +60,12 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "probes": _probes(solution),
         "beside": "" if beside is None else _beside(beside),
         "contacts": _contacts(solution) + _rigid(solution),
+        "bodies": _table(*largest_by_body(solution, of_bodies), _all_steps(solution)),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
         "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
+        "arrays": arrays.text,
         "libraries": f"<script>{_static('libraries.js')}</script>",
         "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>",
     }
@@ -69,6 +75,10 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         name, after = piece.split("}}", 1)
         text += [parts[name], after]
     return "".join(text)
+
+
+def _all_steps(solution: Solution) -> str:
+    return "At the nodes of each body" + (", of all steps" if len(solution.steps) > 1 else "")
 
 
 def _static(name: str) -> str:
@@ -107,9 +117,13 @@ def _head(solution: Solution, origin: Origin) -> str:
         top = max(touching, key=lambda c: c.max_pressure)
         most = max(touching, key=lambda c: float(np.linalg.norm(c.force)))
         end = " at the end" if len(solution.steps) > 1 else ""
+        carried = max(c.force_by_area for c in touching)
+        resultant = float(np.linalg.norm(most.force))
+        by_area = [("contact force by area" + end, number(carried))] if carried > UNLIKE * resultant else []
         facts = [
             ("largest pressure" + end, number(top.max_pressure)),
-            ("contact force" + end, number(float(np.linalg.norm(most.force)))),
+            ("resultant of contact" + end if by_area else "contact force" + end, _size(resultant, carried)),
+            *by_area,
             ("contact area" + end, number(sum(c.area for c in touching))),
             *facts,
         ]
@@ -124,6 +138,10 @@ def _head(solution: Solution, origin: Origin) -> str:
         f"<h1>{escape(origin.title)}</h1>"
         f'<p class="verdict {"good" if good else "bad"}"><i>{mark}</i>{escape(verdict)}</p><div class=facts>{chips}</div>'
     )
+
+
+def _size(value: float, scale: float) -> str:
+    return number(value if value > ZERO * scale else 0.0)
 
 
 def _reached(solution: Solution) -> str:
@@ -181,6 +199,7 @@ def _contacts(solution: Solution) -> str:
         [
             c.name,
             force(c),
+            number(c.force_by_area),
             number(c.max_pressure),
             number(c.area),
             number(c.max_penetration),
@@ -189,7 +208,16 @@ def _contacts(solution: Solution) -> str:
         ]
         for c in solution.contacts
     ]
-    head = ["contact", "force on the side named first", "largest pressure", "area", "penetration", "active", "covered"]
+    head = [
+        "contact",
+        "force on the side named first",
+        "by area",
+        "largest pressure",
+        "area",
+        "penetration",
+        "active",
+        "covered",
+    ]
     text = _table(head, rows, "At the end of the last step") + _statistics(solution) if rows else ""
     rubbing = friction_rows(solution)
     return text + (_table(HEAD, rubbing, "Friction") if rubbing else "")
@@ -252,7 +280,8 @@ def _trouble(solution: Solution) -> str:
             f"{_list(map(str, remedies(solution)), 'ol')}</section>"
         )
     elif advice := remedies(solution):
-        text += f"<section><h2>Surfaces overlap</h2><p>What to try:</p>{_list(map(str, advice), 'ol')}</section>"
+        listed = _list(map(str, advice), "ol")
+        text += f"<section><h2>Contact is narrow for its facets</h2><p>What to try:</p>{listed}</section>"
     if solution.ignored:
         text += f"<section><h2>Omitted from the deck, as asked</h2>{_list(solution.ignored)}</section>"
     return text
@@ -310,6 +339,7 @@ def _history(solution: Solution) -> Json:
             {
                 "name": name,
                 "force": _plain(float(np.linalg.norm(c.force)) for c in values),
+                "by_area": _plain(c.force_by_area for c in values),
                 "area": _plain(c.area for c in values),
                 "pressure": _plain(c.max_pressure for c in values),
                 "friction": _friction(values),

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
-import base64
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.mesh.mesh import Mesh
+from abut.model import Model
+from abut.report.arrays import moved as on_grid
+from abut.report.arrays import rounded
 from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction_fields
+from abut.report.inside import tetrahedra
+from abut.report.mirror import mirrors
+from abut.report.quantities import ERROR, Extremes, contact_ranges, extremes, node_error, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.solution import ContactResult, Solution, Step
-from abut.solution.grids import largest_pressure, point_fields, vectors
+from abut.solution.grids import vectors
 from abut.types import Array, Json
 
-BUDGET = 9_000_000  # bytes of arrays; a third more as text
+BUDGET = 16_000_000  # bytes of arrays, of which about half is left when they are compressed
 FINE = 30_000  # points on all contact surfaces together, above which they are divided more coarsely
-VALUES = 20  # bytes of a point in a step: displacement, von Mises and the like
+VALUES = 32  # bytes of a point in a step: displacement, stresses and the like
 RUBBING = 32  # more of them on a contactor with friction: traction, slips, status, arrows
-FIXED = 36  # bytes of a point in all: coordinates, triangles, edges
+FIXED = 60  # bytes of a point in all: coordinates, triangles, edges
+CORNERS = 16  # bytes of a tetrahedron of the inside
+FOR_INSIDE = 0.5  # share of the size that the inside may take
 
 
 @dataclass(frozen=True)
@@ -30,65 +39,84 @@ class Scene:
     reduced: tuple[str, ...]
 
 
-def scene(solution: Solution, budget: int = BUDGET) -> Scene:
-    """Bodies (in 3D their skins), both sides of every contact, and their fields at the end of the steps.
+def scene(solution: Solution, budget: int = BUDGET, of_bodies: dict[str, Extremes] | None = None) -> Scene:
+    """Bodies (in 3D their skins, and their inside for sections), both sides of every contact, and their fields at the end of
+    the steps.
 
-    budget: bytes of arrays. Above it steps are left out, then contact surfaces are divided less, then skins are thinned.
+    budget: bytes of arrays. Above it the inside is left out, then steps, then skins are thinned. The last step and those of
+    the largest values stay. of_bodies: ``extremes`` of the solution, where they are known.
     """
     mesh, contacts = solution.model.mesh, solution.contacts
-    reduced = []
+    of_bodies = extremes(solution) if of_bodies is None else of_bodies
     sides = [(c, role) for c in range(len(contacts)) for role in ("contactor", "target")]
     surfaces = [getattr(contacts[c], role) for c, role in sides]
     without = np.concatenate(
         [np.empty((0, 2), np.int64), *(np.stack([s.cells, s.local], axis=1) for s in surfaces if mesh.dim == 3)]
     )
+    patches = [patch(surface, _divided(surfaces)) for surface in surfaces]
+    needed, on_contacts = peak_steps(solution, of_bodies), sum(map(len, patches))
     skins = {body: skin(mesh, body, without) for body in mesh.bodies}
-    facets = sum(map(len, surfaces))
-    most = next((n for n in (4, 2) if facets * (n + 1) ** (mesh.dim - 1) <= FINE), 1)
-    if mesh.dim == 2:
-        most = 8 if most == 4 else 2
-    patches = [patch(surface, most) for surface in surfaces]
+    skins, said = _within(mesh, skins, budget, on_contacts, len(needed))
+    reduced = [said] if said else []
     points = sum(len(s.nodes) for s in skins.values())
-    on_contacts = sum(map(len, patches))
-    room = budget - (FIXED + VALUES) * on_contacts
-    if points * (FIXED + VALUES) > max(room, budget // 2):
-        share = max(room, budget // 2) / (points * (FIXED + VALUES))
-        skins = {body: thin(mesh, s, max(int(share * len(s.nodes)), 50)) for body, s in skins.items()}
-        now = sum(len(s.nodes) for s in skins.values())
-        reduced.append(f"the bodies are drawn by {now} of their {points} points; values are those of the points kept")
-        points = now
-    fixed, per_step = FIXED * (points + on_contacts), VALUES * (points + on_contacts)
+    per_step = VALUES * (points + on_contacts)
     rubbing = [p for (c, role), p in zip(sides, patches) if role == "contactor" and contacts[c].friction is not None]
     per_step += RUBBING * sum(map(len, rubbing))
-    steps = _kept(solution.steps, max(1, int((budget - fixed) // max(per_step, 1))))
+    fixed = FIXED * (points + on_contacts) + CORNERS * sum(len(s.inside) for s in skins.values())
+    steps = kept(solution.steps, needed, max(1, int((budget - fixed) // max(per_step, 1))))
     if len(steps) < len(solution.steps):
-        reduced.append(f"the picture shows {len(steps)} of {len(solution.steps)} steps")
+        some = f"{len(steps)} of {len(solution.steps)} steps"
+        reduced.append(f"the picture shows {some}, those of the largest values among them")
     data = {
         "dim": mesh.dim,
         "finite": solution.model.finite,
         "axisymmetric": mesh.axisymmetric,
         "bodies": [_body(mesh, name, s) for name, s in skins.items()],
         "contacts": [_side(mesh, contacts[c], role, p) for (c, role), p in zip(sides, patches)],
-        "steps": [_fields(step, list(skins.values()), sides, patches) for step in steps],
-        "largest": {"pressure": largest_pressure(steps)},
+        "steps": [_fields(solution.model, step, list(skins.values()), sides, patches) for step in steps],
+        "ranges": {name: own.ranges for name, own in of_bodies.items()} | contact_ranges(solution),
+        "mirrors": mirrors(solution.model),
     }
     return Scene(data, tuple(reduced))
 
 
-def pack(values: Array) -> dict[str, str]:
-    """An array as text: 32-bit floats or unsigned integers, little-endian, base64."""
-    real = np.issubdtype(values.dtype, np.floating)
-    array = np.ascontiguousarray(values, dtype="<f4" if real else "<u4")
-    return {"type": "f4" if real else "u4", "data": base64.b64encode(array.tobytes()).decode("ascii")}
+def _within(
+    mesh: Mesh, skins: dict[str, Skin], budget: int, on_contacts: int, steps: int
+) -> tuple[dict[str, Skin], str]:
+    """Skins with their inside, without, or thinned, so that so many steps stay within a budget beside some points of
+    contact surfaces; and what was left out, in words."""
+    of_point = FIXED + VALUES * steps
+    points = sum(len(s.nodes) for s in skins.values())
+    room = max(budget - of_point * on_contacts, budget // 2)
+    if points * of_point > room:
+        share = room / (points * of_point)
+        skins = {body: thin(mesh, s, max(int(share * len(s.nodes)), 50)) for body, s in skins.items()}
+        now = sum(len(s.nodes) for s in skins.values())
+        return skins, f"the bodies are drawn by {now} of their {points} points; values are those of the points kept"
+    if mesh.dim == 2:
+        return skins, ""
+    filled = {body: own.filled(tetrahedra(mesh, body)) for body, own in skins.items()}
+    cost = sum(CORNERS * len(s.inside) + of_point * (len(s.nodes) - len(skins[b].nodes)) for b, s in filled.items())
+    if cost < FOR_INSIDE * (budget - (points + on_contacts) * of_point):
+        return filled, ""
+    return skins, "sections cut the surfaces of the bodies, and do not show their inside"
+
+
+def _divided(surfaces: Sequence[Any]) -> int:
+    """Lines along a facet's edge: as many as show a parabola, fewer on large surfaces."""
+    facets, dim = sum(map(len, surfaces)), surfaces[0].dim if surfaces else 3
+    most = next((n for n in (4, 2) if facets * (n + 1) ** (dim - 1) <= FINE), 1)
+    return most if dim == 3 else 8 if most == 4 else 2
 
 
 def _body(mesh: Mesh, name: str, skin: Skin) -> Json:
     return {
         "name": name,
-        "points": pack(vectors(mesh.points[skin.nodes])),
-        "triangles": pack(skin.triangles),
-        "edges": pack(skin.edges),
+        "points": vectors(mesh.points[skin.nodes]),
+        "triangles": skin.triangles,
+        "edges": skin.edges,
         "features": skin.features,
+        "inside": skin.inside,
     }
 
 
@@ -98,55 +126,77 @@ def _side(mesh: Mesh, contact: ContactResult, role: str, grid: Patch) -> Json:
     arrows: Json = {}
     if role == "contactor" and contact.friction is not None:
         nodes = arrow_nodes(contact)
-        arrows = {
-            "arrows": {"points": pack(vectors(mesh.points[nodes])), "normals": pack(arrow_normals(contact, nodes))}
-        }
+        arrows = {"arrows": {"points": vectors(mesh.points[nodes]), "normals": rounded(arrow_normals(contact, nodes))}}
     return {
         **arrows,
         "contact": contact.name,
         "role": role,
         "surface": surface.name,
         "body": body,
-        "points": pack(vectors(grid.points)),
-        "normals": pack(vectors(grid.normals)),
-        "cells": pack(grid.cells),
-        "edges": pack(grid.edges),
+        "points": vectors(grid.points),
+        "normals": rounded(vectors(grid.normals)),
+        "cells": grid.cells,
+        "edges": grid.edges,
     }
 
 
-def _fields(step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> Json:
+def _fields(model: Model, step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> Json:
     """Values at the points of bodies and contact surfaces."""
-    fields = point_fields(step)
-    stress, moved = fields["von_mises"], fields["displacement"]
-    bodies = [{"displacement": pack(moved[s.nodes]), "von Mises": pack(stress[s.nodes])} for s in skins]
+    moved, error = vectors(step.displacement), node_error(model.mesh, step)
+    known = {} if error is None else {ERROR: error}
+    strained = {solid.body for solid in model.solids}
+    bodies: list[Json] = []
+    for name, own in zip(model.mesh.bodies, skins):
+        scalars = {**of_stress(step.stress[own.nodes]), **{key: values[own.nodes] for key, values in known.items()}}
+        shown = {key: rounded(values) for key, values in scalars.items()} if name in strained else {}
+        bodies.append({"displacement": on_grid(moved[own.nodes]), **shown})
     contacts = []
     for (c, role), grid in zip(sides, patches):
         contact = step.contacts[c]
         pressure = contact.pressure if role == "contactor" else contact.target_pressure
-        values: Json = {
-            "displacement": pack(grid.of_points(moved)),
-            "von Mises": pack(grid.of_points(stress)),
-            "pressure": pack(grid.nodal(pressure)),
-        }
+        scalars = of_stress(grid.of_points(step.stress))
+        scalars |= {key: grid.within(_own(grid, values)) for key, values in known.items()}
+        scalars["pressure"] = _pressure(grid, pressure)
         if role == "contactor":
-            values["gap"] = pack(grid.nodal(contact.gap))
+            scalars["gap"] = grid.nodal(contact.gap)
         if role == "contactor" and contact.friction is not None:
-            values |= {name: pack(field) for name, field in friction_fields(contact.friction, grid).items()}
+            scalars |= friction_fields(contact.friction, grid)
+        values: Json = {"displacement": on_grid(grid.of_points(moved))}
+        values |= {key: rounded(field) for key, field in scalars.items()}
+        if role == "contactor" and contact.friction is not None:
             nodes = arrow_nodes(contact)
             values["arrows"] = {
-                "traction": pack(at_arrows(contact, nodes, np.nan_to_num(contact.friction.traction))),
-                "displacement": pack(vectors(step.displacement[nodes])),
+                "traction": rounded(at_arrows(contact, nodes, np.nan_to_num(contact.friction.traction))),
+                "displacement": on_grid(vectors(step.displacement[nodes])),
             }
         contacts.append(values)
     return {"number": step.number, "factor": step.factor, "bodies": bodies, "contacts": contacts}
 
 
-def _kept(steps: tuple[Step, ...], most: int) -> list[Step]:
-    """At most so many steps, evenly spread, always the last."""
+def _own(grid: Patch, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values of the mesh's points at the facets' own nodes, (n_facets, 9), NaN where padded."""
+    nodes = grid.surface.nodes
+    return np.where(nodes >= 0, values[np.maximum(nodes, 0)], np.nan)
+
+
+def _pressure(grid: Patch, pressure: NDArray[np.float64]) -> Array:
+    """Pressures between nodes; below the smallest of the nodes parabolas go on their own."""
+    return np.maximum(grid.nodal(pressure), np.nanmin(pressure, initial=np.inf))
+
+
+def kept(steps: tuple[Step, ...], needed: Sequence[int], most: int) -> list[Step]:
+    """At most so many steps, evenly spread, and ``needed`` ones (indices) in any case."""
     if len(steps) <= most:
         return list(steps)
-    picked = np.unique(np.round(np.linspace(len(steps) - 1, 0, most)).astype(int)) if most > 1 else [len(steps) - 1]
-    return [steps[i] for i in picked]
+    spread = np.unique(np.round(np.linspace(len(steps) - 1, 0, max(most, 1))).astype(int))
+    chosen = sorted({*needed, *spread.tolist()})
+    while len(chosen) > max(
+        most, len(needed)
+    ):  # of two neighbours one goes: that with the smallest way between its own
+        inner = [i for i in range(len(chosen)) if chosen[i] not in needed]
+        ends = [-1, *chosen, len(steps)]
+        chosen.pop(min(inner, key=lambda i: ends[i + 2] - ends[i]))
+    return [steps[i] for i in chosen]
 
 
 def thin(mesh: Mesh, skin: Skin, most: int) -> Skin:

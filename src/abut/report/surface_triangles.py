@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -32,12 +32,20 @@ _TRIANGLES: dict[str, tuple[tuple[int, int, int], ...]] = {
 @dataclass(frozen=True)
 class Skin:
     """Points by their numbers in the mesh (n,), triangles (m, 3) and edges (k, 2) between them; the first ``features``
-    edges are borders and creases."""
+    edges are borders and creases. inside: tetrahedra (t, 4) that fill the body, between points of their own as well."""
 
     nodes: NDArray[np.int64]
     triangles: NDArray[np.int64]
     edges: NDArray[np.int64]
     features: int
+    inside: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 4), np.int64))
+
+    def filled(self, tetrahedra: NDArray[np.int64]) -> Skin:
+        """The same with tetrahedra between points of the mesh; points that only these have come last."""
+        more = np.setdiff1d(tetrahedra, self.nodes)
+        nodes = np.concatenate([self.nodes, more])
+        order = np.argsort(nodes)
+        return replace(self, nodes=nodes, inside=order[np.searchsorted(nodes, tetrahedra, sorter=order)])
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,11 @@ class Patch:
                 for facets, shapes in self.samples
             ]
         )
+
+    def within(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The same of values (n_facets, 9) that cannot be beyond the smallest and largest of all nodes; parabolas are."""
+        known = values[np.isfinite(values)]
+        return self.nodal(values).clip(known.min(), known.max()) if len(known) else self.nodal(values)
 
     def of_points(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Values at the mesh's points, (n_points, ...), at the points of the patch."""

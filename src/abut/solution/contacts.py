@@ -200,3 +200,10 @@ class ContactResult:
     target_forces: NDArray[np.float64]
     body_forces: Mapping[str, NDArray[np.float64]]
     friction: FrictionResult | None = None
+
+    @property
+    def force_by_area(self) -> float:
+        """The pressure over the area, wherever it points, at nodes at least half of whose support is covered; 0 without
+        contact. In a fit, where both sides of a body carry, the resultant is only their difference."""
+        mean = self.statistics.mean
+        return 0.0 if isnan(mean) else mean * self.statistics.area

@@ -5,7 +5,7 @@
 const ARROW = { parts: 2, corners: 7, triangles: [0, 1, 2, 0, 2, 3, 4, 5, 6], least: 0.02 };
 
 class Arrows {
-  constructor(item, flat) {
+  constructor(item, flat, cut) {
     this.item = item;
     this.flat = flat;
     this.points = unpack(item.arrows.points);
@@ -17,9 +17,9 @@ class Arrows {
     this.geometry.setIndex(index);
     this.mesh = new THREE.Mesh(this.geometry, new THREE.ShaderMaterial({
       side: THREE.DoubleSide, depthTest: !flat, transparent: flat,
-      uniforms: { ink: { value: new THREE.Color() } },
-      vertexShader: `void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-      fragmentShader: `uniform vec3 ink; void main() { gl_FragColor = vec4(ink, 1.0); }`,
+      uniforms: { ink: { value: new THREE.Color() }, cut },
+      vertexShader: `varying vec3 where; void main() { ${WHERE} gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      fragmentShader: `uniform vec3 ink; uniform vec4 cut; varying vec3 where; void main() { ${CUT} gl_FragColor = vec4(ink, 1.0); }`,
     }));
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 3;

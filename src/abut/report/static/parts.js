@@ -10,17 +10,21 @@ const MAPS = {
   "friction work": ["fcfbfd", "dadaeb", "9e9ac8", "756bb1", "54278f", "3f007d"],
   "status": ["b8bec6", "b8bec6", "e8a33d", "e8a33d", "e8a33d", "2a6fb5", "2a6fb5"],
   "von Mises": ["30123b", "4145ab", "4675ed", "39a2fc", "1bcfd4", "24eca6", "61fc6c", "a4fc3b", "d1e834", "f3c63a", "fe9b2d", "f36315", "d93806", "b11901", "7a0402"],
+  "largest principal stress": ["313695", "4575b4", "74add1", "abd9e9", "f7f7f7", "fdae61", "f46d43", "d73027", "a50026"],
+  "smallest principal stress": ["313695", "4575b4", "74add1", "abd9e9", "f7f7f7", "fdae61", "f46d43", "d73027", "a50026"],
+  "stress error": ["fcfbfd", "dadaeb", "9e9ac8", "756bb1", "54278f", "3f007d"],
   "displacement": ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"],
 };
 
 const STATUS = [["open", "b8bec6"], ["slipping", "e8a33d"], ["sticking", "2a6fb5"]]; // by its value as drawn
 const FROM_ZERO = ["pressure", "traction", "slip", "slip in the step", "friction work"];
-const ON_BODIES = ["von Mises", "displacement"];
+const ON_BODIES = ["von Mises", "largest principal stress", "smallest principal stress", "stress error", "displacement"];
 
+// An array of the page, from its place in the text that has all of them, byte by byte of its numbers.
 function unpack(array) {
-  const text = atob(array.data);
-  const bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  unpack.bytes ||= inflate(atob(document.getElementById("arrays").textContent.trim()));
+  const n = array.count, from = unpack.bytes.subarray(4 * array.at, 4 * (array.at + n)), bytes = new Uint8Array(4 * n);
+  for (let k = 0; k < 4; k++) for (let i = 0; i < n; i++) bytes[4 * i + k] = from[k * n + i];
   return array.type === "f4" ? new Float32Array(bytes.buffer) : new Uint32Array(bytes.buffer);
 }
 
@@ -38,18 +42,22 @@ function ramp(stops) { // a colour map as a texture
   return texture;
 }
 
-function surfaceMaterial(lit) {
+// What lies beyond the plane ``cut`` is not drawn.
+const WHERE = "where = (modelMatrix * vec4(position, 1.0)).xyz;", CUT = "if (dot(cut.xyz, where) > cut.w) discard;";
+
+function surfaceMaterial(lit, cut) {
   return new THREE.ShaderMaterial({
     side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     uniforms: {
       plain: { value: new THREE.Color() }, map: { value: null }, low: { value: 0 }, high: { value: 1 }, bands: { value: 0 },
-      coloured: { value: 0 }, nothing: { value: -1e30 }, opacity: { value: 1 }, lit: { value: lit ? 1 : 0 },
+      coloured: { value: 0 }, nothing: { value: -1e30 }, opacity: { value: 1 }, lit: { value: lit ? 1 : 0 }, cut,
     },
-    vertexShader: `attribute vec2 value; varying vec2 v; varying vec3 n;
-      void main() { v = value; n = normalMatrix * normal; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+    vertexShader: `attribute vec2 value; varying vec2 v; varying vec3 n, where;
+      void main() { v = value; ${WHERE} n = normalMatrix * normal; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
     fragmentShader: `uniform vec3 plain; uniform sampler2D map; uniform float low, high, bands, coloured, nothing, opacity, lit;
-      varying vec2 v; varying vec3 n;
+      uniform vec4 cut; varying vec2 v; varying vec3 n, where;
       void main() {
+        ${CUT}
         float t = clamp((v.x - low) / max(high - low, 1e-30), 0.0, 1.0);
         if (bands > 0.0) t = (min(floor(t * bands), bands - 1.0) + 0.5) / bands;
         bool shown = coloured > 0.5 && v.y > 0.99 && v.x > nothing;
@@ -63,12 +71,12 @@ function surfaceMaterial(lit) {
   });
 }
 
-function lineMaterial() {
+function lineMaterial(cut) {
   return new THREE.ShaderMaterial({
     transparent: true, depthWrite: false,
-    uniforms: { ink: { value: new THREE.Color() }, opacity: { value: 1 } },
-    vertexShader: `void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-    fragmentShader: `uniform vec3 ink; uniform float opacity; void main() { gl_FragColor = vec4(ink, opacity); }`,
+    uniforms: { ink: { value: new THREE.Color() }, opacity: { value: 1 }, cut },
+    vertexShader: `varying vec3 where; void main() { ${WHERE} gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+    fragmentShader: `uniform vec3 ink; uniform float opacity; uniform vec4 cut; varying vec3 where; void main() { ${CUT} gl_FragColor = vec4(ink, opacity); }`,
   });
 }
 
@@ -102,7 +110,7 @@ function creasedNormals(points, triangles) {
 
 // One body or one side of a contact. Vertices of the drawing take their place and values from points of the data (map).
 class Part {
-  constructor(item, kind, flat, turns) {
+  constructor(item, kind, flat, turns, cut) {
     this.item = item;
     this.turns = turns; // far: normals go with the deformation
     this.kind = kind; // "body", "side" (surface of a contact) or "fence" (values drawn across a line in 2D)
@@ -133,7 +141,7 @@ class Part {
     this.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * n), 3));
     this.geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
     this.geometry.setAttribute("value", new THREE.BufferAttribute(new Float32Array(2 * n), 2));
-    this.mesh = new THREE.Mesh(this.geometry, surfaceMaterial(!flat));
+    this.mesh = new THREE.Mesh(this.geometry, surfaceMaterial(!flat, cut));
     this.mesh.userData.part = this;
     const edges = kind === "fence" ? this.fenceEdges(cells.length / 2) : unpack(item.edges);
     const features = kind === "body" ? item.features : 0;
@@ -142,7 +150,7 @@ class Part {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", this.place);
       geometry.setIndex(new THREE.BufferAttribute(part, 1));
-      const result = new THREE.LineSegments(geometry, lineMaterial());
+      const result = new THREE.LineSegments(geometry, lineMaterial(cut));
       result.frustumCulled = false;
       return result;
     };
@@ -172,6 +180,16 @@ class Part {
     const own = (this.kind === "body" ? step.bodies : step.contacts)[this.item.number].displacement;
     return (own.array ||= unpack(own));
   }
+
+  // Points of the data at a step, deformed ``scale`` times.
+  moved(step, scale) {
+    if (!scale) return this.base;
+    const u = this.displacement(step);
+    return this.base.map((v, i) => v + scale * u[i]);
+  }
+
+  // Triangles between points of the data.
+  get corners() { return this.kind === "body" ? this.map : this.geometry.index.array; }
 
   // Normals of a surface at its points as they are now.
   turn(moved) {

@@ -2,10 +2,10 @@
 // Plots with uPlot: convergence, history over the steps, pressure along lines.
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
-const short = (value) => {
+const short = (value, digits = 5) => {
   if (value == null || value === 0) return value === 0 ? "0" : "";
   const size = Math.abs(value);
-  return size < 1e-3 || size >= 1e6 ? value.toExponential(3).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(value.toPrecision(5)));
+  return size < 1e-3 || size >= 1e6 ? value.toExponential(Math.max(3, digits - 2)).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(value.toPrecision(digits)));
 };
 
 function plot(parent, title, xLabel, xs, series, options = {}) {
@@ -18,7 +18,11 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
   const grid = { stroke: colour("line"), width: 1 };
   const axis = (more) => ({ stroke: colour("soft"), grid, ticks: grid, font: "12px system-ui", labelFont: "12px system-ui", ...more });
   const powers = (u, values) => values.map((v) => v == null ? "" : "1e" + Math.round(Math.log10(v)));
-  const plain = (u, values) => values.map(short);
+  const plain = (u, values) => { // as many digits as tell neighbours apart
+    const most = Math.max(...values.map((v) => Math.abs(v || 0))), gap = values.length > 1 ? Math.abs(values[1] - values[0]) : most;
+    const digits = gap > 0 ? Math.min(15, Math.max(5, Math.ceil(Math.log10(most / gap)) + 2)) : 5;
+    return values.map((v) => short(v, digits));
+  };
   const decades = (u, axis, low, high) => { // at most eight powers of ten
     const [a, b] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))], every = Math.max(1, Math.ceil((b - a) / 7));
     return Array.from({ length: Math.floor((b - a) / every) + 1 }, (_, i) => 10 ** (b - i * every)).reverse();
@@ -45,7 +49,7 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
       ...(right ? [axis({ scale: "right", side: 1, size: 72, grid: { show: false }, values: plain, label: "gap", labelSize: 18 })] : []),
     ],
     series: [
-      { label: xLabel, value: (u, v) => short(v) },
+      { label: "at", value: (u, v) => short(v) }, // the axis has the words
       ...series.map((s) => ({
         label: s.label, scale: s.right ? "right" : "y", stroke: colour(s.colour), width: s.width || 2, dash: s.dash, spanGaps: Boolean(s.spans),
         points: { show: s.points !== false && xs.length < 60, size: 6, fill: colour("paper"), stroke: colour(s.colour) },
@@ -54,9 +58,42 @@ function plot(parent, title, xLabel, xs, series, options = {}) {
     ],
     hooks: options.marks ? { draw: [(u) => marks(u, options.marks)] } : {},
   }, [xs, ...series.map((s) => s.values)], box);
+  saving(box, chart, title, xLabel, series);
   new ResizeObserver(() => {
     if (Math.abs(chart.width - (box.clientWidth - 20)) > 2) chart.setSize({ width: box.clientWidth - 20, height: 270 });
   }).observe(box);
+}
+
+// Buttons that save the numbers of a plot as CSV and its drawing as PNG.
+function saving(box, chart, title, xLabel, series) {
+  const save = (name, address) => Object.assign(document.createElement("a"), { href: address, download: `${title.replace(/[^\w.-]+/g, "_")}.${name}` }).click();
+  const cell = (v) => v == null ? "" : typeof v === "number" ? String(v) : `"${v.replace(/"/g, '""')}"`;
+  const csv = () => [[xLabel, ...series.map((s) => s.label)], ...chart.data[0].map((_, i) => chart.data.map((column) => column[i]))]
+    .map((row) => row.map(cell).join(",")).join("\n") + "\n";
+  const png = () => {
+    const from = chart.ctx.canvas, ratio = from.width / (chart.width || 1), head = 54 * ratio, canvas = document.createElement("canvas");
+    Object.assign(canvas, { width: from.width, height: from.height + head });
+    const to = canvas.getContext("2d");
+    to.fillStyle = colour("paper");
+    to.fillRect(0, 0, canvas.width, canvas.height);
+    to.fillStyle = colour("text");
+    to.font = `600 ${14 * ratio}px system-ui`;
+    to.fillText(title, 10 * ratio, 20 * ratio);
+    to.font = `${12 * ratio}px system-ui`;
+    series.reduce((x, s) => {
+      to.fillStyle = colour(s.colour);
+      to.fillText(s.label, x, 42 * ratio);
+      return x + to.measureText(s.label).width + 18 * ratio;
+    }, 10 * ratio);
+    to.drawImage(from, 0, head);
+    return canvas.toDataURL("image/png");
+  };
+  const buttons = Object.assign(document.createElement("div"), { className: "save" });
+  for (const [name, address] of [["CSV", () => "data:text/csv;charset=utf-8," + encodeURIComponent(csv())], ["PNG", png]]) {
+    buttons.append(Object.assign(document.createElement("button"), { textContent: name, title: `save this plot as ${name}`, onclick: () => save(name.toLowerCase(), address()) }));
+  }
+  box.append(buttons);
+  box.abut = { csv, png };
 }
 
 function marks(u, places) { // vertical lines where a new load step begins
@@ -120,7 +157,7 @@ function drawPlots(data) {
   ], whole);
   const history = at("history");
   if (data.history.factor.length > 1) {
-    for (const [key, title] of [["force", "Contact force"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
+    for (const [key, title] of [["force", "Contact force (resultant)"], ["by_area", "Contact force by area"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
       if (!data.history.contacts.length) break;
       plot(history, title, "time (share of the load, where no amplitude says otherwise)", data.history.factor,
         data.history.contacts.map((c, i) => ({ label: c.name, values: c[key], colour: colours[i % colours.length] })));

@@ -82,9 +82,15 @@
   function panel(view) {
     const s = view.state, scene = data.scene, at = document.getElementById("panel");
     const heading = (text) => element("h4", { textContent: text });
-    const fields = Object.keys(MAPS).filter((f) => ON_BODIES.includes(f) || view.has(f));
+    const fields = Object.keys(MAPS).filter((f) => ON_BODIES.includes(f) ? f in scene.ranges : view.has(f));
     const [bar, showBar] = colourBar(view);
     at.append(heading("Colour"), choice(fields, s.field, (f) => { s.field = f; showBar(); view.apply(); }), bar);
+    if (scene.bodies.length > 1) {
+      const names = ["all bodies", ...scene.bodies.map((b) => b.name)], select = element("select");
+      select.append(...names.map((name, i) => element("option", { textContent: name, value: i })));
+      select.onchange = () => { s.of = Number(select.value); s.range = {}; showBar(); view.apply(); };
+      at.append(element("label", {}, element("span", { textContent: "range of" }), select));
+    }
     if (view.arrows.length) at.append(tick("arrows: tangential traction", s.arrows, (on) => { s.arrows = on; view.apply(); }));
     at.append(tick("bands of colour", s.bands, (on) => { s.bands = on; view.apply(); }));
     at.append(tick("mesh", s.mesh, (on) => { s.mesh = on; view.apply(); }));
@@ -102,6 +108,13 @@
     const name = () => { title.textContent = `Deformation ×${s.scale}${s.scale === 1 ? " (true)" : ""}`; };
     at.append(title, slider(view.scales.length, view.scales.indexOf(1), (i) => { s.scale = view.scales[i]; name(); view.apply(); }));
     name();
+    if (!view.flat) sections(view, at, heading);
+    if (scene.mirrors.length) at.append(heading("Mirrored at"));
+    scene.mirrors.forEach((plane, i) => {
+      const axis = plane.slice(0, 3).findIndex((v) => Math.abs(v) > 1 - 1e-9);
+      const label = axis < 0 ? `normal (${plane.slice(0, 3).map(short).join(", ")})` : `${"xyz"[axis]} = ${short(plane[axis] * plane[3] || 0)}`;
+      at.append(tick(label, false, (on) => { s.mirrors[i] = on; view.mirror(); }));
+    });
     at.append(heading("Bodies"));
     scene.bodies.forEach((b, i) => {
       const how = view.flat ? ["solid", "hidden"] : ["solid", "ghost", "hidden"];
@@ -118,6 +131,18 @@
       view.draw();
       element("a", { href: view.renderer.domElement.toDataURL("image/png"), download: document.title + ".png" }).click();
     } }));
+  }
+
+  function sections(view, at, heading) {
+    const s = view.state.section, input = slider(201, Math.round(200 * s.at), (i) => { s.at = i / 200; view.apply(); });
+    const side = tick("the other side", s.other, (on) => { s.other = on; view.apply(); });
+    const show = () => { input.hidden = side.hidden = !s.axis; };
+    at.append(heading("Section"), choice(["none", "x", "y", "z"], s.axis || "none", (axis) => {
+      s.axis = axis === "none" ? "" : axis;
+      show();
+      view.apply();
+    }), input, side);
+    show();
   }
 
   function viewButtons(view) {

@@ -15,16 +15,21 @@ class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     holder.prepend(this.renderer.domElement);
     this.world = new THREE.Scene();
-    this.bodies = scene.bodies.map((b) => new Part(b, "body", this.flat, scene.finite));
-    this.sides = scene.contacts.map((c) => new Part(c, this.flat ? "fence" : "side", this.flat, scene.finite));
+    this.cut = { value: [0, 0, 0, 1] }; // the plane of the section (normal, constant), which all materials share
+    this.bodies = scene.bodies.map((b) => new Part(b, "body", this.flat, scene.finite, this.cut));
+    this.sides = scene.contacts.map((c) => new Part(c, this.flat ? "fence" : "side", this.flat, scene.finite, this.cut));
     if (this.flat) this.sides.forEach((s) => { if (s.item.role !== "contactor") s.mesh.visible = s.grid.visible = false; });
     for (const part of [...this.bodies, ...this.sides]) this.world.add(part.mesh, part.features, part.grid);
-    this.arrows = scene.contacts.filter((c) => c.arrows).map((c) => new Arrows(c, this.flat));
+    this.arrows = scene.contacts.filter((c) => c.arrows).map((c) => new Arrows(c, this.flat, this.cut));
     for (const own of this.arrows) this.world.add(own.mesh);
+    this.caps = this.bodies.filter((b) => b.item.inside.count).map((b) => new Cap(b));
+    for (const cap of this.caps) this.world.add(cap.mesh);
+    this.copies = []; // mirrored: { reflection, meshes: [[original, copy]], caps }
     this.state = {
       step: scene.steps.length - 1, scale: 1, bands: false, mesh: this.triangles() < 40000, arrows: !this.flat,
       field: scene.contacts.length ? (this.flat ? "von Mises" : "pressure") : "von Mises",
       bodies: this.bodies.map(() => "solid"), sides: this.sides.map((s) => s.item.role === "contactor"), range: {},
+      of: 0, section: { axis: "", at: 0.5, other: false }, mirrors: scene.mirrors.map(() => false),
     };
     if (!this.flat) this.ghostTargets();
     this.maps = Object.fromEntries(Object.entries(MAPS).map(([name, stops]) => [name, ramp(stops)]));
@@ -41,9 +46,24 @@ class View {
     }
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
+    if (!this.flat && this.pressed) this.findContact();
     this.apply();
     this.look("start");
   }
+
+  // The first view shows the contact: from where it is seen, with what hides it faded, or cut away.
+  findContact() {
+    const found = sight(this, this.data.steps.at(-1), this.largest("pressure"));
+    if (!found) return;
+    this.from = found.from;
+    for (const body of found.fade) this.state.bodies[body] = "ghost";
+    if (!found.cut) return;
+    const axis = ["x", "y", "z"].reduce((a, b) => Math.abs(found.from[b]) > Math.abs(found.from[a]) ? b : a);
+    const k = "xyz".indexOf(axis), [low, high] = [this.box[0][k], this.box[1][k]];
+    Object.assign(this.state.section, { axis, at: (this.pressed.centre[axis] - low) / (high - low || 1), other: found.from[axis] < 0 });
+  }
+
+  largest(name) { return (this.data.ranges[name] || [[0, 0]])[0][1]; }
 
   triangles() { return this.bodies.reduce((n, p) => n + p.map.length / 3, 0); }
 
@@ -62,7 +82,7 @@ class View {
         high[i % 3] = Math.max(high[i % 3], x[i]);
       }
     };
-    const place = (part, step) => this.data.finite ? part.base.map((v, i) => v + part.displacement(step)[i]) : part.base;
+    const place = (part, step) => part.moved(step, this.data.finite ? 1 : 0);
     for (const part of [...this.bodies, ...this.sides]) {
       reach(part.base);
       if (this.data.finite) for (const step of this.data.steps) reach(place(part, step));
@@ -76,7 +96,7 @@ class View {
     let weight = 0;
     for (const part of this.sides.filter((s) => s.item.role === "contactor")) {
       const base = place(part, last), p = part.field(last, "pressure"), normals = unpack(part.item.normals);
-      const top = Math.min(p.reduce((a, b) => Math.max(a, b || 0), 0), this.data.largest.pressure);
+      const top = Math.min(p.reduce((a, b) => Math.max(a, b || 0), 0), this.largest("pressure"));
       for (let i = 0; i < p.length; i++) {
         if (!(p[i] > 0.01 * top)) continue;
         const x = Array.from(base.subarray(3 * i, 3 * i + 3));
@@ -101,9 +121,10 @@ class View {
 
   look(name) {
     const directions = { x: [1, 0, 0], y: [0, -1, 0], z: [0, 0, 1], corner: [0.6, -1, 0.55] };
-    const contact = name === "contact" && this.pressed;
+    const small = name === "start" && this.pressed && this.pressed.size < 0.12 * this.size && !this.flat;
+    const contact = (name === "contact" || small) && this.pressed;
     const centre = (contact ? this.pressed.centre : this.centre).clone();
-    const extent = contact ? 1.6 * this.pressed.size : this.size;
+    const extent = contact ? (small ? 5 : 1.6) * this.pressed.size : this.size;
     if (this.flat) {
       const [low, high] = this.box, aspect = this.aspect || 1;
       const half = contact ? 0.5 * extent : 0.54 * Math.max(high[1] - low[1], (high[0] - low[0]) / aspect);
@@ -149,27 +170,15 @@ class View {
 
   get step() { return this.data.steps[this.state.step]; }
 
-  // Least and largest value of a field over all steps and parts.
+  // Least and largest value of a field at the nodes over all steps, of all bodies or of the one that is chosen.
   extent(name) {
-    this.extents ||= {};
-    if (this.extents[name]) return this.extents[name];
-    let low = Infinity, high = -Infinity;
-    for (const step of this.data.steps) {
-      for (const part of [...this.bodies, ...this.sides]) {
-        for (const v of part.field(step, name) || []) {
-          if (v < low) low = v;
-          if (v > high) high = v;
-        }
-      }
-    }
-    if (!(high >= low)) [low, high] = [0, 1];
-    if (name === "status") return (this.extents[name] = [-0.5, 2.5]);
+    if (name === "status") return [-0.5, 2.5];
+    const known = this.data.ranges[name] || [];
+    let [low, high] = known[this.state.of] || known[0] || [0, 1];
     if (FROM_ZERO.includes(name)) low = 0;
-    if (low === 0 && high === 0) high = 1;
-    const counted = this.data.largest[name]; // nodes hardly covered do not set the scale
-    if (counted > 0) high = Math.min(high, counted);
+    if (high <= 0 && low === 0) high = 1;
     if (name === "gap" && high < 1e-9 * this.size) [low, high] = [0, 1e-9 * this.size]; // rounding
-    return (this.extents[name] = [low, high]);
+    return [low, high];
   }
 
   range(name) { return this.state.range[name] || this.extent(name); }
@@ -183,6 +192,7 @@ class View {
     for (const part of this.bodies) part.update(this.step, s.scale, s.field, "", 0);
     for (const part of this.sides) part.update(this.step, s.scale, this.flat && onBodies ? this.fence() : s.field, this.fence(), height);
     this.drawArrows();
+    this.section();
     const style = (part, body, coloured, shown) => {
       const u = part.mesh.material.uniforms, how = s.bodies[body];
       const ghost = how === "ghost" && !shown;
@@ -216,7 +226,63 @@ class View {
       u.coloured.value = same ? 1 : 0;
       if (!same) u.plain.value.setStyle(colour("second"), RAW);
     });
+    for (const own of [{ caps: this.caps, meshes: [] }, ...this.copies]) {
+      for (const cap of own.caps) {
+        const from = cap.part.mesh.material.uniforms, to = cap.mesh.material.uniforms;
+        for (const name of ["plain", "map", "low", "high", "bands", "nothing"]) to[name].value = from[name].value;
+        to.coloured.value = onBodies ? 1 : 0;
+        cap.mesh.visible = Boolean(s.section.axis) && s.bodies[cap.part.item.number] === "solid";
+      }
+      for (const [mesh, copy] of own.meshes) Object.assign(copy, { visible: mesh.visible, renderOrder: mesh.renderOrder });
+    }
     this.draw();
+  }
+
+  // The plane of the section, and what bodies show on it.
+  section() {
+    const { axis, at, other } = this.state.section, k = "xyz".indexOf(axis), sign = other ? -1 : 1;
+    if (!axis) {
+      this.cut.value = [0, 0, 0, 1];
+      return;
+    }
+    const level = this.box[0][k] + at * (this.box[1][k] - this.box[0][k]), plane = [0, 1, 2].map((c) => c === k ? sign : 0);
+    this.cut.value = [...plane, sign * level];
+    for (const own of [{ caps: this.caps }, ...this.copies]) {
+      for (const cap of own.caps) {
+        const here = own.reflection ? own.reflection.plane(this.cut.value) : this.cut.value;
+        if (this.state.bodies[cap.part.item.number] === "solid") cap.update(here, cap.part.field(this.step, this.state.field));
+      }
+    }
+  }
+
+  // The whole of a model of which a half, a quarter or an eighth was solved.
+  mirror() {
+    for (const own of this.copies) for (const mesh of [...own.meshes.map(([, copy]) => copy), ...own.caps.map((cap) => cap.mesh)]) this.world.remove(mesh);
+    const parts = [...this.bodies, ...this.sides].flatMap((p) => [p.mesh, p.features, p.grid]);
+    const place = (mesh, reflection) => {
+      mesh.matrixAutoUpdate = false;
+      reflection.into(mesh.matrix);
+      this.world.add(mesh);
+      return mesh;
+    };
+    this.copies = reflections(this.data.mirrors.filter((_, i) => this.state.mirrors[i])).map((reflection) => ({
+      reflection,
+      meshes: [...parts, ...this.arrows.map((own) => own.mesh)].map((mesh) => [mesh, place(Object.assign(new mesh.constructor(mesh.geometry, mesh.material), { frustumCulled: false }), reflection)]),
+      caps: this.bodies.filter((b) => b.item.inside.count).map((b) => new Cap(b)),
+    }));
+    for (const own of this.copies) for (const cap of own.caps) place(cap.mesh, own.reflection);
+    this.enclose();
+    this.apply();
+    this.look("all");
+  }
+
+  // The box round everything that is drawn.
+  enclose() {
+    this.own ||= this.box;
+    const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((c) => this.own[(i >> c) & 1][c]));
+    const all = [...corners, ...this.copies.flatMap((own) => corners.map((x) => own.reflection.point(x)))];
+    this.box = [Math.min, Math.max].map((f) => [0, 1, 2].map((c) => f(...all.map((x) => x[c]))));
+    this.centre = new THREE.Vector3(...this.box[0].map((v, c) => 0.5 * (v + this.box[1][c])));
   }
 
   // Whether any contact surface has a field.
@@ -243,12 +309,16 @@ class View {
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2(2 * x - 1, 1 - 2 * y), this.camera);
     const parts = [...this.sides, ...this.bodies].filter((p) => p.mesh.visible && !(p.kind === "body" && this.state.bodies[p.item.number] === "ghost"));
-    const hit = ray.intersectObjects(parts.map((p) => p.mesh), false)[0];
+    const copies = new Map(this.copies.flatMap((own) => own.meshes.map(([mesh, copy]) => [copy, [mesh, own.reflection]])));
+    const shown = parts.map((p) => p.mesh), [a, b, c, level] = this.cut.value;
+    const meshes = [...shown, ...[...copies].filter(([, [mesh]]) => shown.includes(mesh)).map(([copy]) => copy)];
+    const hit = ray.intersectObjects(meshes, false).find((one) => a * one.point.x + b * one.point.y + c * one.point.z <= level);
     if (!hit) return null;
-    const part = hit.object.userData.part, place = part.geometry.attributes.position.array;
+    const [origin, reflection] = copies.get(hit.object) || [hit.object, new Reflection([])];
+    const part = origin.userData.part, place = part.geometry.attributes.position.array, here = reflection.point(hit.point.toArray());
     const corners = [hit.face.a, hit.face.b, hit.face.c];
     const nearest = corners.reduce((best, k) => {
-      const d = Math.hypot(...[0, 1, 2].map((c) => place[3 * k + c] - hit.point.getComponent(c)));
+      const d = Math.hypot(...[0, 1, 2].map((c) => place[3 * k + c] - here[c]));
       return d < best[0] ? [d, k] : best;
     }, [Infinity, 0])[1];
     const k = part.map[nearest], values = {};

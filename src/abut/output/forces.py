@@ -1,0 +1,47 @@
+"""forces.csv: force over displacement of every support, coupling and rigid body, step by step."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from abut.model import Coupling
+from abut.solution import Solution, Step
+
+FILE = "forces.csv"
+
+
+def table(solution: Solution) -> str:
+    """A row for each step and each support, coupling and rigid body: motion, and force (moment) that holds or moves it.
+
+    Of a support (surface, node set or body) the displacement is the mean of its nodes, and the force the sum of theirs; of
+    couplings and rigid bodies both are those of the reference. Rotations and moments of supports are empty. Free components
+    have no force."""
+    dim = solution.model.dim
+    axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
+    head = ["step", "factor", "converged", "kind", "name"]
+    head += [f"{name}_{axis}" for name in ("displacement", "force") for axis in axes]
+    if solution.model.referenced:
+        head += [f"{name}_{axis}" for name in ("rotation", "moment") for axis in turns]
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(head)
+    empty = [""] * (len(head) - 5 - 2 * dim)
+    nodes = {name: solution.model.mesh.nodes_of(name) for name in solution.steps[0].reactions}
+    for step in solution.steps:
+        for name, own in nodes.items():
+            motion = step.displacement[own].mean(axis=0) if len(own) else np.zeros(dim)
+            rows.writerow([*_step(step), "support", name, *motion.tolist(), *step.reactions[name].tolist(), *empty])
+        for body in solution.model.referenced:
+            kind, own_name = ("coupling" if isinstance(body, Coupling) else "rigid body"), body.name
+            result = step.rigid[own_name]
+            parts = (result.displacement, result.force, result.rotation, result.moment)
+            rows.writerow([*_step(step), kind, own_name, *np.concatenate(parts).tolist()])
+    return text.getvalue()
+
+
+def _step(step: Step) -> list[Any]:
+    return [step.number, step.factor, int(step.converged)]

@@ -1,0 +1,105 @@
+"""What of a solution is written as VTU files: of which steps, and which fields."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from abut import checks
+from abut.errors import InputError
+from abut.materials.invariants import principal
+from abut.solution.grids import Grid
+from abut.types import Array
+
+ARRAYS = {  # what a file may hold of the bodies, by its key
+    "displacement": "displacement",
+    "stress": "stress",
+    "von-mises": "von_mises",
+    "principal-stress": "principal_stress",
+    "stress-error": "stress_error",
+}
+CONTACT = "contact"  # the files of contact surfaces
+FIELDS = (*ARRAYS, CONTACT)
+USUAL = ("displacement", "stress", "von-mises", "stress-error", CONTACT)
+STEPS = ("all", "last")
+
+
+@dataclass(frozen=True)
+class Output:
+    """Which VTU files a run writes; tables, summary and report have every step in any case.
+
+    steps: "all", "last", n for every n-th step, or a list of numbers; the last step is always among them. fields: names out
+    of ``FIELDS``; without any of the bodies' there is no ``fields.pvd``, without "contact" no ``contact_*.pvd``. Raises
+    InputError for anything else.
+
+    >>> import abut
+    >>> abut.Output(steps=10, fields=["displacement", "von-mises"]).wants(20)
+    True
+    """
+
+    steps: str | int | Sequence[int] = "all"
+    fields: Sequence[str] = USUAL
+
+    def __post_init__(self) -> None:
+        if isinstance(self.steps, str):
+            checks.choice(self.steps, "output.steps", STEPS)
+        else:
+            numbers = [self.steps] if isinstance(self.steps, int) else list(self.steps)
+            if not numbers or any(isinstance(n, bool) or not isinstance(n, int) or n < 1 for n in numbers):
+                raise InputError(
+                    f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
+                    "every tenth step, [10] the tenth"
+                )
+        if isinstance(self.fields, str):
+            raise InputError(f"output.fields: expected a list of names, got {self.fields!r}; write [{self.fields!r}]")
+        for name in self.fields:
+            checks.choice(name, "output.fields", FIELDS)
+
+    def wants(self, number: int, last: bool = False) -> bool:
+        """Whether files of a step are written; last: it is the last one."""
+        if last or self.steps == "all":
+            return True
+        if isinstance(self.steps, str):
+            return False
+        return number % self.steps == 0 if isinstance(self.steps, int) else number in self.steps
+
+    @property
+    def bodies(self) -> bool:
+        """Whether the fields of bodies are written."""
+        return any(name in self.fields for name in ARRAYS)
+
+    @property
+    def contacts(self) -> bool:
+        """Whether contact surfaces are."""
+        return CONTACT in self.fields
+
+    def of_bodies(self, grid: Grid) -> Grid:
+        """A grid of bodies with the arrays that are asked for, and the body's number."""
+        known = grid.point_data
+        if "principal-stress" in self.fields:
+            known = {**known, "principal_stress": principal(known["stress"])}
+        left_out = {array for name, array in ARRAYS.items() if name not in self.fields}
+        return single(
+            replace(
+                grid,
+                point_data={name: values for name, values in known.items() if name not in left_out},
+                cell_data={name: values for name, values in grid.cell_data.items() if name not in left_out},
+            )
+        )
+
+
+EVERYTHING = Output()
+
+
+def single(grid: Grid) -> Grid:
+    """A grid with 32-bit numbers, 7 digits, but for its points and displacements, whose differences are strains."""
+
+    def short(data: dict[str, Array]) -> dict[str, Array]:
+        return {
+            name: values.astype(np.float32) if values.dtype == np.float64 and name != "displacement" else values
+            for name, values in data.items()
+        }
+
+    return replace(grid, point_data=short(grid.point_data), cell_data=short(grid.cell_data))
