@@ -9,12 +9,19 @@ import shutil
 import subprocess
 import zlib
 from html.parser import HTMLParser
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+# Where abut was built without the libraries of the report there is nothing that a browser would draw.
+INTERACTIVE = files("abut.report").joinpath("static", "libraries.js").is_file()
+BROWSER = (
+    next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if INTERACTIVE
+    else None
+)
 
 
 class Page(HTMLParser):
@@ -29,7 +36,8 @@ class Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         values = dict(attrs)
         self.tags.append(tag)
-        self.addresses += [values[key] for key in ("src", "href") if key in values]
+        here = [values[key] or "" for key in ("src", "href") if key in values]
+        self.addresses += [address for address in here if not address.startswith("data:image/png;base64,")]
         self.inside = values.get("id") or tag if tag in ("script", "style") else ""
 
     def handle_endtag(self, tag: str) -> None:

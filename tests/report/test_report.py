@@ -382,7 +382,7 @@ TOUCH_EVERYTHING = """<script>(() => {
 
 
 @pytest.mark.long
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium, and the libraries of the report")
 @pytest.mark.parametrize("case", ["hex20", "quad8", "axisymmetric"])
 def test_a_browser_draws_it(case: str, tmp_path: Path) -> None:
     """Headless Chromium: no error on the console, plots and a picture that covers a good part of the canvas in colours, also
@@ -417,7 +417,7 @@ STATUS_ONLY = """<script>(() => {
 
 
 @pytest.mark.long
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium, and the libraries of the report")
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_browser_draws_friction(dim: int, tmp_path: Path) -> None:
     """Every field, the status and the arrows: an arrow for each node of a facet's corner, which changes the picture; three
@@ -434,7 +434,7 @@ def test_a_browser_draws_friction(dim: int, tmp_path: Path) -> None:
     assert int(root["plots"]) >= 9
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium, and the libraries of the report")
 def test_a_browser_would_notice(tmp_path: Path) -> None:
     """The test above can fail: with one array cut short the page says that it has an error."""
     path = write_report(solution_of("quad4"), tmp_path / "report.html")

@@ -112,7 +112,7 @@ PLAY = """<script>(() => {
 
 
 @pytest.mark.long
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium, and the libraries of the report")
 @pytest.mark.parametrize("cell", ["quad4", "hex8"])
 def test_a_browser_plays_the_steps(cell: str, tmp_path: Path) -> None:
     """Every step comes up until the button is pressed again; at first the deformation is true, all of it is in the picture,

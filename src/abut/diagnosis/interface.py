@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 
 from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, nodal_normals
+from abut.contact.self_contact import with_kin
 from abut.contact.sides import listed, words
 from abut.detection import AUTO, FoundContact, find_contacts
 from abut.diagnosis.finding import Finding
@@ -116,7 +117,8 @@ def _gaps(model: Model, pair: Pair) -> list[Finding]:
     where = f"contact '{contact.name}'"
     reach = default_reach(pair.contactor, pair.target)
     options = CouplingOptions(points=2, reach=reach, keep_points=True, adjust=contact.adjust)
-    at = couple(pair.contactor, pair.target, 0, options).points
+    # What lies deeper in a body than it is thick is seen through it: the far flank of the tooth beside.
+    at = couple(*with_kin(model.mesh, pair.contactor, pair.target, True), 0, options).points
     if at is None or not len(at.gap):
         return []
     gap = at.gap + smallest_offset(contact)

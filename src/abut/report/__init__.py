@@ -19,8 +19,8 @@ def write_report(
     """Write the report of a solution to the HTML file ``path`` and return it.
 
     origin: the name and text of the job, and reference values; beside: another solution that it is compared with. Raises
-    InputError where the file cannot be written, and AbutError in a source tree whose libraries of the report are not built
-    (``make build``).
+    InputError where the file cannot be written. Where abut was built without three.js and uPlot the picture and the plots
+    are images.
 
     >>> from tempfile import TemporaryDirectory
     >>> import abut

