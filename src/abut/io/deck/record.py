@@ -186,11 +186,11 @@ class PreTension:
 
 @dataclass(frozen=True)
 class Prescribed:
-    """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures;
-    face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction it has.
-    amplitude: name, or "" for the ramp."""
+    """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
+    (number of a pair, 0) for the overlap that contact allows; face 0 with ``vector``: gravity on the element, or a
+    centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp."""
 
-    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature
+    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
     directions: tuple[int, ...]
     value: float
