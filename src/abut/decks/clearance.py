@@ -14,6 +14,7 @@ from abut.io.deck.time_histories import ALLOWED, RAMP, Course, combine, courses,
 from abut.model import Amplitude
 from abut.model.conditions import History
 
+ROUND = 1e-9  # of the size of the deck: gaps that rounding leaves
 RISE = ((0.0, 0.0), (1.0, 1.0))
 
 
@@ -46,6 +47,18 @@ def gap_options(deck: Deck, groups: Groups, pair: Pair, notes: list[str]) -> Gap
         return {"offset": whole[0][1], "amplitude": None}
     offset, unit = scaled(whole)
     return {"offset": offset, "amplitude": Amplitude(RISE if unit is None else unit)}
+
+
+def bilateral_note(deck: Deck, groups: Groups, pair: Pair, adjust: float) -> str:
+    """What NO SEPARATION has become; adjust: up to which gaps count as none, a length."""
+    nodes = nodes_of_rows(deck, groups.rows(pair.slave))
+    apart = float(heights(deck, groups.rows(pair.master), np.unique(nodes[nodes >= 0])).max(initial=0.0))
+    closed = (
+        f"; gaps of up to {apart:.3g} are closed, which may stay open there"
+        if apart > max(adjust, ROUND * float(np.ptp(deck.points, axis=0).max()))
+        else ""
+    )
+    return f"contact '{pair.name}': NO SEPARATION: bilateral from the beginning on{closed}"
 
 
 def _at_once(course: Course) -> Course:

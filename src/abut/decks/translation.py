@@ -12,7 +12,7 @@ from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.body_loads import body_loads
-from abut.decks.clearance import gap_options
+from abut.decks.clearance import bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
@@ -257,6 +257,9 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
     gap = gap_options(deck, groups, pair, notes)
+    if pair.bilateral:
+        notes.append(bilateral_note(deck, groups, pair, float(adjust)))
+        return Contact(slave, master, name=pair.name, kind="bilateral", adjust=float(adjust), **gap)
     rub = friction_options(deck, pair.friction)
     return Contact(slave, master, name=pair.name, adjust=float(adjust), **gap, **rub)
 

@@ -80,7 +80,7 @@ class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
     tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
-    overclosure, where that has numbers."""
+    overclosure, where that has numbers; bilateral: NO SEPARATION."""
 
     name: str
     slave: str
@@ -95,6 +95,7 @@ class Pair:
     tolerance: float | None = None
     of_abaqus: bool = False
     behaviour: Behaviour = ()
+    bilateral: bool = False
 
 
 @dataclass(frozen=True)
