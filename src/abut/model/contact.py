@@ -56,7 +56,8 @@ class Contact:
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
     that of friction by its square root);
     ``kind``: "contact"; "tied", in all directions; "bilateral", which never opens and slides freely: its gap is zero, its
-    pressure of either sign (theory (L16)). ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
+    pressure of either sign (theory (L16)).
+    ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
     "faceted" does not; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only.
     ``law``: "complementarity", "constraint-function" or a law of your own (``abut.contact.laws.Law``). ``friction``:
     Coulomb's coefficient, an expression of x, y and z
