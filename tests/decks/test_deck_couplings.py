@@ -84,6 +84,28 @@ def test_weights_of_a_distributing_coupling(tmp_path):
     assert coupling.weights == (1.0, 3.0, 3.0, 1.0)
 
 
+@pytest.mark.parametrize("listed", ["3", "1, 2", "1, 3", "1, 6", "4, 6"])
+@pytest.mark.parametrize("direction", [1, 3])
+def test_forces_of_a_distributing_coupling_go_all_ways(listed, direction, tmp_path):
+    """CalculiX 2.20 spreads them alike, whatever directions are listed."""
+    push = step("*CLOAD", f"99, {direction}, 3.")
+    one, other = (solve(tmp_path, COLUMN + DISTRIBUTING + text + push) for text in ("", f"{listed}\n"))
+    assert np.abs(one.displacement).max() > 1e-3
+    assert np.array_equal(one.displacement, other.displacement)
+
+
+def test_directions_that_a_distributing_coupling_lists_are_prescribed(tmp_path):
+    """In others the reference node is free; a support there holds nothing."""
+    text = COLUMN + DISTRIBUTING + "3\n" + step("*BOUNDARY", "99, 1, 2", "99, 3, 3, 0.02", "*CLOAD", "99, 1, 1.")
+    translation = load(tmp_path, text)
+    (coupling,) = translation.model.couplings
+    assert coupling.given == ("z",)
+    assert [note for note in translation.notes if "does not list direction 1: the line holds nothing" in note]
+    result = solve(tmp_path, text).steps[-1].rigid["Top"]
+    assert result.displacement[2] == pytest.approx(0.02, rel=1e-12)
+    assert result.displacement[0] > 1e-3
+
+
 def test_some_directions(tmp_path):
     text = COLUMN + KINEMATIC.replace("KINEMATIC\n", "KINEMATIC\n3\n")
     solution = solve(tmp_path, text + step("*BOUNDARY", "99, 4, 6", "*CLOAD", "99, 3, 10."))
@@ -150,7 +172,8 @@ def test_plane_models_are_one_thick(tmp_path):
         (KINEMATIC.replace("PUSHED", "PUSHED, INFLUENCE RADIUS=2."), "INFLUENCERADIUS: a radius is not read"),
         (KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n", "ORIENTATION: axes of its own are not read"),
         (DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O"), "ORIENTATION: axes of its own are not read"),
-        (DISTRIBUTING + "1, 2\n", "displacements 1 to 3 are always coupled"),
+        (DISTRIBUTING + "1, 2\n" + step("*BOUNDARY", "99, 3, 3, 0.1"), "does not list direction 3, and transmits no"),
+        (DISTRIBUTING + "1, 3\n" + step("*CLOAD", "99, 4, 2."), "does not list direction 4, and transmits no moment"),
         (DISTRIBUTING.replace("UTING\n", "UTING, WEIGHTING METHOD=LINEAR\n"), "weights over the distance are not read"),
         (DISTRIBUTING.replace("UTING\n", "UTING, COUPLING=STRUCTURAL\n"), "solids have displacements only"),
         (KINEMATIC + DISTRIBUTING, "node 99 is the reference of another coupling .*give this one a node of its own"),

@@ -18,6 +18,7 @@ from abut.contact.contactor_choice import Side
 from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
+from abut.model.contact import KINDS
 from abut.problem.contact_pairs import Pair
 from abut.solution import Check
 
@@ -89,7 +90,9 @@ def certificate(
     case = _Case.of(pair, values, nodal, share, around)
     checks = [*_balanced(case, balance(pair, values) if balanced is None else balanced)]
     if not pair.tied:
-        checks += [*_gaps(case, penetration), *_slid(case), *_pressure(case, residual)]
+        checks += [*_gaps(case, penetration), *_slid(case), *_law(case, residual)]
+    if not pair.two_way:
+        checks += _pressure(case)
     if pair.contact.method == "segment-to-segment":
         checks.append(
             case.check("facet moments", _moment_error(case), MOMENTS,
@@ -132,7 +135,7 @@ class _Case:
         areas = full_moments(pair.contactor, 0)[:, 0]
         pressed_in = max(pair.compliance * matters / np.pi, FLAT)
         hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / pressed_in
-        loaded = np.nanmax(nodal, axis=1) > CLOSED * largest
+        loaded = np.nanmax(np.abs(nodal) if pair.contact.kind == KINDS[2] else nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
         pressing = pressed_in * np.pi / pair.compliance if pair.compliance > 0.0 else 0.0
         return cls(pair, values, nodal, share, around, areas, cover, loaded, hidden, largest, matters, pressing)
@@ -173,16 +176,21 @@ def _slid(case: _Case) -> Iterator[Check]:
             notice=SLID_NOTICED)  # fmt: skip
 
 
-def _pressure(case: _Case, residual: float) -> Iterator[Check]:
-    """What is wrong with the pressure itself, and how many facets carry it."""
-    pair, largest = case.pair, case.largest
-    tension = max(0.0, -float(np.nanmin(case.nodal, initial=0.0))) / largest
-    yield case.check(
-        "tension", tension, TENSION, "largest negative pressure over the largest pressure", pressure=largest
-    )
+def _law(case: _Case, residual: float) -> Iterator[Check]:
+    """Whether the pressure keeps to the law, to which tension is foreign unless contact is bilateral."""
+    tension = max(0.0, -float(np.nanmin(case.nodal, initial=0.0))) / case.largest
+    if not case.pair.two_way:
+        yield case.check(
+            "tension", tension, TENSION, "largest negative pressure over the largest pressure", pressure=case.largest
+        )
     yield case.check(
         "complementarity", residual, COMPLEMENTARITY, "violation of the contact law over the largest pressure"
     )
+
+
+def _pressure(case: _Case) -> Iterator[Check]:
+    """What is wrong with the pressure itself, and how many facets carry it."""
+    pair, largest = case.pair, case.largest
     smooth, _ = split_at_creases(pair.contactor)
     pressure = at_points(smooth, case.nodal)
     support = np.ones(len(pressure)) if case.share is None else at_points(smooth, case.share)

@@ -273,11 +273,11 @@ def reported(state: PairState, at: Averages) -> Recovery:
     plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
     if smooth:
         sharp = at.sharpened(average, at.surface.points)
-        plain, smooth = (sharp, True) if pair.tied or sharp.min() >= 0.0 else (average, False)
+        plain, smooth = (sharp, True) if pair.two_way or sharp.min() >= 0.0 else (average, False)
     if not smooth and pair.planes is not None:
         plain = evened(pair.contactor, at, average, pair.planes)
     places = _places(pair, at.surface, smooth)
-    return recovered(at, average, plain, places, pair.tied)
+    return recovered(at, average, plain, places, pair.two_way)
 
 
 def _places(pair: Pair, split: Surface, smooth: bool) -> Places:

@@ -12,7 +12,7 @@ from abut.io.deck.groups import Groups
 from abut.io.deck.nodal_constraints import coordinates
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import Coupling as Bound
-from abut.io.deck.record import Deck, Numbers
+from abut.io.deck.record import Deck, Numbers, Prescribed
 from abut.io.deck.time_histories import Course, courses, scaled, zero
 from abut.model import Amplitude, Coupling, Force, Load, Moment
 from abut.model.conditions import COMPONENTS, TURNS
@@ -41,7 +41,7 @@ def couplings(deck: Deck, groups: Groups, plane: str | None) -> list[Coupling]:
             {
                 MOTIONS[int(d) - 1]: c
                 for (node, d), c in given.items()
-                if node == bound.reference and (d <= 3 or not bound.distributing or d in bound.directions)
+                if node == bound.reference and (not bound.distributing or d in bound.directions)
             },
             known,
         )
@@ -157,8 +157,43 @@ def merged(every: Sequence[Bound]) -> list[Bound]:
     return result
 
 
+def unlisted_notes(deck: Deck) -> list[str]:
+    """Lines that hold a reference node where its *DISTRIBUTING does not list the direction: they hold nothing."""
+    notes: dict[str, None] = {}
+    for bound, value, direction in _unlisted(deck, "boundary"):
+        notes[
+            f"{value.place}: *BOUNDARY: the *DISTRIBUTING of node {bound.reference} does not list direction {direction}: "
+            "the line holds nothing there"
+        ] = None
+    return list(notes)
+
+
+def _unlisted(deck: Deck, kind: str) -> Iterator[tuple[Bound, Prescribed, int]]:
+    """What is prescribed of reference nodes in directions that their *DISTRIBUTING does not list."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    for bound in deck.couplings:
+        for value in every if bound.distributing else ():
+            if value.kind == kind and bound.reference in value.numbers:
+                yield from ((bound, value, d) for d in value.directions if d not in bound.directions)
+
+
+def _check_unlisted(deck: Deck, reference: int) -> None:
+    """As in CalculiX forces are spread in all directions, listed or not; moments and displacements where they are
+    listed."""
+    moves = ("boundary", "BOUNDARY", "displacement", (1, 2, 3))
+    for kind, card, what, those in (moves, ("force", "CLOAD", "moment", (4, 5, 6))):
+        for bound, value, direction in _unlisted(deck, kind):
+            if bound.reference == reference and value.value != 0.0 and direction in those:
+                raise DeckError(
+                    value.place,
+                    f"*{card}: the *DISTRIBUTING of node {reference} ({bound.place}) "
+                    f"does not list direction {direction}, and transmits no {what} there; list it, or take the line out",
+                )
+
+
 def _check(deck: Deck, groups: Groups, bound: Bound) -> None:
     reference = bound.reference
+    _check_unlisted(deck, reference)
     if reference not in deck.nodes:
         raise DeckError(bound.place, f"*COUPLING: REF NODE {reference} does not exist; give it in *NODE")
     for transform in deck.transforms:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Step
-from abut.io.deck.time_histories import BODY_LOADS, courses, ends, times
+from abut.io.deck.time_histories import ALLOWED, BODY_LOADS, courses, ends, times
 from abut.model import SolveOptions
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
@@ -16,7 +16,7 @@ DRAG = (
     "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
 )
 NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
-KINDS = ("boundary", "force", "pressure", *BODY_LOADS)
+KINDS = ("boundary", "force", "pressure", *BODY_LOADS, *ALLOWED)
 
 
 def is_finite(deck: Deck) -> bool:

@@ -26,7 +26,7 @@ def own_laws(deck: Deck, contacts: Sequence[Contact]) -> dict[str, PressureOverc
     result = {}
     for contact, points in zip(contacts, found):
         rising = points and all(b[0] > a[0] and b[1] > a[1] for a, b in pairwise(points))
-        if contact.kind != "tied" and rising and points[0][1] == 0.0:
+        if contact.kind == "contact" and rising and points[0][1] == 0.0:
             result[contact.name] = PressureOverclosure(points)
     return result
 

@@ -12,7 +12,8 @@ from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.body_loads import body_loads
-from abut.decks.couplings import couplings, reference_loads, reference_nodes
+from abut.decks.clearance import bilateral_note, gap_options
+from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
@@ -111,7 +112,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids({name: piece for name, piece in parts.items() if name not in moving}, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += _idle(deck, groups)
+    notes += [*_idle(deck, groups), *unlisted_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     reasons.tell()
@@ -255,8 +256,12 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
         notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
     if pair.clearance is not None:
         adjust = float(np.ptp(deck.points, axis=0).max())
-    options = {"adjust": float(adjust), "offset": pair.clearance or 0.0, **friction_options(deck, pair.friction)}
-    return Contact(slave, master, name=pair.name, **options)
+    gap = gap_options(deck, groups, pair, notes)
+    if pair.bilateral:
+        notes.append(bilateral_note(deck, groups, pair, float(adjust)))
+        return Contact(slave, master, name=pair.name, kind="bilateral", adjust=float(adjust), **gap)
+    rub = friction_options(deck, pair.friction)
+    return Contact(slave, master, name=pair.name, adjust=float(adjust), **gap, **rub)
 
 
 def _general(

@@ -170,7 +170,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contactor": "in place of surfaces, with target: the side that carries the pressure (slave), whatever abut would "
         "choose",
         "target": "the side opposite (master), or a list, of which the nearest counts everywhere",
-        "kind": "contact, or tied in all directions",
+        "kind": "contact; tied in all directions; bilateral: never opens, slides freely",
         "pressure": "pressure space; auto is dual along the edge of contact and P1 inside, ties and kinematics finite take "
         "P1 or P2",
         "law": "complementarity is exact; the constraint function smooths the edge of contact and that of stick; a table "

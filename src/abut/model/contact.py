@@ -11,7 +11,8 @@ from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
 from abut.model.friction import ROUGH, Friction, checked
 
-KINDS = ("contact", "tied")
+KINDS = ("contact", "tied", "bilateral")
+TWO_WAY = KINDS[1:]  # which carry tension as they carry pressure
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")
 LAWS = ("complementarity", "constraint-function")
 METHODS = ("segment-to-segment", "node-to-segment", "node-to-segment-two-pass")
@@ -54,6 +55,8 @@ class Contact:
     times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
     added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
     that of friction by its square root);
+    ``kind``: "contact"; "tied", in all directions; "bilateral", which never opens and slides freely: its gap is zero, its
+    pressure of either sign (theory (L16)).
     ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
     "faceted" does not; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only.
     ``law``: "complementarity", "constraint-function" or a law of your own (``abut.contact.laws.Law``). ``friction``:
@@ -110,6 +113,7 @@ class Contact:
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
             )
+        self._check_bilateral(where)
         self._check_friction(where)
         checks.positive(self.epsilon, f"{where}: epsilon")
         checks.finite(self.offset, f"{where}: offset")
@@ -157,6 +161,20 @@ class Contact:
             raise InputError(
                 f"{where}: its sides are {code(self.first)} and {code(self.second)}, not {code(self.contactor)} and "
                 f"{code(self.target)}; to give a contact other sides, or roles, use its method forced(contactor, target)"
+            )
+
+    def _check_bilateral(self, where: str) -> None:
+        if self.kind != KINDS[2]:
+            return
+        if len({*self.named}) == 1:
+            raise InputError(f"{where}: kind bilateral: a surface cannot keep its distance from itself; name two")
+        if self.frictional:
+            raise InputError(
+                f"{where}: friction: bilateral contact slides freely; leave friction out, or take kind contact"
+            )
+        if self.law != LAWS[0]:
+            raise InputError(
+                f"{where}: law: bilateral contact is an equation for the gap; leave law out, or take kind contact"
             )
 
     def _check_friction(self, where: str) -> None:

@@ -58,7 +58,7 @@ class Programme:
         system, first, normal, along = solver.system, 0, [], []
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
-            if not pair.tied:
+            if not pair.two_way:
                 beside = np.full((len(pair.space), width), -1)
                 if pair.frictional:
                     beside = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
@@ -78,7 +78,7 @@ class Programme:
         """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
         system, first, parts = self.solver.system, 0, []
         for pair in system.pairs:
-            if not pair.tied:
+            if not pair.two_way:
                 parts.append(_bound(pair, system.factors, pressure[first : first + len(pair.space)]))
                 first += len(pair.space)
         bound, slope = (np.concatenate(values) for values in zip(*parts))

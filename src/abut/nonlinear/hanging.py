@@ -18,7 +18,7 @@ def hanging(problem: ContactProblem, state: State, changing: NDArray[np.bool_]) 
     told, first = [], 0
     for pair in problem.pairs:
         own = slice(first, first := first + len(pair))
-        if pair.tied:
+        if pair.two_way:
             continue
         pressed, restless = (_nodes(pair, part[own][pair.normal]) for part in (state.closed, changing))
         if len(pressed) == 1:

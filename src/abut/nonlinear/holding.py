@@ -177,7 +177,7 @@ def thrown_apart(system: Linearised, before: State, now: State) -> str:
         return ""
     parts = zip(system.pairs, system.split(before.closed), system.split(now.closed), system.split(system.gap(now)))
     for pair, was, closed, gap in parts:
-        if pair.tied or not was[pair.normal].any() or closed[pair.normal].any():
+        if pair.two_way or not was[pair.normal].any() or closed[pair.normal].any():
             continue
         if _clearance(pair, gap) > FAR:
             return f"contact '{pair.contact.name}' comes apart at once, and it is what holds a body"

@@ -90,7 +90,7 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
     """Whether a contact has ended between two states: bodies that have sprung back do not go on as they came."""
     parts = zip(problem.pairs, problem.split(earlier.closed), problem.split(before.closed))
-    return any(was[pair.normal].any() and not now[pair.normal].any() for pair, was, now in parts if not pair.tied)
+    return any(was[pair.normal].any() and not now[pair.normal].any() for pair, was, now in parts if not pair.two_way)
 
 
 def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:
@@ -99,7 +99,7 @@ def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: fl
     ahead = before.multipliers + ratio * (before.multipliers - earlier.multipliers)
     first = 0
     for pair in problem.pairs:
-        if not pair.tied:
+        if not pair.two_way:
             here = slice(first + pair.normal.start, first + pair.normal.stop)
             ahead[here] = np.where(
                 before.multipliers[here] > 0.0, np.maximum(ahead[here], 0.0), before.multipliers[here]

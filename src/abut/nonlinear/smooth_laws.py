@@ -102,7 +102,7 @@ def _newton(
     system = solver.system
     tied, sharp, rubs = (
         system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
-        for flag in (lambda pair: pair.tied, lambda pair: not pair.smooth, lambda pair: pair.frictional)
+        for flag in (lambda pair: pair.two_way, lambda pair: not pair.smooth, lambda pair: pair.frictional)
     )
     before, violation, tries, unsettled = np.inf, np.zeros(len(state.status)), 0, True
     for _ in range(limit):

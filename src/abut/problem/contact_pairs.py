@@ -25,6 +25,7 @@ from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
+from abut.model.contact import TWO_WAY
 from abut.model.friction import FrictionValues, friction_values
 from abut.model.offset import offsets
 from abut.problem.constraints import Constraints
@@ -99,6 +100,11 @@ class Pair:
     @property
     def tied(self) -> bool:
         return self.contact.kind == "tied"
+
+    @property
+    def two_way(self) -> bool:
+        """Whether its multipliers are closed whatever their sign: of a tie, and of bilateral contact, theory (L16)."""
+        return self.contact.kind in TWO_WAY
 
     @property
     def frictional(self) -> bool:

@@ -88,7 +88,8 @@ class FiniteProblem(ContactProblem):
                 pair.weight[pair.normal] if pair.smooth else now.pair.space.weight
             )  # of what the gap is integrated over
             touching = (now.gap[pair.normal] <= TOUCHING * pair.size * weight) & ~bare(now.pair)
-            closed.append(np.ones(len(pair), bool) if pair.tied else pair.of_functions(touching))
+            held = np.ones(len(pair), bool) if pair.tied else ~bare(now.pair)
+            closed.append(held if pair.two_way else pair.of_functions(touching))
         return self._marked(rest.with_closed(np.concatenate([np.zeros(0, bool), *closed])))
 
     def linearise(self, before: State, now: State) -> Linearised:

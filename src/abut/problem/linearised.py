@@ -102,7 +102,7 @@ class Linearised:
     @property
     def tied(self) -> NDArray[np.bool_]:
         """(n,) multipliers that are closed whatever happens."""
-        return self.join([np.full(len(pair), pair.tied) for pair in self.pairs]).astype(bool)
+        return self.join([np.full(len(pair), pair.two_way) for pair in self.pairs]).astype(bool)
 
     @property
     def scale(self) -> Vector:

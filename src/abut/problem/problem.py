@@ -100,7 +100,7 @@ class ContactProblem:
         for pair in self.pairs:
             here = slice(first, first := first + len(pair))
             touching = offset[here] <= TOUCHING * pair.size * pair.weight
-            closed[here] = pair.of_functions(touching[pair.normal]) if pair.frictional else pair.tied | touching
+            closed[here] = pair.of_functions(touching[pair.normal]) if pair.frictional else pair.two_way | touching
         return rest.with_closed(closed)
 
     def linearise(self, before: State, now: State) -> Linearised:

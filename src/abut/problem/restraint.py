@@ -71,7 +71,7 @@ class Restraint:
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
         for p, g, chosen in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
-            if p.tied or not len(p):
+            if p.two_way or not len(p):
                 continue
             clearance = (g / (p.scale * p.stiffness * p.size))[p.normal]  # over the facet size
             chosen |= p.of_functions(clearance <= clearance.min() + 0.01)
@@ -109,7 +109,7 @@ class Restraint:
             operator = pair.operator if pair.tied else pair.operator[pair.normal]
             size = np.asarray(abs(operator).sum(axis=1)).ravel()[:, None]  # none where no target is opposite yet
             moved = np.asarray(operator @ moves) / np.where(size > 0.0, size, 1.0)
-            stays &= (np.abs(moved) < SLIGHT).all(axis=0) if pair.tied else (moved > -SLIGHT).all(axis=0)
+            stays &= (np.abs(moved) < SLIGHT).all(axis=0) if pair.two_way else (moved > -SLIGHT).all(axis=0)
             opens += np.where(moved > SLIGHT, moved, 0.0).sum(axis=0)
         for force in forces:
             work, least = moves.T @ force, UNBALANCED * float(np.abs(force).sum())
@@ -175,7 +175,7 @@ def unheld(
         return None
     pair_of = np.repeat(np.arange(len(pairs)), [len(push) for push in pushes])
     for i, pair in enumerate(pairs):
-        if pair.tied or not len(pushes[i]):
+        if pair.two_way or not len(pushes[i]):
             continue
         carried = np.zeros(len(columns))
         carried[: len(forces)] = pair_of == i
@@ -205,7 +205,7 @@ def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | 
     length = np.linalg.norm(moved, axis=1)
     keep = length > NOTHING * np.asarray(abs(operator).sum(axis=1)).ravel()
     moved = moved[keep] / length[keep, None]
-    return np.concatenate([moved, -moved]) if pair.tied else moved
+    return np.concatenate([moved, -moved]) if pair.two_way else moved
 
 
 def _pushes_and_drags(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None) -> NDArray[np.float64]:
@@ -278,6 +278,6 @@ def _restraint(
     pairs: Sequence[Pair],
     bare: NDArray[np.float64],
 ) -> Restraint:
-    ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.tied]
+    ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.two_way]
     by_supports = free_motions([support, *ties]).shape[1] == 0
     return Restraint(rigid, constraints, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from abut.model import Model
+from abut.model.contact import TWO_WAY
 from abut.model.offset import smallest_offset
 from abut.solution.contacts import Check
 
@@ -27,7 +28,7 @@ def idle_contacts(model: Model, steps: Sequence[Step]) -> Iterator[Check]:
     """A line for each contact that carried nothing in any step. It passes beside contacts that carried, is a warning
     where none did, and
     fails where an interference is larger than what the sides stand off each other in the end."""
-    pairs = [(k, contact) for k, contact in enumerate(steps[-1].contacts) if not _tied(model, contact.name)]
+    pairs = [(k, contact) for k, contact in enumerate(steps[-1].contacts) if not _holds(model, contact.name)]
     most = {contact.name: max(abs(step.contacts[k].max_pressure) for step in steps) for k, contact in pairs}
     largest = max(most.values(), default=0.0)
     for _, result in pairs:
@@ -49,5 +50,6 @@ def idle_contacts(model: Model, steps: Sequence[Step]) -> Iterator[Check]:
         )
 
 
-def _tied(model: Model, name: str) -> bool:
-    return any(contact.name == name and contact.kind == "tied" for contact in model.contacts)
+def _holds(model: Model, name: str) -> bool:
+    """Whether it pulls as it pushes, and may carry nothing."""
+    return any(contact.name == name and contact.kind in TWO_WAY for contact in model.contacts)

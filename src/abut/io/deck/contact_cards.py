@@ -15,11 +15,12 @@ from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact
 
 @dataclass(frozen=True)
 class Interaction:
-    """What surfaces do to each other. overclosure: HARD, LINEAR, ..."""
+    """What surfaces do to each other. overclosure: HARD, LINEAR, ...; bilateral: they never separate (NO SEPARATION)."""
 
     overclosure: str = "HARD"
     behaviour: Behaviour = ()
     friction: Friction = NO_FRICTION
+    bilateral: bool = False
 
 
 FINE = 40  # points of an exponential curve over the clearance in which the pressure falls to a hundredth: 0.2 % off between
@@ -94,7 +95,11 @@ def _contact_pairs(
         rub = NO_FRICTION if tied else properties.friction
         distance = _adjust(card, mesh)
         pair = Pair(name, slave, master, tied, properties.overclosure, distance, clearance, line.place, rub)
-        result.append(replace(pair, behaviour=properties.behaviour))
+        if properties.bilateral and rub != NO_FRICTION:
+            raise line.error(
+                f"INTERACTION={interaction}: NO SEPARATION goes without friction; take *FRICTION out, or NO SEPARATION"
+            )
+        result.append(replace(pair, behaviour=properties.behaviour, bilateral=properties.bilateral and not tied))
     return result
 
 
@@ -122,6 +127,8 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
             if name.upper() not in interactions:
                 raise line.unknown(f"no *SURFACE INTERACTION named {name!r}{nearest(name, interactions)}")
             properties = interactions[name.upper()]
+            if properties.bilateral:
+                raise line.error("NO SEPARATION goes with named surfaces; name them in *CONTACT PAIR")
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
@@ -173,7 +180,12 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
-                result[current] = replace(result[current], overclosure=_overclosure(card), behaviour=_behaviour(card))
+                result[current] = replace(
+                    result[current],
+                    overclosure=_overclosure(card),
+                    behaviour=_behaviour(card),
+                    bilateral=card.has("NO SEPARATION"),
+                )
             elif card.key == "CHANGEFRICTION":
                 change = changes(card, result)
             elif card.key == "FRICTION":

@@ -51,8 +51,6 @@ def _coupling(card: Card, following: Card | None, mesh: MeshCards) -> Coupling:
         )
     if key(following.get("COUPLING", "CONTINUUM") or "") != "CONTINUUM":
         raise following.error("COUPLING=STRUCTURAL: solids have displacements only; take CONTINUUM")
-    if distributing and not {1, 2, 3} <= directions:
-        raise following.error("displacements 1 to 3 are always coupled; list 1, 6 or nothing")
     if card.has("ORIENTATION") and (distributing or not {1, 2, 3} <= directions):
         raise card.error("ORIENTATION: axes of its own are not read; couple all directions, or along the global axes")
     label = card.get("CONSTRAINT NAME") or f"coupling of {surface.name}"

@@ -10,6 +10,7 @@ from abut.io.deck.cards import Card, read_cards
 from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
+from abut.io.deck.interference_cards import Scene, with_interferences
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.model_cards import (
     cyclic_symmetry,
@@ -44,6 +45,10 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     known = amplitudes(cards, reasons)
     pair_list = pairs(cards, mesh, reasons)
     general = general_contact(cards, reasons)
+    fixed = _fixed(outside, mesh, known, notes, reasons)
+    history, known = with_interferences(
+        steps(groups, mesh, known, reasons), groups, Scene(mesh, pair_list, known), reasons
+    )
     notes += friction_notes(cards)
     deck = Deck(
         path=str(path),
@@ -61,10 +66,10 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         transforms=transforms(cards, mesh, reasons),
         cyclic=cyclic_symmetry(cards, mesh, reasons),
         pretension=pretension_sections(cards, mesh, reasons),
-        fixed=_fixed(outside, mesh, known, notes, reasons),
+        fixed=fixed,
         initial=initial_temperature(cards, mesh, reasons),
         amplitudes=known,
-        steps=steps(groups, mesh, known, reasons),
+        steps=history,
         notes=tuple(notes),
         quiet=sifted.quiet,
         small_sliding=any(card.key == "CONTACTPAIR" and card.has("SMALL SLIDING") for card in cards),

@@ -80,7 +80,7 @@ class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
     tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
-    overclosure, where that has numbers."""
+    overclosure, where that has numbers; bilateral: NO SEPARATION."""
 
     name: str
     slave: str
@@ -95,6 +95,7 @@ class Pair:
     tolerance: float | None = None
     of_abaqus: bool = False
     behaviour: Behaviour = ()
+    bilateral: bool = False
 
 
 @dataclass(frozen=True)
@@ -186,11 +187,11 @@ class PreTension:
 
 @dataclass(frozen=True)
 class Prescribed:
-    """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures;
-    face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction it has.
-    amplitude: name, or "" for the ramp."""
+    """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
+    (number of a pair, 0) for the overlap that contact allows; face 0 with ``vector``: gravity on the element, or a
+    centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp."""
 
-    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature
+    kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
     directions: tuple[int, ...]
     value: float

@@ -34,10 +34,11 @@ READ: dict[str, tuple[str, ...]] = {
     "SURFACE INTERACTION": ("NAME",),
     "FRICTION": ("ROUGH", "LAGRANGE", "ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE"),
     "CHANGE FRICTION": ("INTERACTION",),
-    "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE"),
+    "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE", "NO SEPARATION"),
     "CONTACT": (),
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
     "CONTACT PROPERTY ASSIGNMENT": (),
+    "CONTACT INTERFERENCE": ("AMPLITUDE", "OP", "SHRINK", "TYPE"),
     "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
@@ -156,7 +157,6 @@ _PARAMETERS = {  # reasons for parameters that are refused
     ("FRICTION", "DEPENDENCIES"): "a coefficient over field variables is not supported; give one",
     ("FRICTION", "USER"): "user subroutines are not read",
     ("CHANGE FRICTION", "AMPLITUDE"): "a coefficient over time within a step is not read; it changes as a step begins",
-    ("SURFACE BEHAVIOR", "NOSEPARATION"): "contact without separation is not supported; use PRESSURE-OVERCLOSURE=TIED",
 }
 GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
     key(name) for name in ("ELCOPY", "ELGEN", "NCOPY", "NFILL", "NGEN", "SYSTEM")

@@ -120,6 +120,11 @@ def _at(deck: Deck, nodes: Numbers) -> Vector:
 
 def distances(deck: Deck, rows: Rows, nodes: Numbers) -> Vector:
     """Of nodes from the faces in ``rows`` that are nearest, along the normals of these: none beside a plane face."""
+    return np.abs(heights(deck, rows, nodes))
+
+
+def heights(deck: Deck, rows: Rows, nodes: Numbers) -> Vector:
+    """As ``distances``, with their sign: below zero inside the body that the faces belong to."""
     parts = []
     for kind, own in connectivity(deck, rows).items():
         for pick in (*TRIANGLES.get(kind, ()), *LINES.get(kind, ())):
@@ -131,11 +136,11 @@ def distances(deck: Deck, rows: Rows, nodes: Numbers) -> Vector:
     tree, points = cKDTree(centres), _at(deck, nodes)
     reach = tree.query(points)[0] + 2.0 * radius * (1.0 + 1e-9)
     flat = deck.blocks[0].type.plane is not None
-    return np.array([_normal_distance(x, triangles[tree.query_ball_point(x, r)], flat) for x, r in zip(points, reach)])
+    return np.array([_height(x, triangles[tree.query_ball_point(x, r)], flat) for x, r in zip(points, reach)])
 
 
-def _normal_distance(x: Vector, triangles: Vector, flat: bool) -> float:
-    """Of a point from the nearest of triangles (n, 3, 3), along its normal; ``flat``: lines, their last point repeated."""
+def _height(x: Vector, triangles: Vector, flat: bool) -> float:
+    """Of a point above the nearest of triangles (n, 3, 3), along its normal; ``flat``: lines, their last point repeated."""
     a, b, c = triangles.transpose(1, 0, 2)
     normal = np.cross(b - a, [0.0, 0.0, 1.0]) if flat else np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
@@ -150,4 +155,4 @@ def _normal_distance(x: Vector, triangles: Vector, flat: bool) -> float:
         sides = [(np.cross(q - p, foot - p) * normal).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
         apart = np.where(np.min(sides, axis=0) >= 0.0, np.abs(height), apart)
     nearest = apart <= apart.min() * (1.0 + 1e-9)
-    return float(np.abs(height[nearest]).min())
+    return float(height[nearest][np.abs(height[nearest]).argmin()])

@@ -9,6 +9,7 @@ from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Amplitude, Deck, Prescribed, Step
 
 BODY_LOADS = ("gravity", "centrifugal")
+ALLOWED = ("interference", "shrink")  # overlap of contact
 Course = tuple[tuple[float, float], ...]  # (time, value), linear between, constant outside
 Key = tuple[float, ...]
 
@@ -43,9 +44,9 @@ def times(deck: Deck) -> tuple[float, ...]:
 
 
 def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0) -> dict[Key, Course]:
-    """Courses of one kind ("boundary", "force", "pressure", "gravity", "centrifugal", "temperature") by (number, direction),
-    gravity by (number, x, y, z), centrifugal forces by (number, point and direction of the axis). ``base``: the value before
-    the first step.
+    """Courses of one kind ("boundary", "force", "pressure", "gravity", "centrifugal", "temperature", "interference",
+    "shrink") by (number, direction), gravity by (number, x, y, z), centrifugal forces by (number, point and direction of
+    the axis). ``base``: the value before the first step.
 
     Values given twice in a step add up where they are loads; the later one holds for supports and temperatures. What has an
     amplitude over the total time follows it in the steps after, too, until another value takes its place or OP=NEW ends it.
@@ -83,7 +84,7 @@ def _error(value: Prescribed, what: str) -> DeckError:
 
 
 def _group(kind: str) -> str:
-    return "pressure" if kind in BODY_LOADS else kind
+    return "pressure" if kind in BODY_LOADS else ALLOWED[0] if kind in ALLOWED else kind
 
 
 def _keys(value: Prescribed) -> Iterable[Key]:
