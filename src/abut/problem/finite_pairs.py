@@ -54,13 +54,14 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
         contact, contactor, target, coupling, space, rows, (rows @ constraints.free).tocsr(),
         prescribed=rows @ constraints.prescribed, gap=seen.transfer.T @ coupling.gap,
         scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
-        index=np.arange(n)[:, None], components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
+        index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
+        carried=held(space, contactor, constraints),
     )  # fmt: skip
     return made if not contact.frictional else _with_tangents(model, made, constraints)
 
 
 def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
-    """The same with tractions beside the pressures, where supports let the contactor's node or the target move along them."""
+    """The same with tractions beside the pressures, where supports let either side move along them."""
     dim, n, space = whole.contactor.dim, len(whole.space), whole.space
     at = whole.coupling.points
     assert at is not None
