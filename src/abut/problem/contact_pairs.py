@@ -280,9 +280,13 @@ def _with_friction(
     return replace(
         normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(), prescribed=prescribed,
         gap=np.concatenate([normal_pair.gap, np.zeros(more)]), scale=weight / normal_pair.stiffness, index=made.index,
-        components=made.components, slip=made.slip, carried=np.append(normal_pair.carried, made.carried), points=None,
+        components=made.components, slip=made.slip, carried=np.concatenate([_carried(normal_pair), made.carried]), points=None,
         values=friction_values(model, normal_pair.contact, made.slip.points),
     )  # fmt: skip
+
+
+def _carried(pair: Pair) -> NDArray[np.bool_]:
+    return np.zeros(len(pair), dtype=bool) if pair.carried is None else pair.carried
 
 
 def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -73,7 +73,7 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
     fields = [(space.transfer.T @ along).tocsr() for along in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
-    components, rows, carried = [space], [whole.rows], [whole.carried]
+    components, rows, carried = [space], [whole.rows], [held(space, whole.contactor, constraints)]
     for b in range(dim - 1):
         keep = free[:, b]
         components.append(only(space, keep))
