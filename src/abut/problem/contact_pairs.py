@@ -280,7 +280,8 @@ def _with_friction(
     return replace(
         normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(), prescribed=prescribed,
         gap=np.concatenate([normal_pair.gap, np.zeros(more)]), scale=weight / normal_pair.stiffness, index=made.index,
-        components=made.components, slip=made.slip, carried=np.concatenate([_carried(normal_pair), made.carried]), points=None,
+        components=made.components, slip=made.slip, points=None,
+        carried=np.concatenate([_carried(normal_pair), made.carried]),
         values=friction_values(model, normal_pair.contact, made.slip.points),
     )  # fmt: skip
 

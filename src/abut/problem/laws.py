@@ -110,7 +110,7 @@ def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bo
 
 def giving(pair: Pair, law: LawRows) -> LawRows:
     """A law for one iteration, in which jumps that the target alone sees give way to a change of their tractions: what more
-    functions hold than it has nodes is unique then, theory (R22). Residuals stay as they are, and with them the solution."""
+    functions hold than it has nodes is unique then, theory (R20). Residuals stay as they are, and with them the solution."""
     if pair.carried is None or not pair.carried.any():
         return law
     soft = sp.diags(np.where(pair.carried, SOFT * pair.scale, 0.0))
