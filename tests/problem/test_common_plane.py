@@ -12,7 +12,7 @@ from abut.mesh import make
 @pytest.mark.parametrize("cell", ["quad4", "quad8"])
 def test_equal_discs_without_friction(cell: str) -> None:
     """Two equal discs of radius 50, meshed alike but for the turn, pressed together by 4: the plane between them stays where
-    it is and nodes of both sides move alike, to 0.0031 and 0.0006 with facets 1.3 wide (0.021 and 0.1 along
+    it is and nodes of both sides move alike, to 0.0031 and 0.0006 with facets 2.7 wide (0.021 and 0.1 along
     the contactor's normals); and friction that vanishes is none, to its own size and the order of the facets."""
     solutions = []
     for friction in (0.0, 1e-6):
