@@ -104,6 +104,7 @@ def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:
         pair, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
         components=tuple(components), index=index, rows=pair.rows[keep], operator=pair.operator[keep], gap=pair.gap[keep],
         prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
+        carried=None if pair.carried is None else pair.carried[keep],
         slip=None
         if pair.slip is None
         else replace(

@@ -23,7 +23,7 @@ from abut.nonlinear.iteration import (
     report,
 )
 from abut.problem.contact_pairs import Pair
-from abut.problem.laws import LawRows, at_multipliers
+from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
@@ -130,7 +130,10 @@ def friction_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
     return [
-        at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None)
+        giving(
+            pair,
+            at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None),
+        )
         for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
     ]
 

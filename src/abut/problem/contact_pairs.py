@@ -33,7 +33,7 @@ from abut.problem.contact_normals import contact_normals
 from abut.problem.coupled_surfaces import coupled
 from abut.problem.friction_rows import Sides as FrictionSides
 from abut.problem.friction_rows import Slip, friction_rows
-from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms, without_held
+from abut.problem.held_multipliers import HELD, NO_EFFECT, held, row_norms, without_held
 from abut.problem.repeated_rows import repeats
 from abut.problem.scales import scales
 from abut.problem.tied_rows import tied_rows
@@ -95,6 +95,7 @@ class Pair:
     planes: Planes | None = None  # of symmetry, at which the contactor ends; None of ties
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
     slip: Slip | None = None  # with friction
+    carried: NDArray[np.bool_] | None = None  # (n,) what the target alone sees, as supports hold the contactor's point
     values: FrictionValues | None = None  # the same: its coefficient
 
     @property
@@ -227,7 +228,8 @@ def pair(
     tied = contact.kind == "tied"
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
-    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if contact.frictional else None
+    seen = not tied and contact.method == METHODS[0]
+    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if seen else None
     contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
@@ -254,7 +256,7 @@ def pair(
         prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ coupling.gap + constant * space.weight,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
-        components=(space,), compliance=both.compliance,
+        components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
         planes=planes_of(contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
@@ -285,8 +287,13 @@ def _with_friction(
         normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(), prescribed=prescribed,
         gap=np.concatenate([normal_pair.gap, np.zeros(more)]), scale=weight / normal_pair.stiffness, index=made.index,
         components=made.components, slip=made.slip, points=None,
+        carried=np.concatenate([_carried(normal_pair), made.carried]),
         values=friction_values(model, normal_pair.contact, made.slip.points),
     )  # fmt: skip
+
+
+def _carried(pair: Pair) -> NDArray[np.bool_]:
+    return np.zeros(len(pair), dtype=bool) if pair.carried is None else pair.carried
 
 
 def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -337,6 +344,7 @@ def _in_space(model: Model, earlier: Pair, space: PressureSpace, constraints: Co
         operator=(rows @ constraints.free).tocsr(), points=points,
         prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
         gap=space.transfer.T @ earlier.coupling.gap + constant * space.weight, scale=space.weight / earlier.stiffness,
+        carried=held(space, earlier.contactor, constraints),
     )  # fmt: skip
     if earlier.slip is None or earlier.slip.at_facets is None:
         return changed

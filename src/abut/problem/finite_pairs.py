@@ -18,7 +18,8 @@ from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, pair, reach_of
 from abut.problem.dual_functions import Mixture
 from abut.problem.friction_rows import Slip
-from abut.problem.held_multipliers import without_held
+from abut.problem.held_multipliers import held, without_held
+from abut.problem.relative_motion import passing
 from abut.problem.scales import scales
 
 
@@ -54,27 +55,29 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
         prescribed=rows @ constraints.prescribed, gap=seen.transfer.T @ coupling.gap,
         scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
         index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
+        carried=held(space, contactor, constraints),
     )  # fmt: skip
     return made if not contact.frictional else _with_tangents(model, made, constraints)
 
 
 def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
-    """The same with tractions beside the pressures, where supports let the contactor's node move along them."""
+    """The same with tractions beside the pressures, where supports let either side move along them."""
     dim, n, space = whole.contactor.dim, len(whole.space), whole.space
     at = whole.coupling.points
     assert at is not None
     points, outward = places(whole.contactor, space)
-    axes = [constraints.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
-    moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
-    tangents, free = frames(-outward, moves)
+    reach = reach_of(constraints, whole.contactor, whole.target)
+    past = passing(whole.contactor, whole.target, space.node, -outward, reach, constraints)
+    tangents, free = frames(-outward, past.moves)
     operators = slip_operators(at, whole.contactor.points)
     fields = [(space.transfer.T @ along).tocsr() for along in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
-    components, rows = [space], [whole.rows]
+    components, rows, carried = [space], [whole.rows], [held(space, whole.contactor, constraints)]
     for b in range(dim - 1):
         keep = free[:, b]
         components.append(only(space, keep))
+        carried.append(past.carried(tangents[:, b])[keep])
         parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
         rows.append(sum(parts[1:], parts[0]).tocsr()[keep])
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
@@ -85,5 +88,5 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
         whole, gap=np.concatenate([whole.gap, np.zeros(first - n)]), scale=weight / whole.stiffness, index=index, rows=every,
         operator=(every @ constraints.free).tocsr(), prescribed=every @ constraints.prescribed, components=tuple(components),
         coupling=replace(whole.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
-        values=friction_values(model, whole.contact, points),
+        values=friction_values(model, whole.contact, points), carried=np.concatenate(carried),
     )  # fmt: skip

@@ -7,21 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
-from abut.cells import MAX_FACET_NODES
 from abut.contact.function_places import places
-from abut.contact.node_to_segment import feet
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
+from abut.problem.relative_motion import passing
 from abut.types import Sparse
-
-MOVES = 1e-6  # of a point of the target along a tangent, by unit free displacements, below which it is held
-INDEPENDENT = 1e-3  # of a row's part that others do not have, over the largest
-FEW = 1000  # held nodes up to which a look at them costs little
 
 
 @dataclass(frozen=True)
@@ -53,12 +47,14 @@ class Slip:
 @dataclass(frozen=True)
 class FrictionRows:
     """Multipliers component by component, the pressure first. components: the space of each; index: (n_functions, dim) the
-    multiplier of each function and component, -1 where there is none; rows: (n, dim n_points) on all displacements."""
+    multiplier of each function and component, -1 where there is none; rows: (n, dim n_points) on all displacements; carried:
+    (n_tangential,) that the target alone sees, as supports hold the contactor's point."""
 
     components: tuple[PressureSpace, ...]
     index: NDArray[np.int64]
     rows: Sparse
     slip: Slip
+    carried: NDArray[np.bool_]
 
 
 def friction_rows(
@@ -69,57 +65,27 @@ def friction_rows(
     dim, n = pair.contactor.dim, len(space)
     points, outward = places(pair.contactor, space, pair.at_facets)
     normals = -outward
-    axes = [constraints.can_move(space.node, np.broadcast_to(np.eye(dim)[a], (n, dim))) for a in range(dim)]
-    moves = np.where(space.node[:, None, None] >= 0, np.stack(axes, axis=1), np.eye(dim))  # facets are held by no node
-    tangents, free = frames(normals, moves)
+    past = passing(pair.contactor, pair.target, space.node, normals, pair.reach, constraints)
+    tangents, free = frames(normals, past.moves)
     fields = [(space.transfer.T @ part).tocsr() for part in operators.along]
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
-    rows, components = [normal], [space]
+    rows, components, carried = [normal], [space], list[NDArray[np.bool_]]()
     for b in range(dim - 1):
         parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
         part = sum(parts[1:], parts[0]).tocsr()
-        reduced = (part @ constraints.free).tocsr()
-        keep = free[:, b] & (row_norms(reduced) > NO_EFFECT * space.weight)
-        keep |= carried_by_target(pair, space, normals, tangents[:, b], keep, reduced, constraints)
+        keep = free[:, b] & _seen(part, space.weight, constraints)
         rows.append(part[keep])
         components.append(only(space, keep))
+        carried.append(past.carried(tangents[:, b])[keep])
         index[keep, 1 + b] = first + np.arange(int(keep.sum()))
         first += int(keep.sum())
     slip = Slip(operators, tangents, points, normals, pair.at_facets)
-    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), slip)
+    return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), slip, np.concatenate(carried))
 
 
-def carried_by_target(
-    pair: Sides, space: PressureSpace, normals: NDArray[np.float64], along: NDArray[np.float64],
-    keep: NDArray[np.bool_], rows: Sparse, constraints: Constraints,
-) -> NDArray[np.bool_]:  # fmt: skip
-    """Functions (n,) other than ``keep`` whose contactor's node is held along a tangent, (n, dim), while the target opposite
-    can move, as at a clamped edge; beside others that are kept, and as many as do not repeat each other: the contactor has
-    no displacement of its own there, which would tell them apart. rows: (n, n_free) of the slip."""
-    result = np.zeros(len(space), dtype=bool)
-    uses = abs(space.plain)
-    of_facets = [
-        (uses @ chosen.astype(float)).reshape(-1, MAX_FACET_NODES).sum(axis=1) > 0.0 for chosen in (keep, ~keep)
-    ]
-    alone = uses.T @ np.repeat(of_facets[1] & ~of_facets[0], MAX_FACET_NODES).astype(float) > 0.0
-    asked = np.flatnonzero(~keep & ~alone & (space.node >= 0) & (row_norms(rows) > NO_EFFECT * space.weight))
-    if not 0 < len(asked) <= FEW:
-        return result
-    points = pair.contactor.points[space.node[asked]]
-    facet, weights, _ = feet(points, -normals[asked], pair.target, pair.reach)
-    nodes = pair.target.nodes[facet]
-    dim = pair.contactor.dim
-    function, local = np.nonzero((nodes >= 0) & (facet >= 0)[:, None])
-    moved = sp.csr_matrix((len(asked), constraints.free.shape[0]))
-    for a in range(dim):
-        value = weights[function, local] * along[asked[function], a]
-        column = dim * nodes[function, local].astype(np.int64) + a
-        moved = moved + sp.csr_matrix((value, (function, column)), shape=moved.shape)
-    asked = asked[row_norms(moved @ constraints.free) > MOVES]
-    if len(asked):
-        gram = (rows[asked] @ rows[asked].T).toarray() / np.multiply.outer(space.weight[asked], space.weight[asked])
-        _, left, order = qr(gram, pivoting=True)
-        size = np.abs(np.diag(left))
-        result[asked[order[size > INDEPENDENT * size[0]]]] = True
-    return result
+def _seen(rows: Sparse, weight: NDArray[np.float64], constraints: Constraints) -> NDArray[np.bool_]:
+    """Rows (n, dim n_points) of slip that free displacements or prescribed ones change, (n,)."""
+    size = max(float(np.abs(constraints.prescribed).max(initial=0.0)), 1e-300)
+    told = np.linalg.norm(rows @ constraints.prescribed, axis=1) / size
+    return np.maximum(row_norms((rows @ constraints.free).tocsr()), told) > NO_EFFECT * weight

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import CREASE, side_normals
-from abut.contact.pressure_space import PressureSpace, reduce
+from abut.contact.pressure_space import PressureSpace, beside, reduce
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.types import Sparse
@@ -20,18 +20,15 @@ NO_EFFECT = 1e-10  # size of an operator row on the free displacements, relative
 def without_held(
     space: PressureSpace, contactor: Surface, coupling: Coupling, constraints: Constraints
 ) -> PressureSpace:
-    """Take out multipliers at contactor nodes that supports hold along the normal: with them the constant of
-    theory (P7) falls from 0.8 to 0.03. Those of the sides of a crease whose normals supports leave one direction for become
-    one."""
+    """Take out multipliers at contactor nodes that supports hold along the normal, beside others that they do not: with them
+    the constant of theory (P7) falls from 0.8 to 0.03. Those with none beside them stay: the target alone sees what they
+    press. Those of the sides of a crease whose normals supports leave one direction for become one."""
+    keep = ~held(space, contactor, constraints)
     sits = np.flatnonzero(space.node >= 0)
-    if not len(sits):
+    if not (len(sits) and keep.any()):
         return space
+    keep |= ~beside(space, keep)
     _, at = side_normals(contactor)
-    normals = at[space.side[sits]]
-    keep = np.ones(len(space), dtype=bool)
-    keep[sits] = constraints.held_share(space.node[sits], normals) < HELD
-    if not keep.any():
-        return space
     nodes, count = np.unique(space.node[sits[keep[sits]]], return_counts=True)
     several = sits[np.isin(space.node[sits], nodes[count > 1]) & keep[sits]]
     onto = np.full(len(space), -1)
@@ -40,6 +37,16 @@ def without_held(
         first = _repeated(space.node[several], at_node, constraints.can_move(space.node[several], at_node))
         onto[several[first >= 0]] = several[first[first >= 0]]
     return reduce(space, coupling, keep & (onto < 0), onto=onto)
+
+
+def held(space: PressureSpace, contactor: Surface, constraints: Constraints) -> NDArray[np.bool_]:
+    """Functions (n,) at nodes that supports hold along the contactor's normal."""
+    sits = np.flatnonzero(space.node >= 0)
+    result = np.zeros(len(space), dtype=bool)
+    if len(sits):
+        normals = side_normals(contactor)[1][space.side[sits]]
+        result[sits] = constraints.held_share(space.node[sits], normals) >= HELD
+    return result
 
 
 def _repeated(

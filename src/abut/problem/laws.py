@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +14,7 @@ from abut.problem.contact_pairs import Pair, PairPoints
 from abut.types import Sparse
 
 Vector = NDArray[np.float64]
+SOFT = 1e-6  # over weight h / E: how far jumps give way to a change of their tractions within one iteration
 FAINT = 1e-12  # of a jump over what its traction gives way: a row that hardly sees it holds the traction alone
 
 
@@ -105,6 +106,15 @@ def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bo
         at_points=False,
         decoupled=np.zeros(n, dtype=bool),
     )
+
+
+def giving(pair: Pair, law: LawRows) -> LawRows:
+    """A law for one iteration, in which jumps that the target alone sees give way to a change of their tractions: what more
+    functions hold than it has nodes is unique then, theory (R20). Residuals stay as they are, and with them the solution."""
+    if pair.carried is None or not pair.carried.any():
+        return law
+    soft = sp.diags(np.where(pair.carried, SOFT * pair.scale, 0.0))
+    return replace(law, by_pressure=(law.by_pressure + law.by_gap @ soft).tocsr())
 
 
 def _checked(result: LawResult, shape: tuple[int, ...], pair: Pair) -> LawResult:

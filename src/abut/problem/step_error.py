@@ -45,7 +45,8 @@ def landed(pair: Pair, end: PairEnd, factors: Array) -> Landed:
     normal, along = pair.normal, pair.index[:, 1:]
     there = along >= 0
     weight, pressure = pair.weight[normal], np.maximum(end.multipliers[normal], 0.0)
-    moved = np.where(there, end.shift[np.maximum(along - len(pair.space), 0)], 0.0)
+    moved = np.zeros(along.shape)
+    moved[there] = end.shift[along[there] - len(pair.space)]
     slipping = (there & end.slipping[np.maximum(along, 0)]).any(axis=1)
     bound = pair.friction(factors).at(pressure)[0]
     limit = np.where(end.closed[normal], weight * np.where(np.isfinite(bound), bound, pressure), 0.0)
