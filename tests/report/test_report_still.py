@@ -56,7 +56,7 @@ def test_the_page_has_pictures_and_plots_and_says_how_to_get_the_others(
     path = abut.write_report(solution, tmp_path / "report.html")
     page, text = Page(path), path.read_text(encoding="utf-8")
     assert page.addresses == []
-    assert page.tags.count("script") == 3  # what counts errors, and the data and arrays, which are empty
+    assert page.tags.count("script") == 3  # what counts errors, the data, and the arrays, of which there are none
     assert "build abut again where npm's registry or a mirror of it can be reached" in page.text
     images = [base64.b64decode(m) for m in re.findall(r"data:image/png;base64,([^\"]+)", text)]
     assert len(images) == dim - 1  # in 3D also the contactor

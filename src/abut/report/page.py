@@ -66,7 +66,7 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
         "job": f"<pre>{escape(origin.text)}</pre>" if origin.text else "<p class=note>The model came from Python.</p>",
-        "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c") if libraries else "{}",
+        "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
         "arrays": arrays.text if libraries else "",
         "libraries": f"<script>{libraries}</script>" if libraries else "",
         "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>" if libraries else "",
