@@ -1,7 +1,8 @@
-"""python -m abut.cli"""
+"""The program abut, as ``python -m abut.cli``: what ``python -m abut`` is."""
 
-import sys
+from __future__ import annotations
 
-from abut.__main__ import main
+import runpy
 
-sys.exit(main())
+if __name__ == "__main__":
+    runpy.run_module("abut", run_name="__main__")
