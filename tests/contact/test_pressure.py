@@ -34,11 +34,11 @@ SLOW = pytest.mark.long
 
 
 @pytest.mark.parametrize("contactor", SIDES)
-@pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.004)])
+@pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.003)])
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "quad9", "tri6"])
 def test_hertz_line(cell: str, n: int, limit: float, contactor: str) -> None:
-    """The formula itself, that of a half space under a parabola while a / R = 0.12, is off by 0.3 to 0.4 % with normals
-    between both sides, and a little more on the cylinder: there 0.1 % more, and 0.45 % at least, are allowed."""
+    """With the cylinder as contactor the formula itself, that of a half space under a parabola while a / R = 0.12, is off
+    by 0.3 to 0.4 % at its nodes, on any mesh: 0.1 % more, and 0.45 % at least, are allowed (quad4, n = 10: 1.01 %)."""
     if contactor == "cylinder":
         limit = max(limit + 0.001, 0.0045)
     solution = abut.solve(line(cell, n, contactor))
