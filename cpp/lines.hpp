@@ -3,6 +3,7 @@
 #include "accumulator.hpp"
 #include "hidden.hpp"
 #include "project.hpp"
+#include "sight.hpp"
 #include <numbers>
 
 namespace abut {
@@ -72,14 +73,16 @@ inline void cut_line(const Facet &c, const Facet &t, int number, Reach reach, st
     return;
   // The middle decides whether the two face each other within reach.
   Sight2 at(c);
-  if (!at.look(t, 0.5 * (own.begin + own.end)) || !reach.has(at.gap))
+  const double middle[2] = {0.5 * (own.begin + own.end), 0};
+  if (!at.look(t, middle[0]) || !reach.has(at.gap) || !before_focus(c, middle, at.gap))
     return;
   double y[3], slope[2][3];
   t.position.at(at.other.xi, y, slope);
   const double *along = slope[0], size = std::sqrt(dot(along, along, 2));
   if (along[1] * at.n[0] - along[0] * at.n[1] >= -EDGE_ON * size)
     return;
-  own.eta[0] = at.other.xi[0];
+  own.eta[0] = at.other.xi[0], own.gap = at.gap;
+  std::copy(at.x, at.x + 2, own.x), std::copy(at.n, at.n + 2, own.n);
   out.push_back(own);
 }
 
