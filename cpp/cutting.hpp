@@ -10,7 +10,7 @@
 namespace abut {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
-constexpr double SHALLOW = 0.05; // of the target facet's size: overlaps from which on it is asked where they come in by
+constexpr double SHALLOW = 0.25; // of the target facet's size: overlaps from which on it is asked where they come in by
 
 inline Box box_of(const Hull &hull, int dim) {
   Box box;
@@ -280,14 +280,14 @@ private:
       own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
   }
 
-  // Whether a segment sees its target through the target's body, having come in by another side: theory (S16).
+  // Whether a segment sees its target through the target's body, having come in by another side: theory (S18).
   bool seen_through(std::size_t f, const Segment &own) {
     const SurfaceView &target = both_.target.surface;
     const double depth = -own.gap;
     if (depth <= SHALLOW * both_.tree.box(own.target).diagonal(target.dim))
       return false;
     Box around;
-    around.add(own.x, target.dim), around.inflate(0.5 * depth, target.dim);
+    around.add(own.x, target.dim), around.inflate(0.2 * depth, target.dim);
     both_.tree.query(around, sides_, [](const Box &) { return true; });
     return std::any_of(sides_.begin(), sides_.end(), [&](int t) {
       return t != own.target && may_touch(both_.contactor.surface, f, target, std::size_t(t)) &&

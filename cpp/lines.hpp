@@ -73,8 +73,7 @@ inline void cut_line(const Facet &c, const Facet &t, int number, Reach reach, st
     return;
   // The middle decides whether the two face each other within reach.
   Sight2 at(c);
-  const double middle[2] = {0.5 * (own.begin + own.end), 0};
-  if (!at.look(t, middle[0]) || !reach.has(at.gap) || !before_focus(c, middle, at.gap))
+  if (!at.look(t, 0.5 * (own.begin + own.end)) || !reach.has(at.gap))
     return;
   double y[3], slope[2][3];
   t.position.at(at.other.xi, y, slope);

@@ -1,30 +1,20 @@
-// Where a contactor's sight of a target ends: theory (S15), (S16).
+// Where a contactor's sight of a target ends: theory (S17), (S18).
 #pragma once
 #include "hidden.hpp"
 #include "project.hpp"
 
 namespace abut {
 
-// Whether normals of a facet, which lead from xi to a gap, do not meet before: further away than where they do a target
-// is seen upside down, more than once.
+// Whether the normals of a facet in space, which lead from xi to a gap, do not meet before, theory (S17): beyond where
+// they do a target is seen upside down, more than once. (In 2D its interval runs backwards then, and is none.)
 inline bool before_focus(const Facet &c, const double *xi, double gap) {
-  double x[3], m[3], dx[2][3], dm[2][3], e[2][3];
+  double x[3], m[3], dx[2][3], dm[2][3], e[2][3], flat[2][2], turn[2][2];
   c.position.at(xi, x, dx), c.direction.at(xi, m, dm);
-  const double size = std::sqrt(dot(m, m, c.dim));
-  for (int a = 0; a < c.dim; ++a)
-    m[a] /= size;
-  // Slopes square to the normal m; m turns by dm / size.
-  if (c.dim == 2) {
-    e[0][0] = -m[1], e[0][1] = m[0];
-    const double length = dot(dx[0], e[0], 2);
-    return length * (length + gap * dot(dm[0], e[0], 2) / size) > 0;
-  }
-  const double way = dot(dx[0], m, 3);
+  const double size = std::sqrt(dot(m, m, 3)), way = dot(dx[0], m, 3) / (size * size);
   for (int a = 0; a < 3; ++a)
     e[0][a] = dx[0][a] - way * m[a];
-  normalize(e[0], 3), cross(m, e[0], e[1]);
-  double flat[2][2], turn[2][2];
-  for (int k = 0; k < 2; ++k)
+  normalize(m, 3), normalize(e[0], 3), cross(m, e[0], e[1]);
+  for (int k = 0; k < 2; ++k) // slopes square to the normal, which turns by dm / size
     for (int a = 0; a < 2; ++a)
       flat[k][a] = dot(dx[k], e[a], 3), turn[k][a] = gap * dot(dm[k], e[a], 3) / size;
   const double area = flat[0][0] * flat[1][1] - flat[0][1] * flat[1][0];
@@ -94,9 +84,10 @@ inline void middle_normal(const Facet &t, double *n) {
 }
 
 // Whether a point x of the contactor with normal n, at a depth in the target, is seen through it: a side of the target
-// that it sees edge-on or from behind is nearer than half of that, and is where it has come in.
+// that it sees edge-on or from behind is nearer than a fifth of that, and is where it has come in.
 inline bool comes_in_by(const Facet &side, const double *x, const double *n, double depth) {
-  constexpr double nearer = 0.5, level = 0.7; // levelness: cosine of normals above which sides are opposite each other
+  constexpr double nearer = 0.2,
+                   level = 0.7; // of the depth; cosine of normals from which on sides are opposite each other
   double its[3];
   middle_normal(side, its);
   const double facing = dot(its, n, side.dim);
