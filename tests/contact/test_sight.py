@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 import pytest
 
@@ -49,8 +48,8 @@ def test_what_is_deep_in_another_counts(depth: float) -> None:
 
 def test_hollow_facets_see_nothing_upside_down() -> None:
     """The bend between two jaws is hollow, with a radius of 0.25; the jaws beyond are seen across the middle of it, where
-    its normals cross. No segment has a negative area, but for a hundredth of the largest, of pieces that reach a little beyond
-    there (a tenth when all counted)."""
+    its normals cross. No segment has a negative area, but for a hundredth of the largest, of pieces that reach a little
+    beyond there (a quarter when all counted)."""
     model = wrung("tet10")
     pair = moving_sides(model.mesh, "body", "body")
     points = seen(model.mesh, "body", "body", 1.0)
