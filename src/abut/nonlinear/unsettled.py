@@ -51,7 +51,7 @@ def gives_way(problem: FiniteProblem, reason: str) -> str:
     for solid in problem.model.solids:
         if f"of body '{solid.body}'" in reason and isinstance(solid.material, LinearElastic):
             return (
-                f"body '{solid.body}' is linear elastic, by Saint Venant-Kirchhoff's law at large displacements, which gives "
+                f"body '{solid.body}' is linear elastic, by Saint Venant-Kirchhoff's law at large strains, which gives "
                 'way where it is pressed to about half its length: NeoHooke (kind = "neo-hooke") with the same constants '
                 "does not"
             )
