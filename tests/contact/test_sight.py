@@ -7,6 +7,7 @@ import pytest
 
 import abut
 from abut.contact.coupling import CouplingOptions, IntegrationPoints, couple, surface_degree
+from abut.contact.geometry import full_moments
 from abut.contact.sides import moving_sides
 from abut.mesh import make
 from models.clamps import wrung
@@ -56,6 +57,9 @@ def test_hollow_facets_see_nothing_upside_down() -> None:
     area = np.zeros((len(pair[0]), len(pair[1])))
     np.add.at(area, (points.facet, points.target_facet), points.weight)
     assert area.min() > -0.01 * area.max()
+    covered = area.sum(axis=1) / full_moments(pair[0], 0)[:, 0]  # -0.11 to 1.001 when all counted
+    assert covered.min() > -1e-4
+    assert covered.max() < 1.0 + 1e-4
 
 
 @pytest.mark.parametrize(("cell", "friction", "most"), [("tri3", 0.3, 41), ("quad8", 0.0, 50)])
