@@ -71,6 +71,8 @@ public:
     std::sort(found.begin(), found.end());
   }
 
+  const Box &box(int i) const { return boxes_[i]; }
+
 private:
   struct Node {
     Box box;
