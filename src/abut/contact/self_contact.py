@@ -50,6 +50,8 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -
         local=np.concatenate([contactor.local, target.local])[first],
         parts=None,
         axisymmetric=False,
+        bulge=None,
+        kin=None,
     )
     kin = _kin(straight(whole), bodies[whole.cells])
     parts = [kin[relatives] for relatives in np.split(number.ravel(), [len(contactor)])]

@@ -38,6 +38,12 @@ class Line:
     traction: NDArray[np.float64] | None = None
     limit: NDArray[np.float64] | None = None
 
+    @property
+    def opening(self) -> NDArray[np.float64]:
+        """The gap, or NaN all along where it is rounding."""
+        some = np.nanmax(np.nan_to_num(np.abs(self.gap)), initial=0.0) > 1e-9 * np.ptp(self.distance)
+        return self.gap if some else np.full_like(self.gap, np.nan)
+
     def distance_from(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distance along the line with 0 where the line passes nearest to ``point``."""
         a, b = self.points[:-1], self.points[1:]

@@ -21,7 +21,7 @@ from abut.report.chart import Beside, Chart
 from abut.report.contact_words import ZERO, centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
-from abut.report.lines import Line, pressure_lines
+from abut.report.lines import pressure_lines
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
@@ -370,12 +370,6 @@ def _charts(some: Sequence[Chart]) -> list[Json]:
     ]
 
 
-def _opening(line: Line) -> NDArray[np.float64]:
-    """The gap along a line, or nothing where it is rounding all along."""
-    some = np.nanmax(np.nan_to_num(np.abs(line.gap)), initial=0.0) > 1e-9 * np.ptp(line.distance)
-    return line.gap if some else np.full_like(line.gap, np.nan)
-
-
 def _lines(solution: Solution, origin: Origin) -> list[Json]:
     theory = ellipse(origin.expected)
     result = []
@@ -393,7 +387,7 @@ def _lines(solution: Solution, origin: Origin) -> list[Json]:
                     "zero": "the largest pressure" if reference is None else "the centre of contact",
                     "distance": _plain(distance),
                     "pressure": _plain(line.pressure),
-                    "gap": _plain(_opening(line)),
+                    "gap": _plain(line.opening),
                     "traction": None if line.traction is None else _plain(line.traction),
                     "limit": None if line.limit is None else _plain(line.limit),
                     "theory": None if reference is None else _plain(reference),
