@@ -113,7 +113,7 @@ def test_linear_pressure_on_coarse_quadratic_facets_is_found_out(tmp_path: Path)
     assert summary(sound)["remedies"] == []
     for solution, said in ((false, True), (sound, False)):
         text = write_report(solution, tmp_path / "report.html").read_text(encoding="utf-8")
-        assert ("<h2>Surfaces overlap</h2>" in text) is said
+        assert ("<h2>Contact is narrow for its facets</h2>" in text) is said
 
 
 def test_the_verdict_does_not_depend_on_load_or_units() -> None:

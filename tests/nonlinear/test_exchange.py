@@ -20,6 +20,7 @@ class Side:
     """A pair without friction."""
 
     n: int
+    tied: bool = False
     two_way: bool = False
     smooth: bool = False
 
