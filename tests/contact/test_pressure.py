@@ -81,7 +81,7 @@ def test_hertz_line_wherever_the_edge_lies(first: int, last: int, limit: float) 
     [
         ("quad4", (6, 10, 20)),
         ("quad8", (6, 10, 16)),
-        *(pytest.param(c, (6, 10, 20, 40), marks=pytest.mark.exhaustive) for c in ("quad4", "quad8")),
+        pytest.param("quad4", (6, 10, 20, 40), marks=pytest.mark.exhaustive),
     ],
 )
 def test_hertz_line_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: str) -> None:
@@ -127,7 +127,7 @@ def test_quarter_ball_on_a_block(cell: str, m: int, inside: float, rms: float, c
     [
         ("hex8", (4, 7)), ("tet4", (5, 7)),
         *(pytest.param(c, n, marks=pytest.mark.exhaustive)
-          for c, n in (("hex8", (5, 7, 10)), ("tet4", (5, 7, 10)), ("hex20", (4, 5, 7)), ("tet10", (4, 5, 7)))),
+          for c, n in (("hex20", (4, 5, 7)), ("tet10", (4, 5, 7)))),
     ],
 )  # fmt: skip
 def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: str) -> None:

@@ -292,6 +292,18 @@ def test_skewed_and_long_cells_are_named() -> None:
     assert "more than 100 times as long as thick" in long.what
 
 
+def test_cells_turned_inside_out_are_an_error() -> None:
+    """One corner of a quadrilateral pushed beyond its diagonal: positive at the integration points, negative there."""
+    mesh = rectangle((0, 1), (0, 1), cells=(1, 1), cell="quad4")
+    points = mesh.points.copy()
+    points[np.argmax(points.sum(axis=1))] = (0.45, 0.45)
+    _, turned, *_ = quality(replace(mesh, points=points))
+    assert turned.severity == "error"
+    assert "1 cells of 'body' are turned inside out at a corner (negative Jacobian" in turned.what
+    assert "0 at (0.3625, 0.3625)" in turned.what
+    assert "Gmsh" in turned.cure
+
+
 def test_findings_check_themselves() -> None:
     with pytest.raises(InputError, match="did you mean 'warning'"):
         Finding("warnin", "here", "something")

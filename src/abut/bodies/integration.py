@@ -23,6 +23,18 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
             )
     for kind in kinds if how == "b-bar" else ():
         if kind not in BBAR:
-            raise InputError(f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use 'full'")
+            raise InputError(
+                f"{where}: 'b-bar' is for {' and '.join(BBAR)} cells, the body has {kind}; use {_instead(kind)}"
+            )
         if plane == "stress":
             raise InputError(f"{where}: 'b-bar' has no benefit in plane stress, which does not lock; use 'full'")
+
+
+def _instead(kind: str) -> str:
+    """What does not lock near a Poisson's ratio of 0.5 in place of b-bar."""
+    cell = CELLS[kind]
+    if kind in REDUCED:
+        return "'full', or 'reduced' near a Poisson's ratio of 0.5"
+    if cell.degree == 1:
+        return f"'full', with {'tri6' if cell.dim == 2 else 'tet10'} cells near a Poisson's ratio of 0.5"
+    return "'full'"

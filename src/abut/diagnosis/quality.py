@@ -15,6 +15,7 @@ from abut.model import Model
 from abut.model.locking import locking
 
 POOR, BAD = 0.2, 0.02  # smallest scaled Jacobian (1 is best) from which on a cell is advised against, and warned of
+SHOWN = 3  # cells named one by one
 LONG = 100.0  # longest over shortest edge of a cell
 
 
@@ -32,9 +33,10 @@ def quality(mesh: Mesh) -> list[Finding]:
             f"{jacobian.max():.2g}, longest over shortest edge up to {ratio[longest]:.3g}",
         )
     ]
-    poor = np.flatnonzero(jacobian < POOR)
+    findings += _turned(mesh, jacobian)
+    poor = np.flatnonzero((jacobian < POOR) & (jacobian >= 0.0))
     if len(poor):
-        bad = int((jacobian < BAD).sum())
+        bad, worst = int((jacobian[poor] < BAD).sum()), int(poor[jacobian[poor].argmin()])
         findings.append(
             Finding(
                 "warning" if bad else "advice",
@@ -56,6 +58,25 @@ def quality(mesh: Mesh) -> list[Finding]:
             )
         )
     return findings
+
+
+def _turned(mesh: Mesh, jacobian: NDArray[np.float64]) -> list[Finding]:
+    """An error for cells of negative volume at a corner."""
+    turned = np.flatnonzero(jacobian < 0.0)
+    if not len(turned):
+        return []
+    first = [f"{cell}{_at(mesh, int(cell))}" for cell in turned[np.argsort(jacobian[turned])][:SHOWN]]
+    more = f" and {len(turned) - SHOWN} more" if len(turned) > SHOWN else ""
+    return [
+        Finding(
+            "error",
+            "mesh",
+            f"{len(turned)} cells of {_bodies(mesh, turned)} are turned inside out at a corner (negative Jacobian, scaled "
+            f"{jacobian[turned].min():.2g} at worst): {', '.join(first)}{more}",
+            "mesh anew there, finer or with other cells; with Gmsh, Mesh.Optimize = 1 and Mesh.HighOrderOptimize = 2, for "
+            "quadrilaterals Mesh.RecombineNodeRepositioning = 1",
+        )
+    ]
 
 
 def too_stiff(model: Model) -> list[Finding]:

@@ -14,6 +14,7 @@ from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
+from abut.job.other_names import key_called, kind_said
 from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable, NeoHookeTable
 from abut.job.values import values
 from abut.materials.elastic import LinearElastic
@@ -226,7 +227,9 @@ def _explain(error: Json, data: Json) -> str:
     if kind == "union_tag_not_found":
         return f"{place}.kind: missing"
     if kind == "union_tag_invalid":
-        return f"{place}.kind: expected one of {error['ctx']['expected_tags']}, got {error['ctx']['tag']!r}"
+        said = kind_said(str(error["ctx"]["tag"])) if location[:1] == ["materials"] else ""
+        tags, tag = error["ctx"]["expected_tags"], error["ctx"]["tag"]
+        return f"{place}.kind: expected one of {tags}, got {tag!r}" + (f"; {said}" if said else "")
     if kind == "finite_number":
         return f"{place}: expected a finite number, got {error['input']!r}"
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"
@@ -234,6 +237,9 @@ def _explain(error: Json, data: Json) -> str:
 
 def _suggest(location: list[Any], data: Json) -> str:
     known = _fields(JobFile, location[:-1])
+    called = key_called(str(location[-1]), known)
+    if called:
+        return f"; it is called '{called}' here"
     return nearest(str(location[-1]), known) if known else ""
 
 
