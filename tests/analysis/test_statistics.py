@@ -234,7 +234,7 @@ def test_a_node_over_nothing_sets_no_scale(tmp_path: Path) -> None:
     assert own.max_pressure == s.largest == np.nanmax(own.pressure[own.share >= 0.5])
     assert s.place[0] <= 0.5
     assert max(s.percentile_95, s.mean) <= s.largest
-    assert scene(solution).data["largest"] == {"pressure": own.max_pressure}
+    assert scene(solution).data["ranges"]["pressure"] == [[0.0, own.max_pressure]]
     summary = contact_summary(own)
     assert summary["max_pressure_partly_covered"] == s.partly_covered
     assert any(f"{s.partly_covered:.6g}" in line for line in lines(own))
