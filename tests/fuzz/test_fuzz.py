@@ -10,7 +10,7 @@ import pytest
 from abut.cli import main
 from fuzz.harness import SEEDS, make, run_all
 
-FAST, MANY, ALL = 100, 1_000, 3_000
+FAST, MANY, ALL = 100, 1_000, 2_000
 
 
 def check(numbers: range, folder: Path) -> None:
