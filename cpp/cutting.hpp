@@ -10,7 +10,6 @@
 namespace abut {
 
 constexpr std::size_t FEW_FACETS = 500; // not worth a thread
-constexpr double SHALLOW = 0.25; // of the target facet's size: overlaps from which on it is asked where they come in by
 
 inline Box box_of(const Hull &hull, int dim) {
   Box box;
@@ -107,8 +106,7 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reac
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
-  own.gap = at.look(t, own.finished.middle());
-  if (!reach.has(own.gap) || !(over.c.flat || before_focus(over.c.facet, at.own.xi, own.gap)))
+  if (!reach.has(at.look(t, own.finished.middle())))
     return;
   double y[3], tangent[2][3], facing[3];
   t.position.at(at.other.xi, y, tangent);
@@ -116,7 +114,6 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reac
   if (dot(facing, at.n, 3) >= -EDGE_ON * std::sqrt(dot(facing, facing, 3)))
     return;
   std::copy(at.own.xi, at.own.xi + 2, own.xi), std::copy(at.other.xi, at.other.xi + 2, own.eta);
-  std::copy(at.x, at.x + 3, own.x), std::copy(at.n, at.n + 3, own.n);
   out.push_back(own);
 }
 
@@ -275,24 +272,8 @@ private:
 
   // Says what each segment is for.
   void cast(std::size_t f) {
-    std::erase_if(segments_, [&](const Segment &own) { return seen_through(f, own); });
     for (Segment &own : segments_)
       own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
-  }
-
-  // Whether a segment sees its target through the target's body, having come in by another side: theory (S18).
-  bool seen_through(std::size_t f, const Segment &own) {
-    const SurfaceView &target = both_.target.surface;
-    const double depth = -own.gap;
-    if (depth <= SHALLOW * both_.tree.box(own.target).diagonal(target.dim))
-      return false;
-    Box around;
-    around.add(own.x, target.dim), around.inflate(0.2 * depth, target.dim);
-    both_.tree.query(around, sides_, [](const Box &) { return true; });
-    return std::any_of(sides_.begin(), sides_.end(), [&](int t) {
-      return t != own.target && may_touch(both_.contactor.surface, f, target, std::size_t(t)) &&
-             comes_in_by(both_.targets[t], own.x, own.n, depth);
-    });
   }
 
   void cut_all(std::size_t f, const Facet &c) {
@@ -315,7 +296,7 @@ private:
   }
 
   const Interface &both_;
-  std::vector<int> found_, sides_;
+  std::vector<int> found_;
   std::vector<Piece> pieces_;
   std::vector<Segment> segments_;
   Carried carried_;

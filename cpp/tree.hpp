@@ -71,8 +71,6 @@ public:
     std::sort(found.begin(), found.end());
   }
 
-  const Box &box(int i) const { return boxes_[i]; }
-
 private:
   struct Node {
     Box box;
