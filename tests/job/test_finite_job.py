@@ -94,7 +94,7 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"finite"', '"large"', "model.kinematics: expected 'small' or 'finite', got 'large'"),
+        ('"finite"', '"large"', "model.kinematics: expected 'small', 'finite' or 'small-strain', got 'large'"),
         (
             '"finite"',
             '"small"',

@@ -53,7 +53,7 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; stored: strain energy, with finite kinematics
+    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; stored: strain energy, with finite strains
     only; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the target
     anywhere, else None."""
 
@@ -68,7 +68,7 @@ class _End:
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
     cycling: NDArray[np.bool_]
-    stored: float
+    stored: float | None
     supports: Sequence[NDArray[np.float64] | None]
 
     @property
@@ -90,7 +90,7 @@ def step_result(
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     sampled = assembled.bodies.stress(end.motion)
-    points = model.mesh.points + end.nodal if model.finite else model.mesh.points
+    points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
     known = known_stress(model, points, state.time, system.pairs, contacts)
@@ -127,7 +127,7 @@ def step_result(
         spring=springs.force(state.unknowns) if len(springs) else None,
         strained=strained,
         landed=_landed(state),
-        turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
+        turn=_turn(model, end.nodal),
         energy=balance if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
     )
@@ -158,7 +158,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
             following -= term.evaluate(motion, motion).force
     loads = assembled.loaded.forces @ system.factors + following
     reaction = internal - loads - contact_force
-    stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else 0.0
+    stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else None
     return _End(
         problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
         supports,
@@ -195,15 +195,29 @@ def _finite_energy(
     histories = problem.model.histories
     pressed = pressing(system, end.pressures) if system.pairs else np.zeros_like(end.internal)
     left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
+    if not isinstance(acted, FiniteActing):
+        acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     now = FiniteActing(
         end.displacement, end.internal, end.loads, end.reaction, pressed,
-        end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
+        end.internal - end.loads - end.reaction - pressed, _stored(end, acted), state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
         drag_of(state) if is_dragged(state) else None,
     )  # fmt: skip
-    if not isinstance(acted, FiniteActing):
-        acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     return now, finite_energy(acted, now, system.stiffness.diagonal(), contacts, _largest_size(steps))
+
+
+def _stored(end: _End, before: FiniteActing) -> float:
+    """Strain energy, where bodies know it; under small strains the work of stresses up to now, the same for linear ones."""
+    if end.stored is not None:
+        return end.stored
+    return before.stored + 0.5 * float((before.internal + end.internal) @ (end.displacement - before.displacement))
+
+
+def _turn(model: Model, displacement: NDArray[np.float64]) -> float:
+    """Largest turn of a body, where they are taken for small; rigid ones may turn by any where contact follows them."""
+    if not model.small_strains:
+        return 0.0
+    return largest_turn(model.mesh, displacement, model.materials if model.finite else model.mesh.bodies)
 
 
 def _landed(state: State) -> tuple[float, float] | None:

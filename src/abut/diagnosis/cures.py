@@ -202,7 +202,8 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
 
 def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
-        'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at first'
+        'kinematics = "finite", or "small-strain" where bodies are linear: contact then follows them; with small kinematics '
+        "it stays where it was at first"
     )
 
 

@@ -29,7 +29,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
-        "rotations": "surfaces, node sets and bodies that turn about an axis; finite kinematics only",
+        "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
@@ -41,7 +41,8 @@ MEANINGS: dict[str, dict[str, str]] = {
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {
         "plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)",
-        "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration",
+        "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration; "
+        "small-strain: linear bodies whose strains and turns are small, contact where they have moved to, however far",
     },
     "MaterialTable": {
         "kind": "the material law",
@@ -79,7 +80,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "PressureTable": {
         "kind": "pressure on a surface",
         "value": "positive into the body, a number or an expression [force/length^2]",
-        "follows": "finite kinematics: along the normal and on the area of the deformed surface, or (false) of the "
+        "follows": "but for small kinematics: along the normal and on the area of the deformed surface, or (false) of the "
         "undeformed one, as a dead load; the other loads are dead",
     },
     "TractionTable": {

@@ -1,4 +1,4 @@
-"""Small and finite deformation: which materials go with which."""
+"""Small and finite deformation, and small strains of bodies that slide far: which materials go with which."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from abut.model.conditions import Equation, Support
 from abut.model.contact import METHODS, Contact
 from abut.model.solid import Solid
 
-KINEMATICS = ("small", "finite")
+KINEMATICS = ("small", "finite", "small-strain")
 
 
 def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
@@ -22,9 +22,9 @@ def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
         if kinematics == "finite" and law(solid.material) is None:
             raise InputError(
                 f"solids[{i}].material: {type(solid.material).__name__} of body '{solid.body}' is a law for small strains; "
-                'kinematics "finite" takes LinearElastic and NeoHooke'
+                'kinematics "finite" takes LinearElastic and NeoHooke, "small-strain" large sliding of such bodies'
             )
-        if kinematics == "small" and isinstance(solid.material, NeoHooke):
+        if kinematics != "finite" and isinstance(solid.material, NeoHooke):
             raise InputError(
                 f"solids[{i}].material: the neo-Hookean material of body '{solid.body}' is for finite strains; use "
                 'kinematics = "finite", or a linear elastic material'

@@ -55,7 +55,8 @@ class Model:
     one of ``solids`` or ``rigid``.
 
     ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
-    forces and pressures in the deformed configuration; theory (D1)).
+    forces and pressures in the deformed configuration; theory (D1)), or "small-strain" (bodies as with "small"; contact,
+    loads and rigid bodies as with "finite", where bodies have moved to; theory (D17)).
 
     >>> import abut
     >>> from abut.mesh import make
@@ -126,12 +127,17 @@ class Model:
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
         integration = {solid.body: solid.integration for solid in self.solids}
-        return Solids(self.mesh, self.materials, self.plane, integration, self.kinematics)
+        return Solids(self.mesh, self.materials, self.plane, integration, "small" if self.small_strains else "finite")
 
     @property
     def finite(self) -> bool:
-        """Whether deformations may be finite."""
-        return self.kinematics == "finite"
+        """Whether displacements may be: contact, loads and rigid bodies are where bodies have moved to."""
+        return self.kinematics != "small"
+
+    @property
+    def small_strains(self) -> bool:
+        """Whether strains and turns of deforming bodies are taken for small, theory (D17) if they slide far."""
+        return self.kinematics != "finite"
 
     @property
     def dim(self) -> int:

@@ -47,7 +47,8 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        arguments = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
+        again = self.model.finite  # iterations ask for it anew
+        arguments = [(replace(self.model.deformable, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)
         return self
 
@@ -85,7 +86,8 @@ class DistributedBodies:
         return self.reduced("stiffness", constraints)
 
     def reduced(self, tangent: str | int, constraints: Constraints) -> Distributed:
-        """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose."""
+        """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose, but for the
+        stiffness of a model whose iterations need it again."""
         places, kept = self._laid_out(constraints), self.team.keep()
         self.team.each(reduce, tangent, kept.number, places.starts, places.block)
         return Distributed(self.team, places, kept)
@@ -180,7 +182,7 @@ def _inside_out(answer: object) -> TypeGuard[part.InsideOut]:
 
 def deal_out(model: Model, team: Team) -> DistributedBodies:
     """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
-    if not (model.deformable.constant or model.finite):
+    if model.small_strains and not model.deformable.constant:
         raise InputError(
             'solve.linear "petsc" and several processes know, of materials under small strains, linear elastic ones only; '
             'run without mpiexec, with linear = "auto"'

@@ -18,10 +18,10 @@ from abut.parallel.team import Store
 InsideOut = tuple[int, str, float]  # number of a cell of the part, body, determinant of the deformation gradient
 
 
-def assemble(store: Store, part: Solids) -> None:
-    """Keep the part and the stiffness of its cells over its points."""
+def assemble(store: Store, part: Solids, again: bool = False) -> None:
+    """Keep the part and the stiffness of its cells over its points; again: also when it has been reduced."""
     n = part.mesh.points.size
-    store["part"] = part
+    store["part"], store["again"] = part, again
     store["stiffness"] = stiffness(part) if part.mesh.n_cells else sp.csr_matrix((n, n))
 
 

@@ -72,7 +72,7 @@ def assemble(
     n_free = reduced.shape[0]
     constant = model.deformable.constant
     bodies: Bodies
-    if model.finite:
+    if not model.small_strains:
         bodies = FiniteBodies(model, loaded, backend)
     else:
         linear = LinearBodies(backend, loaded, model.histories, model.temperatures)

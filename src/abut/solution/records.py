@@ -108,7 +108,7 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
-    turn: float = 0.0  # largest of a body as a whole, radians, with small kinematics
+    turn: float = 0.0  # largest of a body as a whole, radians, where they are taken for small
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
@@ -228,9 +228,9 @@ class Solution:
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             turn = Check("", "rotation", step.turn, TURN,
-                         "largest turn of a body, radians, which small kinematics takes for small",
+                         "largest turn of a body, radians, which this kinematics takes for small",
                          notice=TURN_NOTICED)  # fmt: skip
-            model = [balance, response] if self.model.finite else [balance, response, strain, turn]
+            model = [balance, response, *((strain, turn) if self.model.small_strains else ())]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
