@@ -162,7 +162,7 @@ def bundle(folder: Path, **changes: str) -> str:
 
 
 def test_petsc_in_wheels_is_imported_in_its_order(tmp_path: Path) -> None:
-    """As dolfinx-solver-real asks: itself, then MPI, then petsc4py. What it says of another one in its way is the message."""
+    """As dolfinx-solver-real asks: itself, then MPI, then petsc4py. What it says of another one in its way is told."""
     assert (
         bundle(tmp_path)
         == str(["dolfinx_solver", "mpi4py", "mpi4py.MPI", "petsc4py", "petsc4py.lib", "petsc4py.PETSc"]) + "\n"

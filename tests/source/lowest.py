@@ -1,4 +1,4 @@
-"""Prints constraints for pip: the lowest version that pyproject.toml allows of each package that abut needs (`make lowest`)."""
+"""Prints constraints for pip: the lowest version that pyproject.toml allows of each package (`make lowest`)."""
 
 from __future__ import annotations
 

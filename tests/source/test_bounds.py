@@ -1,4 +1,4 @@
-"""Bounds of the packages that abut needs: `make lowest` runs the tests with the lowest of them, `make test` with the newest."""
+"""Bounds of the packages that abut needs: `make lowest` runs the tests with the lowest, `make test` with the newest."""
 
 from __future__ import annotations
 

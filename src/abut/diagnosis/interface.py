@@ -237,7 +237,7 @@ def _opposite(pair: Pair, around: Surface, moved: float | None) -> NDArray[np.fl
     near = seen & (at.gap <= (closest + DEEP * facet_sizes(contactor)[at.facet] if moved is None else moved))
     named = np.isin(8 * around.cells + around.local, 8 * target.cells + target.local)
     other = near & ~named[at.target_facet]
-    return np.bincount(at.facet[other], at.weight[other], minlength=len(contactor))
+    return np.bincount(at.facet[other], at.weight[other], minlength=len(contactor)).astype(np.float64)
 
 
 def _more(contact: Contact) -> str:

@@ -74,8 +74,8 @@ def require() -> None:
 
 
 def _bundle() -> None:
-    """Import the package that brings PETSc in wheels, where there is one: it loads its MPI before what is bound to it. Raises
-    InputError with its own words where another petsc4py or MPI is in its way."""
+    """Import the package that brings PETSc in wheels, where there is one: it loads its MPI before what is bound to it.
+    Raises InputError with its own words where another petsc4py or MPI is in its way."""
     try:
         importlib.import_module(BUNDLE)
     except ModuleNotFoundError as error:
