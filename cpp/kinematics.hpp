@@ -122,6 +122,8 @@ public:
     }
   }
 
+  void add_stiffness(std::size_t q, const Dense &tangent, double *block) { add_stiffness(q, Full{tangent.c}, block); }
+
   // The same of two constants, for nodes i <= k, without the mean dilatation: lambda div v div u + 2 mu eps(v) :
   // eps(u).
   void add_stiffness(std::size_t q, const Moduli &tangent, double *block) {
@@ -161,6 +163,9 @@ public:
             block[((i * n + k) * dim + a) * dim + b] += bulk * mean[i * dim + a] * mean[k * dim + b];
   }
   void finish(const Full &, double *) const {} // it is in the derivatives already
+  void finish(const Dense &, double *) const {}
+
+  double reference_volume(std::size_t q) const { return volume[q]; }
 
 private:
   // b[s][a]: strain s at point q per displacement a of node i.

@@ -26,6 +26,13 @@ struct Full {
   const double *c;
 };
 
+// What a law says at a point: tangent and energy. sound: false where plane stress found no strain out of the plane.
+struct Dense {
+  static constexpr bool symmetric = false;
+  double c[STRAINS * STRAINS], energy;
+  bool sound;
+};
+
 // Isotropic linear elasticity with the constants (cells, 2) of each cell; in plane stress lambda is the reduced one.
 struct Isotropic {
   using Tangent = Moduli;
@@ -58,6 +65,36 @@ struct Given {
     if (stress)
       std::copy_n(stresses + at.number * STRAINS, STRAINS, stress);
     return {tangents ? tangents + at.number * STRAINS * STRAINS : nullptr};
+  }
+};
+
+// The same under finite strains, with the strains (points, 6) that belong to them.
+struct GivenFinite {
+  using Tangent = Dense;
+  static constexpr bool stress_by_strain = true, tangent_by_strain = true;
+  const double *strains, *stresses, *tangents;
+  bool plane_stress;
+
+  Dense evaluate(const Point &at, double *strain, double *stress) const {
+    Dense result;
+    result.sound = true, result.energy = 0;
+    std::copy_n(strains + at.number * STRAINS, STRAINS, strain);
+    std::copy_n(stresses + at.number * STRAINS, STRAINS, stress);
+    std::copy_n(tangents + at.number * STRAINS * STRAINS, STRAINS * STRAINS, result.c);
+    return result;
+  }
+};
+
+// Writes the strains (points, 6) down.
+struct Told {
+  using Tangent = Dense;
+  static constexpr bool stress_by_strain = true, tangent_by_strain = true, plane_stress = false;
+  double *strains;
+
+  Dense evaluate(const Point &at, const double *strain, double *stress) const {
+    std::copy_n(strain, STRAINS, strains + at.number * STRAINS);
+    std::fill_n(stress, STRAINS, 0.0);
+    return {{0}, 0, true};
   }
 };
 

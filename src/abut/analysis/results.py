@@ -33,7 +33,6 @@ from abut.problem.assembly import Assembled
 from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
-from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
@@ -41,7 +40,7 @@ from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
-from abut.problem.terms import Motion
+from abut.problem.terms import Motion, SolidBodies
 from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
 from abut.solution.state import State
 
@@ -158,7 +157,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
             following -= term.evaluate(motion, motion).force
     loads = assembled.loaded.forces @ system.factors + following
     reaction = internal - loads - contact_force
-    stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else None
+    stored = bodies.energy(motion) if problem.model.finite and isinstance(bodies, SolidBodies) else None
     return _End(
         problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
         supports,

@@ -16,7 +16,6 @@ from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.finite import finite_problem
-from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
@@ -72,11 +71,10 @@ def assemble(
     n_free = reduced.shape[0]
     constant = model.deformable.constant
     bodies: Bodies
-    if not model.small_strains:
-        bodies = FiniteBodies(model, loaded, backend)
+    if constant:
+        bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
-        linear = LinearBodies(backend, loaded, model.histories, model.temperatures)
-        bodies = linear if constant else SolidBodies(model, loaded)
+        bodies = SolidBodies(model, loaded, backend)
     problem = ContactProblem(
         model=model,
         terms=(

@@ -9,13 +9,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import respond
+from abut.bodies.assemble import is_symmetric
 from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import PointStress, point_stress
+from abut.bodies.stress import PointStress
 from abut.model import History as Amplitude
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.backend import Backend, Serial, Tangent
+from abut.problem.backend import Backend, Tangent
 from abut.problem.loads import Loads
 
 Vector = NDArray[np.float64]
@@ -91,23 +91,28 @@ class LinearBodies:
 
 @dataclass(frozen=True)
 class SolidBodies:
-    """Bodies of any material under small strains, those of users' own among them."""
+    """Bodies of any material, those of users' own among them, under small or finite strains, theory (D2). ``evaluate`` and
+    ``stress`` raise ``abut.bodies.inverted.Inverted`` at displacements that turn a cell inside out under finite ones."""
 
     model: Model
     loads: Loads
+    backend: Backend
     name: str = "bodies"
     constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
-        nodal, change, history = self._at(now, before.history)
-        response = respond(self.model.deformable, nodal, change, history)
-        return Share(response.force, Serial(self.model, response.tangent), response.history)
+        deformed = self.backend.deform(*self._at(now, before.history))
+        return Share(deformed.force, deformed.tangent, deformed.history, is_symmetric(self.model.deformable))
 
     def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``."""
-        nodal, change, history = self._at(motion, motion.history)
-        return point_stress(self.model.deformable, nodal, change, history)
+        """As in ``Bodies``: Cauchy stresses under finite strains."""
+        return self.backend.stress(*self._at(motion, motion.history))
+
+    def energy(self, motion: Motion) -> float:
+        """Elastic energy of all bodies, force times length (per unit thickness in 2D); not a number where a material does
+        not tell it."""
+        return self.backend.deform(*self._at(motion, motion.history), tangent=False).energy
 
     def _at(
         self, motion: Motion, history: Mapping[str, Vector]
