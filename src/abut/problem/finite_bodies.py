@@ -28,7 +28,8 @@ class FiniteBodies:
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
         deformed = self.backend.deform(*self._at(now))
-        return Share(deformed.force, deformed.tangent, symmetric=is_symmetric(self.model.deformable))
+        symmetric = is_symmetric(self.model.deformable)
+        return Share(deformed.force, deformed.tangent, symmetric=symmetric, energy=deformed.energy)
 
     def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``: Cauchy stresses."""

@@ -35,12 +35,13 @@ class Motion:
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
     tangent: what reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
-    the tangent."""
+    the tangent; energy: elastic, of a term under finite strains."""
 
     force: Vector
     tangent: Tangent | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
     symmetric: bool = True
+    energy: float = 0.0
 
 
 class Term(Protocol):
