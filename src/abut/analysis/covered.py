@@ -30,9 +30,9 @@ Array = NDArray[np.float64]
 def covered(
     problem: FiniteProblem, balance: Balance, state: State, here: Array
 ) -> tuple[Balance, State, NDArray[np.bool_]]:
-    """A problem at the end of a step and the state there, at displacements ``here`` (dim n_points,), without multipliers that
-    nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of symmetry
-    those where the contactor ends now."""
+    """A problem at the end of a step and the state there, at displacements ``here`` (dim n_points,), without multipliers
+    that nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of
+    symmetry those where the contactor ends now."""
     pairs, keeps, gaps, slips = [], [], [], state.history.of(CONTACTS)
     for pair, kind, whole, gap in zip(balance.pairs, problem.moving, problem.pairs, balance.split(balance.gap)):
         keep = np.ones(len(pair), dtype=bool)
@@ -69,8 +69,8 @@ def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
 
 
 def whole_supports(problem: FiniteProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:
-    """int H_k over all of the contactor where it is now, (n_functions,) of each pair,
-    without what follows it; None of ties. pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair, without what follows it; None of ties.
+    pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
     return [
         None
         if pair.tied

@@ -227,8 +227,8 @@ class Current:
         return replace(seen, gap_samples=with_adjusted(self.pair.space, contactor, seen, self.adjusted))
 
     def gaps(self, space: PressureSpace, seen: Coupling, offset: float, fit: Array | None) -> Array:
-        """Mean gaps times what is covered, (n_functions,), in a coupling as from ``shown``; space: of the pair there; offset,
-        fit: as in ``Place``."""
+        """Mean gaps times what is covered, (n_functions,), in a coupling as from ``shown``; space: of the pair there;
+        offset, fit: as in ``Place``."""
         gap, weight = (space.transfer.T @ part for part in (seen.gap if fit is None else seen.gap + fit, seen.weight))
         return np.asarray(gap + (offset if self.adjusted is None else offset + self.adjusted) * weight)
 

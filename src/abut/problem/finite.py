@@ -21,7 +21,7 @@ from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised, by_pair
-from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
+from abut.problem.problem import TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.step_error import LANDED, PairEnd, landed
 from abut.problem.terms import Motion, Share
