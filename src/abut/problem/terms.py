@@ -35,12 +35,13 @@ class Motion:
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
     tangent: what reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
-    the tangent."""
+    the tangent; energy: elastic, of a term that knows it, not a number where a material does not tell it."""
 
     force: Vector
     tangent: Tangent | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
     symmetric: bool = True
+    energy: float | None = None
 
 
 class Term(Protocol):
@@ -103,16 +104,12 @@ class SolidBodies:
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
         deformed = self.backend.deform(*self._at(now, before.history))
-        return Share(deformed.force, deformed.tangent, deformed.history, is_symmetric(self.model.deformable))
+        symmetric = is_symmetric(self.model.deformable)
+        return Share(deformed.force, deformed.tangent, deformed.history, symmetric, deformed.energy)
 
     def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``: Cauchy stresses under finite strains."""
         return self.backend.stress(*self._at(motion, motion.history))
-
-    def energy(self, motion: Motion) -> float:
-        """Elastic energy of all bodies, force times length (per unit thickness in 2D); not a number where a material does
-        not tell it."""
-        return self.backend.deform(*self._at(motion, motion.history), tangent=False).energy
 
     def _at(
         self, motion: Motion, history: Mapping[str, Vector]
