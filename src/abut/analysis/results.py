@@ -125,6 +125,7 @@ def step_result(
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
         rounding=_rounding(system, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
+        neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
         turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),

@@ -228,7 +228,8 @@ def pair(
     tied = contact.kind == "tied"
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
-    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if contact.frictional else None
+    seen = not tied and contact.method == METHODS[0]
+    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if seen else None
     contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
