@@ -122,6 +122,7 @@ def step_result(
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
         rounding=_rounding(balance, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
+        neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
         turn=_turn(model, end.nodal),

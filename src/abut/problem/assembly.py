@@ -20,6 +20,7 @@ from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
+from abut.problem.neutral_motions import neutral_motions
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
@@ -59,7 +60,10 @@ def assemble(
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
     restrained = restraint(model.mesh, constraints, every)
-    springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model))
+    neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, every)
+    springs = free_mode_springs(
+        restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral
+    )
     for text in springs.notes:
         note(text)
     restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)

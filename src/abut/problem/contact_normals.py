@@ -1,4 +1,4 @@
-"""The normals of a contact, where supports have a say."""
+"""The normals of a contact at small displacements, where supports have a say."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.bulge import Held
 from abut.contact.common_normals import common_normals
 from abut.contact.coupling import Couple
-from abut.contact.geometry import nodal_normals, turning_within
+from abut.contact.geometry import nodal_normals
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model

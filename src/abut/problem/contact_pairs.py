@@ -233,8 +233,7 @@ def pair(
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
     seen = not tied and contact.method == METHODS[0]
-    share = both.share if contact.frictional else 0.0
-    normals = contact_normals(model, contactor, target, share, reach, couple) if seen else None
+    normals = contact_normals(model, contactor, target, both.share, reach, couple) if seen else None
     contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
     if contactor.kin is None and not (tied or model.finite) and lies_deep(contactor, target, coupling.gap_samples):
         return pair(model, contact, constraints, couple, with_kin(model.mesh, *(sides or model.sides(contact)), True))

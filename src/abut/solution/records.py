@@ -97,6 +97,7 @@ class Step:
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     flips: Mapping[str, Flips] = field(default_factory=dict)  # contact name -> nodes that do, with friction
     spring: float | None = None  # largest force that constrains free rigid-body modes; None where there are none
+    neutral: float = 0.0  # share of the forces that facets put on those that contact resists by its facets alone
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
     strain: float = (
@@ -137,7 +138,7 @@ class Step:
         """Of ``regularisation``: the resultant of what the solver leaves of the balance of forces at all points together, at
         least and at most fixed shares of the reference force."""
         left = self.iterations[-1].residual * float(np.sqrt(self.displacement.size)) if self.iterations else 0.0
-        return min(max(REGULARISATION, left), ROUNDED)
+        return max(min(max(REGULARISATION, left), ROUNDED), self.neutral)
 
     @property
     def reference_force(self) -> float:
