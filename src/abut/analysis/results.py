@@ -14,6 +14,7 @@ from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
+from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -41,7 +42,7 @@ from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion, SolidBodies
-from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, Flow, RigidResult, Step
 from abut.solution.state import State
 
 Acted = Acting | FiniteActing | None  # what acts at the end of a step
@@ -68,6 +69,7 @@ class _End:
     following: NDArray[np.float64]
     cycling: NDArray[np.bool_]
     stored: float
+    flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
 
     @property
@@ -129,6 +131,8 @@ def step_result(
         turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
         energy=balance if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
+        remembered=remembered(solids, end.motion.history),
+        flow=end.flow,
     )
     return step, acting
 
@@ -160,7 +164,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     stored = bodies.energy(motion) if problem.model.finite and isinstance(bodies, SolidBodies) else 0.0
     return _End(
         problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
-        supports,
+        flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
 
 
@@ -169,19 +173,24 @@ def _energy(
 ) -> tuple[Acted, Energy | None]:
     """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
     system, constraints = end.system, end.problem.constraints
-    if not attempt.converged or not any(pair.frictional for pair in system.pairs):
+    if not attempt.converged or not (end.flow or any(pair.frictional for pair in system.pairs)):
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
         end.displacement, constraints.prescribed @ system.factors, end.internal, end.loads, end.reaction,
-        pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
-        largest * max(attempt.iterations[-1].residual, TOLERANCE),
+        _pressed(end), tractions(system, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE), end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, Acting):
         acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), system)
     history = end.state.history.of(CONTACTS)
     slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
     return now, energy(system, acted, now, slips, contacts, _largest_size(steps))
+
+
+def _pressed(end: _End) -> NDArray[np.float64]:
+    """Nodal forces of all pressures and ties, (dim n_points,)."""
+    return pressing(end.system, end.pressures) if end.system.pairs else np.zeros_like(end.internal)
 
 
 def _finite_energy(
@@ -192,13 +201,13 @@ def _finite_energy(
         return None, None
     problem, system, state = end.problem, end.system, end.state
     histories = problem.model.histories
-    pressed = pressing(system, end.pressures) if system.pairs else np.zeros_like(end.internal)
+    pressed = _pressed(end)
     left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
     now = FiniteActing(
         end.displacement, end.internal, end.loads, end.reaction, pressed,
         end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        drag_of(state) if is_dragged(state) else None,
+        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
