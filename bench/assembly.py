@@ -61,7 +61,9 @@ def flowing(n: int, elastic: Solids, repeat: int) -> None:
         yields = Solids(mesh, {"body": Plastic(YOUNG, POISSON, 300.0, 1000.0)}, integration={"body": rule})
         yields.pattern  # noqa: B018
         both = seconds(lambda yields=yields: respond(yields, moved), repeat)
-        print(f"{n**3} hex8 {rule}: stiffness {linear:.2f} s, plastic force and tangent {both:.2f} s: {both / linear:.2f}")
+        print(
+            f"{n**3} hex8 {rule}: stiffness {linear:.2f} s, plastic force and tangent {both:.2f} s: {both / linear:.2f}"
+        )
 
 
 def main() -> None:

@@ -188,7 +188,7 @@ private:
       }
     }
 
-    // The consistent tangent, theory (Y8).
+    // The consistent tangent, theory (Y7).
     void linearise(double *c) const {
       const double shear = law.elastic.shear, lambda = law.elastic.bulk;
       const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);

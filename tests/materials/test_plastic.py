@@ -132,7 +132,9 @@ def test_turns(name: str) -> None:
     assert after[6:8] == pytest.approx(history[6:8], rel=1e-9)
     tiny = 1e-7 * path / np.abs(path).max() * np.array([1, 1, 1, 1, 1, 1])
     soft = Plastic(E, NU, 1e-7 * Y, backstresses=law.backstresses)  # flows at such strains
-    assert along(soft, tiny, True)[0] == pytest.approx(along(soft, tiny)[0], abs=1e-5 * np.abs(along(soft, tiny)[0]).max())
+    assert along(soft, tiny, True)[0] == pytest.approx(
+        along(soft, tiny)[0], abs=1e-5 * np.abs(along(soft, tiny)[0]).max()
+    )
 
 
 def _tensor(strain: np.ndarray, shear: float) -> np.ndarray:

@@ -71,7 +71,10 @@ def _unloaded() -> Benchmark:
 
         full = next(step for step in solution.steps if abs(step.factor - 0.8) < 1e-9)
         values = {"bore": at(full, "left"), "outside": at(full, "right")}
-        return values | {"bore unloaded": at(solution.steps[-1], "left"), "outside unloaded": at(solution.steps[-1], "right")}
+        return values | {
+            "bore unloaded": at(solution.steps[-1], "left"),
+            "outside unloaded": at(solution.steps[-1], "right"),
+        }
 
     exact = {"bore": 0.215752, "outside": 0.129087, "bore unloaded": 0.061403, "outside unloaded": 0.030864}
     return Benchmark(

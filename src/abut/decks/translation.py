@@ -33,8 +33,8 @@ from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
-from abut.materials.plastic import Plastic
 from abut.materials.material import Material
+from abut.materials.plastic import Plastic
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build

@@ -1,4 +1,4 @@
-"""Metal that yields: von Mises plasticity, theory (Y1) to (Y12)."""
+"""Metal that yields: von Mises plasticity, theory (Y1) to (Y10)."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class Energy:
     displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
     with finite kinematics only; earlier: the largest size of the steps before;
     stabilisation: what a drag takes on the way of a step that it leads, theory (G24); plastic: what plastic flow
-    takes, with what hardening keeps of it, theory (Y13).
+    takes, with what hardening keeps of it, theory (Y11).
     """
 
     loads: float

@@ -113,7 +113,9 @@ class Step:
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
-    remembered: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # by materials, at points: (n_points, ...)
+    remembered: Mapping[str, NDArray[np.float64]] = field(
+        default_factory=dict
+    )  # by materials, at points: (n_points, ...)
     flow: Flow | None = None  # None where no material yields
 
     @property

@@ -44,10 +44,7 @@ def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
 
 def _material(card: Card, following: Sequence[Card]) -> Material:
     options = {
-        option.key: option
-        for option in takewhile(
-            lambda following_card: following_card.key in PROPERTIES, following
-        )
+        option.key: option for option in takewhile(lambda following_card: following_card.key in PROPERTIES, following)
     }
     name = card.need("NAME")
     if "ELASTIC" in options and "HYPERELASTIC" in options:
