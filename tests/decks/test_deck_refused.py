@@ -75,8 +75,8 @@ def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
         .replace("*STATIC", "*STATIC\n*CLOAD\n18, 7, 1.\n*BOUNDARY\n1, 9\n")
     )
     lines = text.splitlines()
-    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*VISCOELASTIC: ", "*EQUATION: 2 terms",
-                "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
+    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*VISCOELASTIC: ",
+                "*EQUATION: 2 terms", "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
     starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*VISCOELASTIC", "*EQUATION", "*STEP", "18, 7", "1, 9"]
     own = told(tmp_path, text)
     assert len(own) == len(expected)

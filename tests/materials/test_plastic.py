@@ -43,7 +43,7 @@ def along(law: Plastic, path: np.ndarray, finite: bool = False) -> tuple[np.ndar
 @pytest.mark.parametrize("name", ["perfect", "linear", "voce", "table"])
 @pytest.mark.parametrize("ratio", [0.0, 1.0, -1.0])
 def test_closed_forms(name: str, ratio: float) -> None:
-    """Stresses s, ratio s in proportion: plastic strains follow from the yield stress at the end alone, whatever the steps."""
+    """Stresses s, ratio s in proportion: plastic strains follow from the yield stress at the end alone."""
     plastic = 0.02
     size = np.sqrt(1.0 - ratio + ratio**2)
     s = yield_stress(name, plastic) / size
@@ -59,7 +59,7 @@ def test_closed_forms(name: str, ratio: float) -> None:
 
 @pytest.mark.parametrize("name", ["perfect", "linear", "voce", "table", "prager"])
 def test_shear(name: str) -> None:
-    """Pure shear: tau = (yield stress + back stress) / sqrt 3, and the doubled plastic shear is sqrt 3 times the equivalent."""
+    """Pure shear: tau = (yield stress + back stress) / sqrt 3; the doubled plastic shear is sqrt 3 times the equivalent."""
     plastic = 0.03
     kinematic = 5000.0 * plastic if name == "prager" else 0.0
     tau = (yield_stress(name, plastic) + kinematic) / np.sqrt(3.0)
@@ -97,7 +97,7 @@ def test_tangent(name: str, finite: bool) -> None:
     first[1] = [size, size, -size, 1e-9, 0, 0]
     history = told(first, law.initial(30))[2]
     for strain, before in ((first, law.initial(30)), (first + rng.uniform(-size / 2, size / 2, (30, 6)), history)):
-        stress, tangent, _ = told(strain, before)
+        _, tangent, _ = told(strain, before)
         found = differences(lambda x, before=before: told(x, before)[0], strain)
         assert np.abs(tangent - found).max() < 1e-7 * np.abs(tangent).max()
 

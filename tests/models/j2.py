@@ -1,4 +1,4 @@
-"""Von Mises plasticity with isotropic and Prager's hardening as a user would write it, after Simo and Hughes (1998), box 3.1."""
+"""Von Mises plasticity with isotropic and Prager's hardening as a user would write it (Simo and Hughes 1998, box 3.1)."""
 
 from __future__ import annotations
 

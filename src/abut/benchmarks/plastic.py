@@ -150,8 +150,8 @@ RADIUS, BALL_YIELD = 10.0, 500.0
 FIRST_FORCE, FIRST_WIDTH, FIRST_DEPTH = 5.0885, 0.054890, 3.0129e-4  # where it begins to yield, by Hertz and 1.6128
 INDENTED = "half space under a rigid smooth ball, perfect plasticity, E / Y = 420: own axisymmetric elements against a parabola"
 AGREED = (
-    "cells of a quarter of the first contact radius; Kogut and Etsion (2002) and those elements agree within 3 %; the domain "
-    "ends at 900 of these radii"
+    "cells of a quarter of the first contact radius; Kogut and Etsion (2002) and those elements agree within 3 %; the "
+    "domain ends at 900 of these radii"
 )
 
 
@@ -191,7 +191,7 @@ def _onset(poisson: float, ratio: float) -> Benchmark:
 
     def model(level: int) -> Model:
         h = radius / 10.0 / 2**level
-        n = int(round(1.2 * radius / h))
+        n = round(1.2 * radius / h)
         fine = {"x": [0.0, 1.2 * radius], "y": [-1.2 * radius, 0.0]}
         ground = rectangle((0.0, 300.0), (-300.0, 0.0), (n, n), "quad8", fine, 1.3)
         ball = ring((95.0, 100.0), (-90.0, -90.0 + np.rad2deg(0.015)), (0.0, 100.0), (1, 2 * n))

@@ -57,8 +57,8 @@ def _rows(card: Card) -> Rows:
             raise line.error(f"plastic strain: must grow from row to row, got {strain:g} after {result[-1][0]:g}")
         if result and stress < result[-1][1]:
             raise line.error(
-                f"yield stress: falls from {result[-1][1]:g} to {stress:g}; a law that softens has no unique results; keep the "
-                "larger one"
+                f"yield stress: falls from {result[-1][1]:g} to {stress:g}; a law that softens has no unique results; keep "
+                "the larger one"
             )
         result.append((strain, stress))
     return tuple(result)
