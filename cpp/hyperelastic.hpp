@@ -57,6 +57,8 @@ struct Hyperelastic {
   Law law;
   bool plane_stress;
 
+  static constexpr bool symmetric() { return true; }
+
   Dense evaluate(const Point &at, double *strain, double *stress) const {
     const double first = constants[2 * at.cell], mu = constants[2 * at.cell + 1];
     Dense result{};

@@ -194,10 +194,12 @@ private:
     std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
       if constexpr (Kinematics::finite)
-        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], block.data());
-      else
+        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], half(), block.data());
+      else if constexpr (std::is_same_v<Tangent, Moduli>)
         kinematics.add_stiffness(q, tangent[q], block.data());
-    if constexpr (!Kinematics::finite)
+      else
+        kinematics.add_stiffness(q, tangent[q].c, half(), block.data());
+    if constexpr (std::is_same_v<Tangent, Moduli>)
       kinematics.finish(tangent[0], block.data());
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
@@ -207,9 +209,9 @@ private:
   // Whether the block is symmetric.
   bool half() const {
     if constexpr (Kinematics::finite)
-      return kinematics.symmetric();
+      return material.symmetric() && kinematics.symmetric();
     else
-      return Tangent::symmetric;
+      return material.symmetric();
   }
 
   // The rows of node i. A symmetric block holds nodes i <= k only.

@@ -20,6 +20,8 @@ struct Hooke {
   static constexpr std::size_t history = 0;
   double bulk, shear;
 
+  static constexpr bool symmetric() { return true; }
+
   void respond(const double *strain, const double *, double *, double *stress, Dense &result) const {
     const double trace = strain[0] + strain[1] + strain[2], lambda = bulk - 2 * shear / 3;
     std::fill_n(result.c, STRAINS * STRAINS, 0.0);
@@ -56,6 +58,14 @@ public:
       : history(BACK + hardening.back.size() / 2 * STRAINS), elastic{bulk, shear}, hardening(std::move(hardening)) {}
 
   const std::size_t history;
+
+  // Back stresses that fade make the tangent unsymmetric.
+  bool symmetric() const {
+    for (std::size_t k = 1; k < hardening.back.size(); k += 2)
+      if (hardening.back[k] != 0)
+        return false;
+    return true;
+  }
 
   void respond(const double *strain, const double *before, double *after, double *stress, Dense &result) const {
     double trial[STRAINS], deviator[STRAINS];
@@ -178,7 +188,7 @@ private:
       }
     }
 
-    // The consistent tangent, theory (Y8).
+    // The consistent tangent, theory (Y7).
     void linearise(double *c) const {
       const double shear = law.elastic.shear, lambda = law.elastic.bulk;
       const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);

@@ -15,6 +15,8 @@ template <class Law, bool logarithmic> struct PointMaterial {
   const double *before = nullptr;
   double *after = nullptr;
 
+  bool symmetric() const { return law.symmetric(); }
+
   Dense evaluate(const Point &at, double *strain, double *stress) const {
     const double *old = before ? before + at.number * law.history : nullptr;
     double *now = after && at.mine ? after + at.number * law.history : nullptr;

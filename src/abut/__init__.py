@@ -59,10 +59,10 @@ _HOME = {  # of public names that do not come from abut.model
 
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
-    "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke",
-    "NodalForce", "Output", "Plastic", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
-    "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot",
-    "solve", "to_pyvista", "write", "write_report",
+    "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment",
+    "NeoHooke", "NodalForce", "Output", "Plastic", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

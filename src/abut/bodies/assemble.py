@@ -84,7 +84,7 @@ def respond(
 
 
 def is_symmetric(solids: Solids) -> bool:
-    """Whether the tangent under finite strains is symmetric: F-bar's is not, and that of a law with a history need not be."""
+    """Whether the tangent under finite strains is symmetric: F-bar's is not, that of a law with a history need not be."""
     alike = "b-bar" not in {solids.integration.get(body, "full") for body in solids.materials}
     return alike and all(not group.body for group in solids.groups())
 

@@ -74,8 +74,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kind": "the material law: metal that yields (von Mises)",
         "young": "Young's modulus, > 0 [force/length^2]",
         "poisson": "Poisson's ratio, between -1 and 0.5",
-        "yield_stress": "in uniaxial tension, or a table of [equivalent plastic strain, yield stress] from strain 0 on, linear "
-        "between and constant beyond; true stresses [force/length^2]",
+        "yield_stress": "in uniaxial tension, or a table of [equivalent plastic strain, yield stress] from strain 0 on, "
+        "linear between and constant beyond; true stresses [force/length^2]",
         "hardening": "isotropic hardening: yield stress over equivalent plastic strain, added to yield_stress "
         "[force/length^2]",
         "saturation": "Voce's isotropic hardening: adds saturation (1 - exp(-rate x)) at an equivalent plastic strain x "

@@ -41,8 +41,8 @@ class At:
 
 
 class Kernel(Protocol):
-    """name: of its kind, those of all kernels differ; together: bodies that have it are integrated at once, with constants by
-    cell, and have no history."""
+    """name: of its kind, those of all kernels differ; together: bodies that have it are integrated at once, with constants
+    by cell, and have no history."""
 
     @property
     def name(self) -> str: ...

@@ -2,8 +2,8 @@
 
 Components are xx yy zz xy yz zx; shear strains are doubled (engineering), so that stress times strain is work and the
 tangent of a hyperelastic material is symmetric. Axisymmetric: xx radial, yy axial, zz hoop, xy their shear. Strains are
-those that stress, without those of temperature; plane strain has zeros out of the plane, and in plane stress the caller finds
-the strains out of the plane (``abut.materials.plane_stress``). Stress and tangent: force per area.
+those that stress, without those of temperature; plane strain has zeros out of the plane, and in plane stress the caller
+finds the strains out of the plane (``abut.materials.plane_stress``). Stress and tangent: force per area.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ class Material(Protocol):
         ...
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """Stress (n, 6), tangent (n, 6, 6) and new history (n, h) at small strains (n, 6), after a history (n, h) that is not
-        to be changed in place."""
+        """Stress (n, 6), tangent (n, 6, 6) and new history (n, h) at small strains (n, 6), after a history (n, h) that is
+        not to be changed in place."""
         ...
 
 
@@ -64,9 +64,9 @@ class OwnMaterial:
     """What a user's own material may inherit: ``evaluate``, as in ``Material``, and ``modulus`` are left to be written, and
     ``evaluate_finite`` of a material for finite strains.
 
-    small: it is a law for small strains, too. volume_preserving: it flows or deforms nearly without change of volume, so that "auto" integrates cells that would lock
-    otherwise. linear: the linear elastic material that it is at rest, where it is isotropic; errors and scales use it. fields:
-    columns of the history to write, by name: ``{"damage": slice(6, 7)}``.
+    small: it is a law for small strains, too. volume_preserving: it flows or deforms nearly without change of volume, so
+    that "auto" integrates cells that would lock otherwise. linear: the linear elastic material that it is at rest, where it
+    is isotropic; errors and scales use it. fields: columns of the history to write, by name: ``{"damage": slice(6, 7)}``.
     """
 
     density = 0.0
@@ -91,8 +91,8 @@ class FiniteMaterial(Protocol):
     """A material for finite strains."""
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As ``Material.evaluate`` at strains of Green and Lagrange E = (F^T F - 1) / 2, (n, 6): the stress is the second one
-        of Piola and Kirchhoff S, the tangent dS/dE. No turn of the body reaches the law, which is objective for that."""
+        """As ``Material.evaluate`` at strains of Green and Lagrange E = (F^T F - 1) / 2, (n, 6): the stress is the second
+        one of Piola and Kirchhoff S, the tangent dS/dE. No turn of the body reaches the law, which is objective so."""
         ...
 
 

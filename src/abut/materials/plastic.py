@@ -1,10 +1,11 @@
-"""Metal that yields: von Mises plasticity, theory (Y1) to (Y12)."""
+"""Metal that yields: von Mises plasticity, theory (Y1) to (Y10)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
@@ -31,8 +32,8 @@ class Plastic:
                 between which it is linear and beyond which it stays; true stresses and logarithmic strains.
     hardening:  isotropic, yield stress over equivalent plastic strain, >= 0, added to the table.
     saturation, rate: Voce's isotropic hardening, adds saturation (1 - exp(-rate x)) at an equivalent plastic strain x.
-    backstresses: kinematic hardening, (modulus, recall) of each back stress of Armstrong and Frederick: modulus is stress over
-                plastic strain in tension from rest, recall the rate at which it saturates, 0 for linear (Prager's) hardening.
+    backstresses: kinematic hardening, (modulus, recall) of each back stress of Armstrong and Frederick: modulus is stress
+                over plastic strain in tension from rest, recall the rate at which it saturates, 0 for linear (Prager's).
 
     >>> import abut
     >>> steel = abut.Plastic(210e3, 0.3, yield_stress=300.0, hardening=1000.0)
@@ -138,11 +139,11 @@ def _check_table(table: Sequence[tuple[float, float]]) -> None:
         raise InputError("yield_stress: the first row must have the equivalent plastic strain 0")
     if not table[0][1] > 0.0:
         raise InputError(f"yield_stress[0]: expected a stress > 0, got {table[0][1]!r}")
-    for i, (before, row) in enumerate(zip(table, table[1:]), 1):
+    for i, (before, row) in enumerate(pairwise(table), 1):
         if not row[0] > before[0]:
             raise InputError(f"yield_stress[{i}]: equivalent plastic strains must grow, got {before[0]!r}, {row[0]!r}")
         if row[1] < before[1]:
             raise InputError(
-                f"yield_stress[{i}]: the yield stress falls from {before[1]!r} to {row[1]!r}; a law that softens has no unique "
-                "results; keep the larger one"
+                f"yield_stress[{i}]: the yield stress falls from {before[1]!r} to {row[1]!r}; a law that softens has no "
+                "unique results; keep the larger one"
             )

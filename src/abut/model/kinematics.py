@@ -27,8 +27,8 @@ def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
             )
         if kinematics != "finite" and not is_small(solid.material):
             raise InputError(
-                f"solids[{i}].material: {name} of body '{solid.body}' is for finite strains; use kinematics = \"finite\", or "
-                "a linear elastic material"
+                f"solids[{i}].material: {name} of body '{solid.body}' is for finite strains; use kinematics = \"finite\", "
+                "or a linear elastic material"
             )
 
 

@@ -18,7 +18,8 @@ class Solid:
     "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
     wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under
     finite deformation, theory (D7)).
-    ``material``: ``LinearElastic``, ``Plastic``, ``NeoHooke``, ``Hencky``, or one of your own (``abut.materials.material.OwnMaterial``)."""
+    ``material``: ``LinearElastic``, ``Plastic``, ``NeoHooke``, ``Hencky``, or one of your own
+    (``abut.materials.material.OwnMaterial``)."""
 
     body: str
     material: Material

@@ -96,6 +96,9 @@ def assemble(
         unit=unit_of(reduced) if constant else 0.0,
     )
     problem = finite_problem(problem, backend.differentiate) if sliding else problem
+    for solid in model.solids:
+        if solid.integration == "auto" and (how := model.integration(solid)) != "full":
+            note(f"body '{solid.body}': integration = \"{how}\", as plastic flow would lock its cells otherwise")
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

@@ -17,6 +17,7 @@ from abut.model.offset import smallest_offset
 from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
+from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
 from abut.solution.progress import Iteration
 from abut.solution.state import State
@@ -113,6 +114,10 @@ class Step:
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
+    remembered: Mapping[str, NDArray[np.float64]] = field(
+        default_factory=dict
+    )  # by materials, at points: (n_points, ...)
+    flow: Flow | None = None  # None where no material yields
 
     @property
     def balance_error(self) -> float:
@@ -237,8 +242,10 @@ class Solution:
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
                 model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
-                                   "work of loads and supports less what is stored and what friction takes, over the "
-                                   "work of all nodal forces by size"))  # fmt: skip
+                                   "work of loads and supports less what is stored and what friction and flow take, over "
+                                   "the work of all nodal forces by size"))  # fmt: skip
+            if step.flow is not None:
+                model.append(step.flow.check(self.model.finite))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
                                    "estimated error of the elements' stresses in the energy norm, of the whole model "
