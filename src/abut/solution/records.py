@@ -248,7 +248,13 @@ class Solution:
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
         whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
-        return (*checks, *self._locking, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+        return (
+            *checks,
+            *self._locking,
+            *idle_contacts(self.model, [s.contacts for s in self.steps]),
+            *self._apart,
+            *whole,
+        )
 
     @property
     def _locking(self) -> tuple[Check, ...]:
