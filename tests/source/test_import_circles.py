@@ -39,7 +39,7 @@ def circles(source: Path) -> set[str]:
     changed = True
     while changed:
         changed = False
-        for name, others in reached.items():
+        for others in reached.values():
             more = set().union(*(needs[other] for other in others)) - others if others else set()
             if more:
                 others |= more

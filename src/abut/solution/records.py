@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.brief import NAMED, brief, listed, vector
+from abut.materials.invariants import von_mises
 from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.locking import LOCKED, STIFF, locking
@@ -60,6 +62,8 @@ class ProbeResult:
     distance: NDArray[np.float64] | None
     nodes: NDArray[np.int64] | None
     values: Mapping[str, NDArray[np.float64]]
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True)
@@ -112,6 +116,25 @@ class Step:
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
+
+    def __repr__(self) -> str:
+        """The main numbers, in some lines."""
+        state = "converged" if self.converged else f"NOT CONVERGED {self.reason}".rstrip()
+        far, largest = (
+            float(np.abs(values).max(initial=0.0)) for values in (self.displacement, von_mises(self.stress))
+        )
+        lines = [
+            f"Step {self.number} at time {self.factor:.6g}: {state} in {len(self.iterations)} iterations",
+            f"  largest displacement {far:.6g}, largest von Mises stress {largest:.6g}",
+            f"  loads {vector(self.load)}, reactions {vector(self.reaction)}",
+        ]
+        lines += [
+            f"  contact '{c.name}': force {vector(c.force)}, largest pressure {c.max_pressure:.6g}"
+            for c in self.contacts[:NAMED]
+        ]
+        return "\n".join(
+            [*lines, *([f"  and {len(self.contacts) - NAMED} more contacts"] if self.contacts[NAMED:] else [])]
+        )
 
     @property
     def balance_error(self) -> float:
@@ -195,6 +218,23 @@ class Solution:
     complete: bool = True
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
     processes: int = 1
+
+    def __repr__(self) -> str:
+        """The state of the run, the last step and the certificate, in at most ten lines."""
+        done = "" if self.complete else ", incomplete"
+        certificate = self.certificate
+        warned = [f"{check.contact} {check.name}".strip() for check in certificate if check.warns]
+        failed = [f"{check.contact} {check.name}".strip() for check in certificate if not check.passed]
+        verdict = f"{len(failed)} of {len(certificate)} checks FAIL: {listed(failed)}" if failed else (
+            f"all {len(certificate)} checks pass" + (f", with warnings of {listed(warned)}" if warned else ""))  # fmt: skip
+        return "\n".join(
+            [
+                f"Solution: {'converged' if self.converged else 'not converged'}{done}, {len(self.steps)} steps, "
+                f"{self.dofs} unknowns, {self.solver}",
+                repr(self.steps[-1]) if self.steps else "no step",
+                f"certificate: {verdict}",
+            ]
+        )
 
     @property
     def converged(self) -> bool:
