@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from abut.analysis import solve
     from abut.contact.overclosure import PressureOverclosure
     from abut.detection import FoundContact, add_surfaces, find_contacts
+    from abut.diagnosis import check
     from abut.materials.elastic import LinearElastic
     from abut.materials.hyperelastic import NeoHooke
     from abut.materials.logarithmic import Hencky
@@ -54,7 +55,7 @@ _HOME = {  # of public names that do not come from abut.model
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
     "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
-    "PressureOverclosure": "abut.contact.overclosure",
+    "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
 __all__ = [
@@ -62,7 +63,7 @@ __all__ = [
     "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment",
     "NeoHooke", "NodalForce", "Output", "Plastic", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation",
     "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-    "add_surfaces", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -331,6 +331,21 @@ def test_centre_on_a_curve() -> None:
     assert np.isnan(resultant(x, f, nothing=True).centre).all()
 
 
+def test_centre_in_the_plane() -> None:
+    """Oblique forces that do not meet in one point: about the centre they have no moment, wherever the origin is, and it
+    is the foot of the nodes' mean, weighted by their forces along the resultant."""
+    x = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]])
+    f = np.array([[0.0, 1.0], [0.6, 2.0], [-0.2, 1.5]])
+    for shift in (np.zeros(2), np.array([5.0, -7.0])):
+        result = resultant(x + shift, f)
+        arms = x + shift - result.centre
+        assert abs(float((arms[:, 0] * f[:, 1] - arms[:, 1] * f[:, 0]).sum())) < 1e-12
+        along = result.force / np.linalg.norm(result.force)
+        mean = shift + (f @ along) @ x / (f @ along).sum()
+        assert (result.centre - mean) @ along == pytest.approx(0.0, abs=1e-12)
+        assert np.linalg.norm(result.centre - mean) > 0.01
+
+
 def test_what_unloading_leaves_is_nothing() -> None:
     """Pressed, then moved apart by less than rounding: pressures below a millionth of those before are none."""
     lower, upper = make.rectangle([0, 1], [0, 1], cells=[3, 2]), make.rectangle([0, 1], [1, 2], cells=[2, 2])

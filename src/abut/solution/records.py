@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.brief import NAMED, brief, listed, vector
+from abut.materials.invariants import von_mises
 from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.locking import LOCKED, STIFF, locking
@@ -61,6 +63,8 @@ class ProbeResult:
     distance: NDArray[np.float64] | None
     nodes: NDArray[np.int64] | None
     values: Mapping[str, NDArray[np.float64]]
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,25 @@ class Step:
         default_factory=dict
     )  # by materials, at points: (n_points, ...)
     flow: Flow | None = None  # None where no material yields
+
+    def __repr__(self) -> str:
+        """The main numbers, in some lines."""
+        state = "converged" if self.converged else f"NOT CONVERGED {self.reason}".rstrip()
+        far, largest = (
+            float(np.abs(values).max(initial=0.0)) for values in (self.displacement, von_mises(self.stress))
+        )
+        lines = [
+            f"Step {self.number} at time {self.factor:.6g}: {state} in {len(self.iterations)} iterations",
+            f"  largest displacement {far:.6g}, largest von Mises stress {largest:.6g}",
+            f"  loads {vector(self.load)}, reactions {vector(self.reaction)}",
+        ]
+        lines += [
+            f"  contact '{c.name}': force {vector(c.force)}, largest pressure {c.max_pressure:.6g}"
+            for c in self.contacts[:NAMED]
+        ]
+        return "\n".join(
+            [*lines, *([f"  and {len(self.contacts) - NAMED} more contacts"] if self.contacts[NAMED:] else [])]
+        )
 
     @property
     def balance_error(self) -> float:
@@ -202,6 +225,23 @@ class Solution:
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
     processes: int = 1
 
+    def __repr__(self) -> str:
+        """The state of the run, the last step and the certificate, in at most ten lines."""
+        done = "" if self.complete else ", incomplete"
+        certificate = self.certificate
+        warned = [f"{check.contact} {check.name}".strip() for check in certificate if check.warns]
+        failed = [f"{check.contact} {check.name}".strip() for check in certificate if not check.passed]
+        verdict = f"{len(failed)} of {len(certificate)} checks FAIL: {listed(failed)}" if failed else (
+            f"all {len(certificate)} checks pass" + (f", with warnings of {listed(warned)}" if warned else ""))  # fmt: skip
+        return "\n".join(
+            [
+                f"Solution: {'converged' if self.converged else 'not converged'}{done}, {len(self.steps)} steps, "
+                f"{self.dofs} unknowns, {self.solver}",
+                repr(self.steps[-1]) if self.steps else "no step",
+                f"certificate: {verdict}",
+            ]
+        )
+
     @property
     def converged(self) -> bool:
         """Whether every step met its tolerances."""
@@ -256,7 +296,13 @@ class Solution:
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
         whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
-        return (*checks, *self._locking, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+        return (
+            *checks,
+            *self._locking,
+            *idle_contacts(self.model, [s.contacts for s in self.steps]),
+            *self._apart,
+            *whole,
+        )
 
     @property
     def _locking(self) -> tuple[Check, ...]:
