@@ -14,8 +14,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from problems import KINDS, Case
 from moving import MOVING
+from problems import KINDS, Case
 
 import abut
 from abut.diagnosis.cures import cures
