@@ -1,4 +1,4 @@
-"""The normals of a contact, where supports have a say."""
+"""The normals of a contact at small displacements, where supports have a say."""
 
 from __future__ import annotations
 

@@ -20,6 +20,7 @@ from abut.contact.pressure_space import (
     with_plain_facets,
 )
 from abut.contact.rim import Rim, ends_on_target, goes_on, rim, rim_of_sides
+from abut.contact.self_contact import lies_deep, with_kin
 from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
@@ -232,9 +233,10 @@ def pair(
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
     seen = not tied and contact.method == METHODS[0]
-    share = both.share if contact.frictional else 0.0
-    normals = contact_normals(model, contactor, target, share, reach, couple) if seen else None
+    normals = contact_normals(model, contactor, target, both.share, reach, couple) if seen else None
     contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
+    if contactor.kin is None and not (tied or model.finite) and lies_deep(contactor, target, coupling.gap_samples):
+        return pair(model, contact, constraints, couple, with_kin(model.mesh, *(sides or model.sides(contact)), True))
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
