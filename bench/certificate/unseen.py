@@ -205,8 +205,8 @@ def tetrahedra() -> Case:
 
 
 def cone() -> Case:
-    """A steel cone, 3 degrees, on a coarser polymer, axisymmetric, contact to a radius of 1; from a tenth of it on, since at its
-    tip the pressure has no limit."""
+    """A steel cone, 3 degrees, on a coarser polymer, axisymmetric, contact to a radius of 1; judged from a tenth of it on,
+    since at its tip the pressure has no limit."""
     steel, soft, slope = abut.LinearElastic(210e3, 0.3), abut.LinearElastic(2e3, 0.4), np.tan(np.radians(3.0))
     e = star(steel, soft)
     force = 0.5 * np.pi * e * slope

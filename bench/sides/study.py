@@ -92,7 +92,7 @@ LONG = (
 @dataclass(frozen=True)
 class Row:
     """errors: with the first side, and with the second, as contactor, NaN where not solved; chosen: by abut, 0 or 1; why: in
-    its words; said: whether with the other side a line fails ("sides", "oscillation") that says to swap; limit: of errors."""
+    its words; said: whether with the other side a line fails ("sides", "oscillation") that says "swap"."""
 
     case: Case
     errors: tuple[float, float]
