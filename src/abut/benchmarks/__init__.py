@@ -10,8 +10,10 @@ from abut.benchmarks import (
     finite_capstan,
     finite_contact,
     finite_contact_3d,
+    finite_edges,
     finite_gears,
     finite_rubber,
+    finite_stacks,
     finite_uniform,
     finite_wires,
     fits,
@@ -49,5 +51,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_gears.BENCHMARKS,
         *finite_wires.BENCHMARKS,
         *finite_capstan.BENCHMARKS,
+        *finite_edges.BENCHMARKS,
+        *finite_stacks.BENCHMARKS,
     )
 }
