@@ -83,6 +83,8 @@ def _error(case: Case, solution: abut.Solution, pressure: bool, whose: str, larg
     if not tests:
         return float("nan")
     size = max(abs(getattr(t, whose)) for t in tests)
+    if pressure and size == 0.0:
+        return float("nan")
     size = size if size > TINY * largest or pressure else largest
     return max(abs(measured(case, solution, t) - getattr(t, whose)) for t in tests) / max(size, 1e-300)
 
