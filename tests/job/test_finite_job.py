@@ -98,7 +98,7 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
         (
             '"finite"',
             '"small"',
-            "solids\\[0\\].material: the neo-Hookean material of body 'strip' is for finite strains",
+            "solids\\[0\\].material: NeoHooke of body 'strip' is for finite strains",
         ),
         (
             '"neo-hooke"',

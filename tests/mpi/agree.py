@@ -139,6 +139,41 @@ def finite(name: str) -> Any:
     return MODELS[name]()
 
 
+def metal(kinematics: str = "small", own: bool = False) -> Any:
+    """A block of metal that yields under a punch, by abut's law or a user's own, and is let go by half."""
+    import abut
+    from abut.mesh.make import box, join
+    from models.j2 import J2
+
+    mesh = join(
+        {
+            "block": box([0, 2], [0, 1], [0, 1], cells=[4, 3, 3], cell="hex8"),
+            "punch": box([0.5, 1.2], [0, 1], [1, 1.5], cells=[3, 2, 1], cell="hex8"),
+        }
+    )
+    law = J2(1.0, 0.4, 0.005, 0.05, 0.02) if own else abut.Plastic(1.0, 0.3, 0.005, 0.05, backstresses=[(0.02, 0.0)])
+    course = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.5)))
+    return abut.Model(
+        mesh,
+        [abut.Solid("block", law), abut.Solid("punch", abut.LinearElastic(10.0, 0.2))],
+        [
+            abut.Support("block.bottom", x=0.0, y=0.0, z=0.0),
+            abut.Support("punch.top", x=0.0, y=0.0, z=-0.02, amplitude=course),
+        ],
+        contacts=[abut.Contact(contactor="punch.bottom", target="block.top")],
+        solve=abut.SolveOptions(steps=4),
+        kinematics=kinematics,
+    )
+
+
+def softening() -> Any:
+    """The example of a user's own material with a history under finite strains."""
+    sys.path.insert(0, str(EXAMPLES / "own-material"))
+    import softening_rubber
+
+    return softening_rubber.model(softening_rubber.SofteningRubber(1.0, 20.0))
+
+
 CASES: dict[str, Callable[[], Any]] = {
     "hex8": lambda: patch("hex8", "hex8"),
     "tet10-hex20": lambda: patch("tet10", "hex20"),
@@ -168,6 +203,10 @@ CASES: dict[str, Callable[[], Any]] = {
     "ball": ball,
     "lifted": lifted,
     "loose": loose,
+    "metal": metal,
+    "metal-finite": lambda: metal("finite"),
+    "metal-own": lambda: metal(own=True),
+    "softening": softening,
     "pin-lug": lambda: example("pin-lug/job.toml"),
     **{name: partial(finite, name) for name in ("beam", "folds", "jaws", "slid", "cushion", "punch", "pad", "turned")},
 }

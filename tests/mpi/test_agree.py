@@ -56,6 +56,13 @@ def test_friction(mpirun: Run, n: int, option: str) -> None:
     assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
 
 
+@pytest.mark.parametrize("cases", [["metal", "metal-own"], ["metal-finite", "softening"]])
+def test_materials_with_a_history(mpirun: Run, cases: list[str]) -> None:
+    """Metal that yields and users' own laws, under small and finite strains, with histories over loading and unloading."""
+    for row in compared(mpirun, 2, cases).values():
+        assert "direct" in row["solver"]
+
+
 @pytest.mark.parametrize("n", [1, 2])
 def test_the_constraint_function_by_multigrid(mpirun: Run, n: int) -> None:
     """Its rows look at points: where it is all closed, and where contact ends within a facet."""
