@@ -13,11 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent)]
+EXAMPLES = Path(__file__).parents[2] / "examples"
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent), str(EXAMPLES / "own-material")]
 
 from abut.parallel.team import Team, lead  # noqa: E402
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 Cells = tuple[tuple[int, ...], tuple[int, ...]]
 
 
@@ -139,11 +139,10 @@ def finite(name: str) -> Any:
     return MODELS[name]()
 
 
-def metal(kinematics: str = "small", own: bool = False) -> Any:
-    """A block of metal that yields under a punch, by abut's law or a user's own, and is let go by half."""
+def metal(kinematics: str = "small") -> Any:
+    """A block of metal that yields under a punch, which is then let go in part."""
     import abut
     from abut.mesh.make import box, join
-    from models.j2 import J2
 
     mesh = join(
         {
@@ -151,8 +150,8 @@ def metal(kinematics: str = "small", own: bool = False) -> Any:
             "punch": box([0.5, 1.2], [0, 1], [1, 1.5], cells=[3, 2, 1], cell="hex8"),
         }
     )
-    law = J2(1.0, 0.4, 0.005, 0.05, 0.02) if own else abut.Plastic(1.0, 0.3, 0.005, 0.05, backstresses=[(0.02, 0.0)])
-    course = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.5)))
+    law = abut.Plastic(1.0, 0.3, 0.005, 0.05, backstresses=[(0.02, 0.0)])
+    course = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.95)))
     return abut.Model(
         mesh,
         [abut.Solid("block", law), abut.Solid("punch", abut.LinearElastic(10.0, 0.2))],
@@ -168,7 +167,6 @@ def metal(kinematics: str = "small", own: bool = False) -> Any:
 
 def softening() -> Any:
     """The example of a user's own material with a history under finite strains."""
-    sys.path.insert(0, str(EXAMPLES / "own-material"))
     import softening_rubber
 
     return softening_rubber.model(softening_rubber.SofteningRubber(1.0, 20.0))
@@ -205,7 +203,6 @@ CASES: dict[str, Callable[[], Any]] = {
     "loose": loose,
     "metal": metal,
     "metal-finite": lambda: metal("finite"),
-    "metal-own": lambda: metal(own=True),
     "softening": softening,
     "pin-lug": lambda: example("pin-lug/job.toml"),
     **{name: partial(finite, name) for name in ("beam", "folds", "jaws", "slid", "cushion", "punch", "pad", "turned")},

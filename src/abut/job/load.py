@@ -22,6 +22,7 @@ from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
+from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -61,6 +62,7 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 
 MATERIALS: Mapping[str, Callable[..., Material]] = {
     "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
+    "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
 }  # fmt: skip
 
 

@@ -147,7 +147,38 @@ class PlasticTable(Table):
     expansion: Number = 0.0
 
 
-Materials = MaterialTable | NeoHookeTable | HenckyTable | PlasticTable
+class RubberTable(Table):
+    bulk: Number | list[Number]
+    density: Number = 0.0
+    expansion: Number = 0.0
+
+
+class MooneyRivlinTable(RubberTable):
+    kind: Literal["mooney-rivlin"]
+    c10: Number
+    c01: Number
+
+
+class YeohTable(RubberTable):
+    kind: Literal["yeoh"]
+    c10: Number
+    c20: Number = 0.0
+    c30: Number = 0.0
+
+
+class OgdenTable(RubberTable):
+    kind: Literal["ogden"]
+    terms: Pairs
+
+
+class ArrudaBoyceTable(RubberTable):
+    kind: Literal["arruda-boyce"]
+    shear: Number
+    locking: Number
+
+
+Rubber = MooneyRivlinTable | YeohTable | OgdenTable | ArrudaBoyceTable
+Materials = MaterialTable | NeoHookeTable | HenckyTable | PlasticTable | Rubber
 
 
 class SolidTable(Table):

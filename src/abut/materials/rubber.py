@@ -166,7 +166,7 @@ class Ogden(Rubber):
 
 @dataclass(frozen=True, kw_only=True)
 class ArrudaBoyce(Rubber):
-    """Chains of eight, five terms of their series: ``shear`` mu of the series, ``locking`` the stretch at which they lock."""
+    """Chains of eight, five terms of their series: ``shear`` mu of the series, ``locking`` stretch at which they lock."""
 
     shear: float
     locking: float
