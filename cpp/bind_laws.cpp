@@ -113,7 +113,8 @@ void bind_laws(nb::module_ &m) {
            "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
   m.def("hooke", &hooke, nb::arg("bulk"), nb::arg("shear"), "Isotropic linear elasticity.");
   m.def("stretches", &stretches, nb::arg("terms"), nb::arg("powers"), nb::arg("volume"),
-        "Hyperelasticity, of finite strains only: Ogden's terms (n, 2) mu and alpha, flat; factors of powers of I - 3, and of "
+        "Hyperelasticity, of finite strains only: Ogden's terms (n, 2) mu and alpha, flat; factors of powers of I - 3, "
+        "and of "
         "even powers of J - 1.");
   m.def("j2", &j2, nb::arg("bulk"), nb::arg("shear"), nb::arg("table"), nb::arg("slope"), nb::arg("saturation"),
         nb::arg("rate"), nb::arg("back"),

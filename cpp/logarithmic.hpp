@@ -45,7 +45,8 @@ public:
   }
   double across() const { return matrix[2][2]; }
 
-  // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange.
+  // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
+  // theory (Y9), (Y10).
   void back(double *stress, double *c) const {
     double turned[STRAINS] = {0}, half[STRAINS][STRAINS] = {{0}};
     for (int s = 0; s < STRAINS; ++s)

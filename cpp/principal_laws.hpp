@@ -1,5 +1,5 @@
-// Isotropic hyperelastic laws in principal logarithmic strains, theory (D17): respond as the laws in point_laws.hpp, but at
-// strains along the principal axes, without shear.
+// Isotropic hyperelastic laws in principal logarithmic strains, theory (D17): respond as the laws in point_laws.hpp,
+// but at strains along the principal axes, without shear.
 #pragma once
 #include "materials.hpp"
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace abut {
 
-// Energy of volume-preserving stretches l_a = J^(-1/3) lambda_a: Ogden's terms mu / alpha (sum l_a^alpha - 3), powers c_i (I -
-// 3)^i of I = sum l_a^2; and of the volume: sum k_i (J - 1)^(2 i), i from 1 on.
+// Energy of volume-preserving stretches l_a = J^(-1/3) lambda_a: Ogden's terms mu / alpha (sum l_a^alpha - 3), powers
+// c_i (I - 3)^i of I = sum l_a^2; and of the volume: sum k_i (J - 1)^(2 i), i from 1 on.
 struct Stretches {
   static constexpr std::size_t history = 0;
   static constexpr bool principal = true;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps,
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
+from abut.decks.rubber import of_rubber
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -32,10 +33,8 @@ from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
-from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
@@ -217,23 +216,13 @@ def _solids(parts: Mapping[str, Piece], reasons: Reasons) -> list[Solid]:
     return result
 
 
-Constants = tuple[float, ...]
-RUBBER: Mapping[str, Callable[[Constants, Constants, tuple[float, float]], Material]] = {
-    "neo-hooke": lambda c, v, rest: NeoHooke(None, None, 2.0 * c[0], 2.0 * v[0], None, "isochoric", *rest),
-    "mooney-rivlin": lambda c, v, rest: MooneyRivlin(2.0 * v[0], *rest, c10=c[0], c01=c[1]),
-    "yeoh": lambda c, v, rest: Yeoh(v, *rest, c10=c[0], c20=c[1], c30=c[2]),
-    "ogden": lambda c, v, rest: Ogden(v, *rest, terms=[(2.0 * mu / a, a) for mu, a in zip(c[::2], c[1::2])]),
-    "arruda-boyce": lambda c, v, rest: ArrudaBoyce(2.0 * v[0], *rest, shear=c[0], locking=c[1]),
-}
-
-
 def _solid(name: str, piece: Piece) -> Solid:
     material = piece.section.material
     (a, b), rest = material.constants, (material.density, material.expansion)
     law: Material
     try:
         if material.rubber is not None:
-            law = RUBBER[material.rubber.kind](material.rubber.constants, material.rubber.volume, rest)
+            law = of_rubber(material.rubber, rest)
         elif (metal := material.hardening) is not None:
             law = Plastic(a, b, metal.table, backstresses=metal.backstresses, density=rest[0], expansion=rest[1])
         else:

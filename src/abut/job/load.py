@@ -14,8 +14,9 @@ from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
+from abut.job.material_tables import Materials
 from abut.job.other_names import key_called, kind_said
-from abut.job.schema import EquationTable, JobFile, Materials, MeshTable
+from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.values import values
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
