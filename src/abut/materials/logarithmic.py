@@ -1,4 +1,4 @@
-"""Materials in the space of logarithmic strains, theory (Y8) to (Y10): E = ln U, and the stress conjugate to it.
+"""Materials in the space of logarithmic strains, theory (Y8), (Y9), (Y10): E = ln U, and the stress conjugate to it.
 
 Any law for small strains, with a history or none, becomes one for finite strains so; Hencky's is linear elasticity there.
 """

@@ -19,7 +19,16 @@ READ: dict[str, tuple[str, ...]] = {
     "SURFACE": ("NAME", "TYPE", "INTERNAL"),
     "MATERIAL": ("NAME",),
     "ELASTIC": ("TYPE",),
-    "HYPERELASTIC": ("NEO HOOKE",),
+    "HYPERELASTIC": (
+        "NEO HOOKE",
+        "MOONEY-RIVLIN",
+        "YEOH",
+        "OGDEN",
+        "ARRUDA-BOYCE",
+        "POLYNOMIAL",
+        "REDUCED POLYNOMIAL",
+        "N",
+    ),
     "PLASTIC": ("HARDENING",),
     "CYCLIC HARDENING": (),
     "DENSITY": (),
@@ -99,7 +108,7 @@ PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
 }
 
 _MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Hookean"
-_RUBBER = "of rubber elasticity only *HYPERELASTIC, NEO HOOKE is supported; fit its two constants"
+_RUBBER = "this kind of rubber elasticity is not supported; fit MOONEY-RIVLIN, YEOH, OGDEN or ARRUDA-BOYCE"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
     "BEAM SECTION": "beams are not supported; model the part with solid elements",
