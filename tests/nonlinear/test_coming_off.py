@@ -38,7 +38,9 @@ def test_a_guess_that_comes_off_does_not_let_go() -> None:
         step = Step(problem, before, Direct(), Increment(1, before.largest), most, lambda _: None)
         found = solve_finite(step, guess, time)
         assert found.converged
-        return problem.accepted(before, replace(found.state, time=time)), [row.penetration for row in found.iterations]
+        assert found.system is not None
+        end = problem.accepted(before, replace(found.state, time=time), found.system)
+        return end, [row.penetration for row in found.iterations]
 
     pressed, _ = solved(start, None, 0.2)
     assert (pressed.status == CLOSED).any()

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.friction import touches_itself
@@ -15,11 +15,12 @@ from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.rim import rim_of_sides
 from abut.contact.symmetry_planes import Planes
 from abut.contact.tangential import SlipOperators, target_operators
+from abut.problem.adjusted_gaps import BARELY
+from abut.problem.balance import Balance
 from abut.problem.contact_pairs import Pair, planes_of
 from abut.problem.current import Current
-from abut.problem.finite import FiniteProblem, bare
+from abut.problem.finite import FIT, FiniteProblem
 from abut.problem.friction_rows import Slip
-from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS
 from abut.solution.state import State
 
@@ -27,37 +28,35 @@ Array = NDArray[np.float64]
 
 
 def covered(
-    problem: FiniteProblem, system: Linearised, state: State, here: Array
-) -> tuple[Linearised, State, NDArray[np.bool_]]:
-    """A problem near a converged state and that state, at displacements ``here`` (dim n_points,), without multipliers that
-    nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of symmetry
-    those where the contactor ends now."""
-    pairs, keeps, shares, slips = [], [], [], state.history.of(CONTACTS)
-    for pair, kind, whole in zip(system.pairs, problem.moving, problem.pairs):
-        keep, share = np.ones(len(pair), dtype=bool), np.ones(len(pair))
-        if pair.smooth:  # whose gaps are means times the weight of the whole function
-            share[pair.normal] = pair.space.weight / whole.weight[whole.normal]
+    problem: FiniteProblem, balance: Balance, state: State, here: Array
+) -> tuple[Balance, State, NDArray[np.bool_]]:
+    """A problem at the end of a step and the state there, at displacements ``here`` (dim n_points,), without multipliers
+    that nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of
+    symmetry those where the contactor ends now."""
+    pairs, keeps, gaps, slips = [], [], [], state.history.of(CONTACTS)
+    for pair, kind, whole, gap in zip(balance.pairs, problem.moving, problem.pairs, balance.split(balance.gap)):
+        keep = np.ones(len(pair), dtype=bool)
         if kind is not None:
-            under = ~bare(pair)
-            keep = pair.of_functions(under if under.any() else np.ones_like(under))
+            undeformed = whole.weight[whole.normal]
             seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
+            # a step sees targets that have come from farther away: open gaps are shown as if the bodies had been at rest
+            under = pair.space.transfer.T @ seen.weight >= BARELY * undeformed
+            keep = pair.of_functions(under if under.any() else np.ones_like(under))
+            fit = state.history.of(FIT).get(pair.contact.name)
+            gap = np.concatenate(
+                [kind.gaps(pair.space, seen, problem.added(pair, state.time), fit), gap[pair.tangential]]
+            )
             planes = _planes_now(problem, kind, pair)
             pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen), planes=planes)
-            pair = _of_covered(pair, keep, whole.weight[whole.normal]) if under.any() else pair
+            pair = _of_covered(pair, keep, undeformed) if under.any() else pair
         pairs.append(pair)
         keeps.append(keep)
-        shares.append(share)
-    share = np.concatenate([np.zeros(0), *shares])
+        gaps.append(gap[keep])
     keep = np.concatenate([np.zeros(0, bool), *keeps])
     slips = {
         p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
     }
-    assert system.pushing is not None
-    smaller = replace(
-        system, pairs=pairs, operator=(sp.diags(share[keep]) @ system.operator[keep]).tocsr(),
-        offset=share[keep] * system.offset[keep], pushing=system.pushing[keep],
-        forgotten=None if system.forgotten is None else system.forgotten[keep],
-    )  # fmt: skip
+    smaller = replace(balance, pairs=pairs, gap=np.concatenate([np.zeros(0), *gaps]))
     history = state.history.with_term(CONTACTS, slips)
     kept = replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
     return smaller, kept, keep
@@ -66,17 +65,17 @@ def covered(
 def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
     border = rim_of_sides(pair.contactor)
-    return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
+    return planes_of(problem.model.mesh, pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
-def whole_supports(problem: FiniteProblem, system: Linearised, keep: NDArray[np.bool_]) -> list[Array | None]:
-    """int H_k over all of the contactor where it is now, (n_functions,) of each pair in a system as from ``covered``,
-    without what follows it; None of ties. keep: (n,) multipliers of the problem that are left."""
+def whole_supports(problem: FiniteProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair, without what follows it; None of ties.
+    pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
     return [
         None
         if pair.tied
         else (whole.space.plain.T @ full_moments(pair.contactor, pair.coupling.degree).ravel())[own[whole.normal]]
-        for pair, whole, own in zip(system.pairs, problem.pairs, problem.split(keep))
+        for pair, whole, own in zip(pairs, problem.pairs, problem.split(keep))
     ]
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.linearised import Linearised
+from abut.problem.balance import Balance
+from abut.problem.contact_pairs import Pair
 from abut.solution import ContactResult
 from abut.solution.energy import Energy
 
@@ -20,7 +21,8 @@ Vector = NDArray[np.float64]
 class Acting:
     """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
     internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
-    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these."""
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these;
+    flowed: work of plastic flow so far."""
 
     displacement: Vector
     prescribed: Vector
@@ -31,32 +33,35 @@ class Acting:
     tractions: Sequence[Vector]
     free: Vector
     residual: float = 0.0
+    flowed: float = 0.0
 
     @classmethod
-    def none(cls, prescribed: Vector, system: Linearised) -> Acting:
+    def none(cls, prescribed: Vector, balance: Balance) -> Acting:
         """Before the first step: nothing acts. prescribed: displacement (dim n_points,) at the outset."""
         nothing = np.zeros_like(prescribed)
-        tractions = [np.zeros(len(pair) - len(pair.space)) if pair.frictional else np.zeros(0) for pair in system.pairs]
-        free = np.zeros(len(system.load))
+        tractions = [
+            np.zeros(len(pair) - len(pair.space)) if pair.frictional else np.zeros(0) for pair in balance.pairs
+        ]
+        free = np.zeros(len(balance.diagonal))
         return cls(prescribed, prescribed, nothing, nothing, nothing, nothing, tractions, free)
 
 
-def pressing(system: Linearised, multipliers: Sequence[Vector]) -> Vector:
+def pressing(pairs: Sequence[Pair], multipliers: Sequence[Vector]) -> Vector:
     """Nodal forces of all pressures and ties, without friction, (dim n_points,); of gaps that close: theory (R11)."""
-    force = np.zeros(system.pairs[0].rows.shape[1])
-    for pair, values in zip(system.pairs, multipliers):
+    force = np.zeros(pairs[0].rows.shape[1])
+    for pair, values in zip(pairs, multipliers):
         part = pair.normal if pair.frictional else slice(None)
         force += pair.rows[part].T @ values[part]
     return force
 
 
-def tractions(system: Linearised, multipliers: Sequence[Vector]) -> list[Vector]:
+def tractions(pairs: Sequence[Pair], multipliers: Sequence[Vector]) -> list[Vector]:
     """Multipliers of friction of each pair, none without."""
-    return [part[pair.tangential] if pair.frictional else part[:0] for pair, part in zip(system.pairs, multipliers)]
+    return [part[pair.tangential] if pair.frictional else part[:0] for pair, part in zip(pairs, multipliers)]
 
 
 def energy(
-    system: Linearised,
+    balance: Balance,
     before: Acting,
     now: Acting,
     slips: Sequence[Vector | None],
@@ -73,21 +78,23 @@ def energy(
         return np.asarray(0.5 * (getattr(before, name) + getattr(now, name)))
 
     stepping = closing = 0.0
-    for pair, slip, early, late in zip(system.pairs, slips, before.tractions, now.tractions):
+    for pair, slip, early, late in zip(balance.pairs, slips, before.tractions, now.tractions):
         if pair.frictional and slip is not None:
             step, _, came, _ = (pair.weight[:, None] * slip)[pair.tangential].T
             stepping += 0.5 * float(step @ (late - early))
             closing += 0.5 * float(came @ (late + early))
     internal, step = mean("internal"), np.abs(now.free - before.free)
-    rounding = np.finfo(float).eps * (system.stiffness.diagonal() * np.abs(now.free)) @ step
+    rounding = np.finfo(float).eps * (balance.diagonal * np.abs(now.free)) @ step
     unbalanced = max(before.residual, now.residual) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
         contact=float(mean("pressing") @ moved) + closing,
-        stored=float(internal @ moved),
+        stored=float(internal @ moved) - (now.flowed - before.flowed),
+        plastic=now.flowed - before.flowed,
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,
         size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
         left=float(rounding + unbalanced),
+        earlier=earlier,
     )

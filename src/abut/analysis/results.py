@@ -14,6 +14,7 @@ from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
+from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -30,19 +31,18 @@ from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
+from abut.problem.balance import Balance
 from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
-from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.linearised import Linearised
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, Flow, RigidResult, Step
 from abut.solution.state import State
 
 Acted = Acting | FiniteActing | None  # what acts at the end of a step
@@ -53,12 +53,11 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; stored: strain energy, with finite kinematics
-    only; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the target
-    anywhere, else None."""
+    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; supports: of each pair int H_k over all of
+    the deformed contactor, (n_functions,), where it may meet the target anywhere, else None."""
 
     problem: ContactProblem
-    system: Linearised
+    balance: Balance
     state: State
     motion: Motion
     displacement: NDArray[np.float64]
@@ -68,7 +67,7 @@ class _End:
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
     cycling: NDArray[np.bool_]
-    stored: float
+    flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
 
     @property
@@ -85,21 +84,21 @@ def step_result(
 
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
-    problem, system, state = end.problem, end.system, end.state
+    problem, balance, state = end.problem, end.balance, end.state
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     sampled = assembled.bodies.stress(end.motion)
-    points = model.mesh.points + end.nodal if model.finite else model.mesh.points
+    points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
-    known = known_stress(model, points, state.time, system.pairs, contacts)
+    known = known_stress(model, points, state.time, balance.pairs, contacts)
     values = recovered(solids, points, sampled, known)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
-    acting, balance = told(end, attempt, acted, contacts, before)
-    strained = _strained(system, end.displacement, end.internal)
-    pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(system.pairs, end.pressures)]
+    acting, work = told(end, attempt, acted, contacts, before)
+    strained = _strained(balance, end.displacement, end.internal)
+    pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(balance.pairs, end.pressures)]
     step = Step(
         number=attempt.number,
         factor=state.time,
@@ -113,23 +112,26 @@ def step_result(
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
         },
-        load=assembled.loaded.resultant @ system.factors + end.following.reshape(-1, model.dim).sum(axis=0),
+        load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
-        cycling=_cycling(system, end.cycling),
-        flips=_flips(system, attempt),
+        cycling=_cycling(balance, end.cycling),
+        flips=_flips(balance, attempt),
         rigid={body.name: _rigid(end, body, by_supports) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
-        strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(system.pairs, contacts)), default=0.0),
-        rounding=_rounding(system, state.unknowns),
+        strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
+        rounding=_rounding(balance, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
+        neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
-        turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
-        energy=balance if strained else None,
+        turn=_turn(model, end.nodal),
+        energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
+        remembered=remembered(solids, end.motion.history),
+        flow=end.flow,
     )
     return step, acting
 
@@ -137,31 +139,32 @@ def step_result(
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
     """Forces and pressures of the state that a load step ended with."""
     bodies, state, cycling = assembled.bodies, attempt.state, attempt.cycling
-    problem = assembled.problem.with_ordinary(attempt.inside) if attempt.inside.any() else assembled.problem
+    problem = assembled.problem
     displacement = problem.displacement(state)
-    if not problem.model.finite:  # small turns would strain it
+    turned = not problem.model.finite and len(problem.springs) > 0  # small turns would strain it
+    if turned:
         displacement = problem.springs.without_motions(displacement)
-    system = problem.linearise(state, state)
-    supports: Sequence[NDArray[np.float64] | None] = [None] * len(system.pairs)
+    balance = attempt.balance or Balance.of(problem.linearise(state, state), state)
+    supports: Sequence[NDArray[np.float64] | None] = [None] * len(balance.pairs)
     if isinstance(problem, FiniteProblem):
-        system, state, kept = covered(problem, system, state, displacement)
-        cycling, supports = cycling[kept], whole_supports(problem, system, kept)
-    pressures = system.split(state.multipliers)
+        balance, state, kept = covered(problem, balance, state, displacement)
+        cycling, supports = cycling[kept], whole_supports(problem, balance.pairs, kept)
+    pressures = balance.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
-    for pair, pressure in zip(system.pairs, pressures):
+    for pair, pressure in zip(balance.pairs, pressures):
         contact_force += pair.rows.T @ pressure
     motion = Motion(state.time, displacement, state.history.of(bodies.name))
-    internal = bodies.evaluate(motion, motion).force
+    known = {} if turned else balance.forces
+    internal = known[bodies.name] if bodies.name in known else bodies.evaluate(motion, motion).force
     following = np.zeros_like(displacement)
     for term in problem.terms:
         if isinstance(term, FollowerLoads):
-            following -= term.evaluate(motion, motion).force
-    loads = assembled.loaded.forces @ system.factors + following
+            following -= known[term.name]
+    loads = assembled.loaded.forces @ balance.factors + following
     reaction = internal - loads - contact_force
-    stored = bodies.energy(motion) if isinstance(bodies, FiniteBodies) else 0.0
     return _End(
-        problem, system, state, motion, displacement, pressures, internal, loads, reaction, following, cycling, stored,
-        supports,
+        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, cycling,
+        flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
 
 
@@ -169,20 +172,25 @@ def _energy(
     end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acted, Energy | None]:
     """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
-    system, constraints = end.system, end.problem.constraints
-    if not attempt.converged or not any(pair.frictional for pair in system.pairs):
+    balance, constraints = end.balance, end.problem.constraints
+    if not attempt.converged or not (end.flow or any(pair.frictional for pair in balance.pairs)):
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
-        end.displacement, constraints.prescribed @ system.factors, end.internal, end.loads, end.reaction,
-        pressing(system, end.pressures), tractions(system, end.pressures), end.state.unknowns,
-        largest * max(attempt.iterations[-1].residual, TOLERANCE),
+        end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads, end.reaction,
+        _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE), end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, Acting):
-        acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), system)
+        acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), balance)
     history = end.state.history.of(CONTACTS)
-    slips = [history[pair.contact.name] if pair.frictional else None for pair in system.pairs]
-    return now, energy(system, acted, now, slips, contacts, _largest_size(steps))
+    slips = [history[pair.contact.name] if pair.frictional else None for pair in balance.pairs]
+    return now, energy(balance, acted, now, slips, contacts, _largest_size(steps))
+
+
+def _pressed(end: _End) -> NDArray[np.float64]:
+    """Nodal forces of all pressures and ties, (dim n_points,)."""
+    return pressing(end.balance.pairs, end.pressures) if end.balance.pairs else np.zeros_like(end.internal)
 
 
 def _finite_energy(
@@ -191,19 +199,33 @@ def _finite_energy(
     """The same with finite kinematics, friction or not; None where it did not converge."""
     if not attempt.converged:
         return None, None
-    problem, system, state = end.problem, end.system, end.state
+    problem, balance, state = end.problem, end.balance, end.state
     histories = problem.model.histories
-    pressed = pressing(system, end.pressures) if system.pairs else np.zeros_like(end.internal)
+    pressed = _pressed(end)
     left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
-    now = FiniteActing(
-        end.displacement, end.internal, end.loads, end.reaction, pressed,
-        end.internal - end.loads - end.reaction - pressed, end.stored, state.unknowns,
-        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        drag_of(state) if is_dragged(state) else None,
-    )  # fmt: skip
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
-    return now, finite_energy(acted, now, system.stiffness.diagonal(), contacts, _largest_size(steps))
+    now = FiniteActing(
+        end.displacement, end.internal, end.loads, end.reaction, pressed,
+        end.internal - end.loads - end.reaction - pressed, _stored(end, acted), state.unknowns,
+        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
+        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,
+    )  # fmt: skip
+    return now, finite_energy(acted, now, balance.diagonal, contacts, _largest_size(steps))
+
+
+def _stored(end: _End, before: FiniteActing) -> float:
+    """Strain energy, where bodies know it; under small strains the work of stresses up to now, the same for linear ones."""
+    if end.balance.energy is not None:
+        return end.balance.energy
+    return before.stored + 0.5 * float((before.internal + end.internal) @ (end.displacement - before.displacement))
+
+
+def _turn(model: Model, displacement: NDArray[np.float64]) -> float:
+    """Largest turn of a body, where they are taken for small; rigid ones may turn by any where contact follows them."""
+    if not model.small_strains:
+        return 0.0
+    return largest_turn(model.mesh, displacement, model.materials if model.finite else model.mesh.bodies)
 
 
 def _landed(state: State) -> tuple[float, float] | None:
@@ -237,16 +259,16 @@ def _contacts(
     end: _End, attempt: Attempt, before: Sequence[Step], stress: NDArray[np.float64]
 ) -> tuple[ContactResult, ...]:
     """Of all pairs; stress: (n_points, 6) nodal averages."""
-    system, model, constraints = end.system, end.problem.model, end.problem.constraints
-    references = _largest_pressures(len(system.pairs), before)
-    largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(system.pairs, end.pressures) if not pair.tied]
+    balance, model, constraints = end.balance, end.problem.model, end.problem.constraints
+    references = _largest_pressures(len(balance.pairs), before)
+    largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(balance.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
     around = []
-    others = covered_elsewhere(system.pairs, end.pressures)
-    for pair, reference, elsewhere, support in zip(system.pairs, references, others, end.supports):
+    others = covered_elsewhere(balance.pairs, end.pressures)
+    for pair, reference, elsewhere, support in zip(balance.pairs, references, others, end.supports):
         constant, varying = offsets(model, pair.contact)
         moved = end.nodal if support is None else np.zeros_like(end.nodal)
-        overlap = overlaps(pair, moved, constant + float(varying @ system.factors))
+        overlap = overlaps(pair, moved, constant + float(varying @ balance.factors))
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
             cells = normal_stress(model.mesh, pair.contactor, stress)
@@ -261,13 +283,13 @@ def _contacts(
     residual = attempt.iterations[-1].contact_residual
     slips = end.state.history.of(CONTACTS)
     found = zip(
-        system.pairs, end.pressures, system.split(system.gap(end.state)), system.split(end.state.status),
-        [slips.get(pair.contact.name) for pair in system.pairs],
+        balance.pairs, end.pressures, balance.split(balance.gap), balance.split(end.state.status),
+        [slips.get(pair.contact.name) for pair in balance.pairs],
     )  # fmt: skip
-    earlier = before[-1].contacts if before else [None] * len(system.pairs)
+    earlier = before[-1].contacts if before else [None] * len(balance.pairs)
     return tuple(
         contact_result(
-            model.mesh, PairState.of(*state, system.factors, _now(end, state[0])), residual, beside_it, one_before
+            model.mesh, PairState.of(*state, balance.factors, _now(end, state[0])), residual, beside_it, one_before
         )
         for state, beside_it, one_before in zip(found, around, earlier)
     )
@@ -286,22 +308,22 @@ def _now(end: _End, pair: Pair) -> Surface:
     return replace(pair.contactor, points=model.mesh.points + end.nodal) if model.finite else pair.contactor
 
 
-def _cycling(system: Linearised, changing: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
+def _cycling(balance: Balance, changing: NDArray[np.bool_]) -> dict[str, NDArray[np.int64]]:
     """The facets of each contact whose multipliers keep changing."""
     cycling = {}
-    for pair, of_pair in zip(system.pairs, system.split(changing)):
+    for pair, of_pair in zip(balance.pairs, balance.split(changing)):
         if of_pair.any():
             rows = np.unique(pair.transfer.tocsc()[:, of_pair].tocoo().row // MAX_FACET_NODES)
             cycling[pair.contact.name] = rows.astype(np.int64)
     return cycling
 
 
-def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
+def _flips(balance: Balance, attempt: Attempt) -> dict[str, Flips]:
     """The nodes of each contact with friction whose status keeps changing, and between what."""
     if attempt.between is None:
         return {}
     flips = {}
-    for pair, between, changing in zip(system.pairs, system.split(attempt.between), system.split(attempt.cycling)):
+    for pair, between, changing in zip(balance.pairs, balance.split(attempt.between), balance.split(attempt.cycling)):
         here = changing[pair.normal] & (pair.space.node >= 0) if pair.frictional else changing[:0]
         if here.any():
             bits = between[pair.normal][here, None] >> np.arange(3) & 1
@@ -309,15 +331,15 @@ def _flips(system: Linearised, attempt: Attempt) -> dict[str, Flips]:
     return flips
 
 
-def _strained(system: Linearised, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
+def _strained(balance: Balance, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
     """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
-    stiffest = float(system.stiffness.diagonal().max(initial=0.0))
+    stiffest = float(balance.diagonal.max(initial=0.0))
     return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
 
 
-def _rounding(system: Linearised, free: NDArray[np.float64]) -> float:
+def _rounding(balance: Balance, free: NDArray[np.float64]) -> float:
     """Force that free displacements (n_free,) in double precision leave open: eps sum K_ii |u_i|."""
-    return float(np.finfo(float).eps * (system.stiffness.diagonal() @ np.abs(free)))
+    return float(np.finfo(float).eps * (balance.diagonal @ np.abs(free)))
 
 
 def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:

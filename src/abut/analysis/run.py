@@ -99,9 +99,11 @@ class Run:
         if not done:
             return self.assembled.problem.start()
         self.told.observe(Phase("restoring the steps done before"))
+        before = self.assembled.problem.start()
         for saved in done:
-            for part in restored(saved):
+            for part in restored(saved, before, self.assembled.problem):
                 self.parts.append((part, self._result(part)))
+                before = part.state
             self.steps.append(self._taken())
         self.clock.mark("results")
         return done[-1].state
@@ -174,7 +176,7 @@ class Run:
     def _end(self, attempt: Attempt) -> None:
         """Results of an attempt; those of the parts of a step when it is whole, or when nothing follows them."""
         if attempt.converged:
-            self.parts.append((attempt, self._result(attempt)))
+            self.parts.append((replace(attempt, balance=None), self._result(attempt)))
             self.clock.mark("results")
             if attempt.whole:
                 self._keep()

@@ -8,7 +8,10 @@ import numpy as np
 
 from abut.errors import InputError
 from abut.nonlinear.load_step import Attempt
+from abut.problem.balance import Balance
+from abut.problem.problem import ContactProblem
 from abut.solution import Saved, SavedPart
+from abut.solution.state import State
 
 
 def saved_step(parts: Sequence[Attempt], linear: str) -> Saved:
@@ -29,14 +32,19 @@ def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> Non
             )
 
 
-def restored(saved: Saved) -> list[Attempt]:
-    """The parts of a load step as they were when they converged."""
+def restored(saved: Saved, before: State, problem: ContactProblem) -> list[Attempt]:
+    """The parts of a load step as they were when they converged; before: the converged state that it began with."""
     none = np.zeros(len(saved.state.status), dtype=bool)
     left = sum(part.iterations for part in saved.parts)
     parts = [*saved.parts, SavedPart(saved.state, saved.inside, len(saved.iterations) - left)]
     ends = np.cumsum([part.iterations for part in parts])
     rows = [saved.iterations[end - part.iterations : end] for part, end in zip(parts, ends)]
-    return [
-        Attempt(saved.number, part.state, True, row, none, part.inside, part.state.time)
-        for part, row in zip(parts, rows)
-    ]
+    attempts = []
+    for part, row in zip(parts, rows):
+        own = problem.with_ordinary(part.inside) if part.inside.any() else problem
+        balance = Balance.of(own.again(before, part.state), part.state)
+        attempts.append(
+            Attempt(saved.number, part.state, True, row, none, part.inside, part.state.time, balance=balance)
+        )
+        before = part.state
+    return attempts

@@ -237,4 +237,7 @@ def _covered(pair: Pair) -> Vector:
     if pair.tied:
         return np.ones(len(pair))
     whole = pair.space.transfer.T @ full_moments(pair.contactor, pair.coupling.degree).ravel()
-    return pair.of_functions(np.maximum(pair.space.weight / whole, COVERED))
+    share = np.divide(
+        pair.space.weight, whole, out=np.zeros(len(whole)), where=whole > 0.0
+    )  # none of what follows others
+    return pair.of_functions(np.maximum(share, COVERED))

@@ -54,9 +54,13 @@ class CondensedProblem:
             self.motions, full.restraint, full.load, full.unit, self.compliance,
         )  # fmt: skip
 
-    def accepted(self, before: State, now: State) -> State:
+    def accepted(self, before: State, now: State, system: Linearised) -> State:
         """As in ``Problem``."""
-        return self.whole.accepted(before, now)
+        return self.whole.accepted(before, now, system)
+
+    def again(self, before: State, state: State) -> Linearised:
+        """As in ``Problem``."""
+        return self.whole.again(before, state)
 
     def restrict(self, state: State) -> State:
         """As in ``Problem``."""
@@ -69,11 +73,10 @@ class CondensedProblem:
             return self
         return condense(other) or other
 
-    def expand(self, before: State, state: State, laws: Laws) -> State:
+    def expand(self, before: State, state: State, laws: Laws, system: Linearised) -> tuple[State, Linearised]:
         """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
         problem are met anew by refinement."""
-        near = self.linearise(before, state)
-        whole = self.whole.linearise(before, state)
+        near, whole = system, self.whole.linearise(before, state)
         solver = dense(near)
         n = len(whole.load)
         inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))
@@ -90,13 +93,13 @@ class CondensedProblem:
             try:
                 inner[self.kept], inner[n:] = solver.solve(rows, -inner[self.kept], state.multipliers, 0.0)
             except SingularModelError:  # laws that have not been met may be too far off to go on from
-                return state
+                return state, whole
             state = replace(
                 state,
                 unknowns=state.unknowns + self.factorization.backward(inner)[:n],
                 multipliers=state.multipliers + inner[n:],
             )
-        return state
+        return state, whole
 
 
 def condense(problem: ContactProblem) -> CondensedProblem | None:

@@ -49,7 +49,7 @@ def equilibrium(task: Task, time: float, previous: Prepared) -> tuple[Found, Pre
             break
         if error <= BALANCED or (error <= STALLED and error > 0.5 * last):
             prepared = task.solver.prepare(system, prepared)
-            return Found(state, tuple(rows), True, np.zeros(0, dtype=bool), active_laws), prepared
+            return Found(state, tuple(rows), True, np.zeros(0, dtype=bool), active_laws, system=system), prepared
     if not np.isfinite(error):
         state = before  # whose forces are known to be sound
     return Found(state, tuple(rows), False, np.zeros(0, dtype=bool), active_laws, reason), prepared

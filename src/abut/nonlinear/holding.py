@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.problem.balance import Balance
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
@@ -28,7 +29,7 @@ def sticking(problem: ContactProblem, system: Linearised, state: State, thrown: 
     sticks, which tells the tractions that it takes; else as it is."""
     if system.restraint.by_supports or not _all_slips(system, state):
         return state
-    rigid, supports = _now(problem, system)
+    rigid, supports = _now(problem, _at(system), system.factors)
     loose = _free(system, rigid, supports, state)
     parts = zip(system.pairs, system.split(state.status), system.split(state.slipping))
     status = [
@@ -47,7 +48,7 @@ def resisting(problem: ContactProblem, system: Linearised, state: State) -> Line
     body free to move: what is unbalanced moves it by ``NEAR`` of a facet. Without pressures nothing else resists."""
     if system.restraint.by_supports:
         return system
-    rigid, supports = _now(problem, system)
+    rigid, supports = _now(problem, _at(system), system.factors)
     free = _free(system, rigid, supports, state)
     if not free.shape[1]:
         return system
@@ -60,12 +61,12 @@ def resisting(problem: ContactProblem, system: Linearised, state: State) -> Line
     return replace(system, stiffness=(system.stiffness + more).tocsr())
 
 
-def loosely_held(problem: ContactProblem, system: Linearised, state: State) -> bool:
+def loosely_held(problem: ContactProblem, balance: Balance, state: State) -> bool:
     """Whether supports, ties, closed gaps and what sticks hardly resist some rigid motion: a ball on one node may spin."""
-    if system.restraint.by_supports:
+    if problem.restraint.by_supports:
         return False
-    rigid, supports = _now(problem, system)
-    return bool(free_motions([supports, *_closed(system, rigid, state)], WEAK).shape[1])
+    rigid, supports = _now(problem, state.unknowns, balance.factors)
+    return bool(free_motions([supports, *_closed(balance, rigid, state)], WEAK).shape[1])
 
 
 def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State) -> State:
@@ -74,7 +75,7 @@ def not_adrift(problem: ContactProblem, system: Linearised, state: State, there:
     way = problem.displacement(there) - problem.displacement(state)
     if system.restraint.by_supports or np.abs(way).max() <= NEAR * _facet(problem):
         return there
-    rigid, supports = _now(problem, system)
+    rigid, supports = _now(problem, _at(system), system.factors)
     rows = sum(_closed(system, rigid, state), np.zeros_like(supports))
     touched = np.repeat(rows.diagonal().reshape(-1, rigid.per_group).any(axis=1), rigid.per_group)
     axes = free_motions([supports, rows, np.diag(touched.astype(float))])
@@ -115,13 +116,20 @@ def _all_slips(system: Linearised, state: State) -> bool:
     return any(pair.frictional and slips.any() and not (closed & ~slips).any() for pair, slips, closed in parts)
 
 
-def _now(problem: ContactProblem, system: Linearised) -> tuple[RigidModes, NDArray[np.float64]]:
-    """Rigid motions of the bodies where they are now, and how supports resist them."""
-    assert system.about is not None
-    mesh, at = problem.model.mesh, system.about.at
-    moved = problem.constraints.displacement(at, system.factors).reshape(mesh.points.shape)
+def _now(
+    problem: ContactProblem, at: NDArray[np.float64], factors: NDArray[np.float64]
+) -> tuple[RigidModes, NDArray[np.float64]]:
+    """Rigid motions of the bodies at free displacements ``at``, and how supports resist them."""
+    mesh = problem.model.mesh
+    moved = problem.constraints.displacement(at, factors).reshape(mesh.points.shape)
     rigid = rigid_modes(replace(mesh, points=mesh.points + moved))
-    return rigid, resistance_of_supports(rigid, problem.constraints.near(at, system.factors))
+    return rigid, resistance_of_supports(rigid, problem.constraints.near(at, factors))
+
+
+def _at(system: Linearised) -> NDArray[np.float64]:
+    """The free displacements that a system is about."""
+    assert system.about is not None
+    return system.about.at
 
 
 def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], state: State) -> NDArray[np.float64]:
@@ -129,7 +137,7 @@ def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], 
     return free_motions([supports, *_closed(system, rigid, state)])
 
 
-def _closed(system: Linearised, rigid: RigidModes, state: State) -> list[NDArray[np.float64]]:
+def _closed(system: Linearised | Balance, rigid: RigidModes, state: State) -> list[NDArray[np.float64]]:
     """Resistance of ties, closed gaps and what sticks, by pair."""
     grams = []
     for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):

@@ -13,6 +13,7 @@ from abut.linear.solver import Prepared
 from abut.nonlinear.equilibrium import equilibrium
 from abut.nonlinear.iteration import Found, largest_so_far
 from abut.nonlinear.newton import Task, newton
+from abut.problem.balance import Balance
 from abut.problem.problem import Problem
 from abut.solution import Iteration
 from abut.solution.state import State
@@ -23,7 +24,8 @@ class Attempt:
     """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
     (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
     bool, multipliers that keep changing; time: at which it was to end; reason: why it did not converge, where more can be
-    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``."""
+    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``; balance: the problem at the
+    state, None where that is not known."""
 
     number: int
     state: State
@@ -35,6 +37,7 @@ class Attempt:
     reason: str = ""
     whole: bool = True
     between: NDArray[np.uint8] | None = None
+    balance: Balance | None = None
 
 
 def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
@@ -76,10 +79,11 @@ def _searched(task: Task, time: float, prepared: Prepared) -> Attempt:
 def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:
     problem: Problem = task.problem
     largest = largest_so_far(prepared.system, found.state, task.increment)
-    state = replace(problem.expand(task.before, found.state, found.laws), largest=largest)
+    state, whole = problem.expand(task.before, found.state, found.laws, found.system or prepared.system)
+    state = replace(state, largest=largest)
     if found.converged:
-        state = problem.accepted(task.before, state)
+        state = problem.accepted(task.before, state, whole)
     return Attempt(
         task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason,
-        between=found.between,
+        between=found.between, balance=None if found.system is None else Balance.of(whole, state),
     )  # fmt: skip

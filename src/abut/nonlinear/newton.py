@@ -50,11 +50,12 @@ def newton(
     system = problem.linearise(task.before, guess)
     prepared = solver.prepare(system, previous)
     found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
-    error = np.inf
+    error, near = np.inf, problem.constant
     while found.converged and not problem.constant:
         system = problem.linearise(task.before, found.state)
         before, error = error, _unbalanced(system, found.state, task.increment)
         if error <= BALANCED or (error <= STALLED and error > 0.5 * before):
+            near = True
             break
         left = task.limit - len(found.iterations) + len(earlier)
         if left <= 0 or not np.isfinite(error):
@@ -63,7 +64,7 @@ def newton(
         found = solve_step(
             prepared, found.state, task.increment, left, task.observe, found.iterations, aim, settle=True
         )
-    return found, prepared
+    return replace(found, system=system if near else None), prepared
 
 
 def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:

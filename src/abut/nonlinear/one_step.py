@@ -12,6 +12,7 @@ from abut.nonlinear.drag import Drag
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.problem.balance import Balance
 from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import without_drag
 from abut.solution import Iteration
@@ -63,10 +64,14 @@ def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:
     none = np.zeros(len(found.state.status), dtype=bool)
-    state = replace(found.state, time=time)
+    state, balance = replace(found.state, time=time), None
+    if found.system is not None:
+        balance = Balance.of(found.system, state)
     if found.converged:
-        system = step.problem.linearise(step.before, state)
-        state = step.problem.accepted(step.before, replace(state, largest=largest_of(system, state, step.increment)))
+        assert found.system is not None
+        state = replace(state, largest=largest_of(found.system, state, step.increment))
+        state = step.problem.accepted(step.before, state, found.system)
     return Attempt(
-        step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed
-    )
+        step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,
+        balance=balance,
+    )  # fmt: skip

@@ -38,10 +38,11 @@ Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Balance:
-    """What a state leaves open. forces: (n_unknowns,) over the largest; broken: (n,) laws over the largest pressure; size:
-    all of it together; rounding: of forces over the largest."""
+class Trial:
+    """What a state leaves open. own: the problem near it; system: with the drag of the step; forces: (n_unknowns,) over the
+    largest; broken: (n,) laws over the largest pressure; size: all of it together; rounding: of forces over the largest."""
 
+    own: Linearised
     system: Linearised
     state: State
     laws: Sequence[LawRows]
@@ -128,7 +129,8 @@ def _solved(step: Step, guess: State | None, time: float) -> Found:
         step.failed = str(reason)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
     step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
-    return Found(here.state, tuple(step.done), not step.failed, here.changed if step.failed else none, friction_laws)
+    changing = here.changed if step.failed else none
+    return Found(here.state, tuple(step.done), not step.failed, changing, friction_laws, system=here.own)
 
 
 def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) -> Found:
@@ -140,7 +142,7 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
     return found
 
 
-def _newton(step: Step, guess: State | None, time: float) -> Balance:
+def _newton(step: Step, guess: State | None, time: float) -> Trial:
     begun, before, errors = clocks.perf_counter(), np.inf, list[float]()
     closings = np.zeros(len(step.before.status), dtype=np.int64)
     here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
@@ -173,7 +175,7 @@ def _newton(step: Step, guess: State | None, time: float) -> Balance:
     return here
 
 
-def _unsettled(step: Step, here: Balance) -> str:
+def _unsettled(step: Step, here: Trial) -> str:
     """Why iterations have ended without a solution."""
     why = (
         f"{step.limit} iterations were not enough"
@@ -187,7 +189,7 @@ def _unsettled(step: Step, here: Balance) -> str:
     )
 
 
-def _following(step: Step, here: Balance, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
     """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
     laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
 
@@ -221,7 +223,7 @@ def _iterated(
     return not_adrift(step.problem, system, stuck, there)
 
 
-def _balanced(here: Balance, before: float) -> bool:
+def _balanced(here: Trial, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
     idle = here.error > 0.5 * before and here.law <= STALLED and here.force <= max(STALLED, here.rounding)
     return here.error <= BALANCED or idle
@@ -246,9 +248,10 @@ def _carried(step: Step, time: float) -> State:
         state = fewer
 
 
-def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
+def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
     """The problem near a state, with the status that the laws ask for there."""
-    system = dragged(step.problem.linearise(step.before, state), step.drag)
+    own = step.problem.linearise(step.before, state)
+    system = dragged(own, step.drag)
     before = state.status
     state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))
     laws = laws_of(system, state, step.asked)
@@ -259,13 +262,13 @@ def _balance(step: Step, state: State, guessed: bool = False) -> Balance:
     forces, pressures = max(so_far.force, 1e-300), max(so_far.pressure, FAINT * modulus)
     left = system.unbalanced(state) / forces
     law = left_open(system, laws, step.asked) / pressures
-    return Balance(
-        system, state, laws, left, law, float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
+    return Trial(
+        own, system, state, laws, left, law, float(np.linalg.norm(left) + np.linalg.norm(law)), changed,
         0.0 if system.about is None else system.about.rounding / forces,
     )  # fmt: skip
 
 
-def _tried(step: Step, here: Balance, state: State) -> Balance:
+def _tried(step: Step, here: Trial, state: State) -> Trial:
     """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
     tried."""
     try:
@@ -282,7 +285,7 @@ def largest_of(system: Linearised, state: State, increment: Increment) -> Larges
     return Largest(largest_force(system, state, system.load, increment), float(pressure))
 
 
-def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
+def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
     """The whole step, or the part of it that halving finds to be better."""
     share, best = 1.0, full
     for _ in range(HALVINGS):
@@ -293,7 +296,7 @@ def _shortened(step: Step, here: Balance, full: Balance) -> Balance:
     return best if np.isfinite(best.size) else full
 
 
-def _report(step: Step, here: Balance, begun: float) -> float:
+def _report(step: Step, here: Trial, begun: float) -> float:
     now = clocks.perf_counter()
     depth = [
         float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))

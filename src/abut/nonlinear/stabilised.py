@@ -105,7 +105,8 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
             break
         left = float(np.abs(force).max(initial=0.0)) / here.largest.force
         most = max(most, left)
-        loose = loosely_held(problem, problem.linearise(here, here), here)
+        assert part.balance is not None
+        loose = loosely_held(problem, part.balance, here)
         if loose and left <= BALANCED:
             return Led((*parts[:-1], replace(parts[-1], whole=True)))
         if not loose and left < SLOW and (left < PAST * most or strength.share <= LEAST):

@@ -213,6 +213,7 @@ def _step_summary(step: Step) -> Json:
         ],
         **energy_summary(step),
         **_stress_error(step),
+        **_flow(step),
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
@@ -228,6 +229,13 @@ def _step_summary(step: Step) -> Json:
             for place in unsettled(step)
         ],
     }
+
+
+def _flow(step: Step) -> Json:
+    flow = step.flow
+    if flow is None:
+        return {}
+    return {"flow": {"largest": flow.largest, "body": flow.body, "place": flow.place.tolist(), "work": flow.work}}
 
 
 def _stress_error(step: Step) -> Json:

@@ -16,6 +16,7 @@ from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_deg
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
+from abut.contact.pressure_space import PressureSpace
 from abut.contact.rim import Rim, goes_on
 from abut.errors import InputError
 from abut.mesh.surface import Surface
@@ -224,6 +225,12 @@ class Current:
         if self.adjusted is None:
             return seen
         return replace(seen, gap_samples=with_adjusted(self.pair.space, contactor, seen, self.adjusted))
+
+    def gaps(self, space: PressureSpace, seen: Coupling, offset: float, fit: Array | None) -> Array:
+        """Mean gaps times what is covered, (n_functions,), in a coupling as from ``shown``; space: of the pair there;
+        offset, fit: as in ``Place``."""
+        gap, weight = (space.transfer.T @ part for part in (seen.gap if fit is None else seen.gap + fit, seen.weight))
+        return np.asarray(gap + (offset if self.adjusted is None else offset + self.adjusted) * weight)
 
     def goes_on(self, here: Pair, border: Rim) -> NDArray[np.bool_]:
         """Edges (m,) of the rim beyond which the target goes on, ``here`` being the pair with surfaces as they are now."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import reduce
 from operator import add
 from typing import Any
@@ -21,7 +21,7 @@ from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Linearised, by_pair
-from abut.problem.problem import CONTACTS, TOUCHING, ContactProblem, unit_of
+from abut.problem.problem import TOUCHING, ContactProblem, unit_of
 from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.step_error import LANDED, PairEnd, landed
 from abut.problem.terms import Motion, Share
@@ -40,31 +40,6 @@ LATE = "late"  # whose history is the points for functions that the last state's
 Array = NDArray[np.float64]
 
 
-@dataclass
-class Latest:
-    """The problem near the states it was linearised at last, and the shares of its terms: a converged state is asked about
-    again."""
-
-    states: tuple[State, State] | None = None
-    system: Linearised | None = None
-    shares: Sequence[Share] = ()
-
-    def has(self, before: State, now: State) -> bool:
-        """Whether it is about these, whatever the status."""
-        if self.states is None or self.states[0] is not before:
-            return False
-        own = self.states[1]
-        return own.time == now.time and own.unknowns is now.unknowns and own.multipliers is now.multipliers
-
-    def keep(self, before: State, now: State, system: Linearised, shares: Sequence[Share]) -> None:
-        """Instead of what there was."""
-        self.states, self.system, self.shares = (before, now), system, shares
-
-    def drop(self) -> None:
-        """To give its memory back."""
-        self.states, self.system, self.shares = None, None, ()
-
-
 @dataclass(frozen=True)
 class FiniteProblem(ContactProblem):
     """As ``ContactProblem``, with ``pairs`` from ``finite_pairs``. moving: kinematics of each pair, None of ties; ties: of
@@ -72,7 +47,6 @@ class FiniteProblem(ContactProblem):
 
     moving: Sequence[Current | None] = ()
     ties: Sequence[TurningTie | None] = ()
-    latest: Latest = field(default_factory=Latest, repr=False, compare=False)
 
     @property
     def constant(self) -> bool:
@@ -93,31 +67,26 @@ class FiniteProblem(ContactProblem):
         return self._marked(rest.with_closed(np.concatenate([np.zeros(0, bool), *closed])))
 
     def linearise(self, before: State, now: State) -> Linearised:
-        """As in ``Problem``; once where the same states are asked for again."""
-        if not self.latest.has(before, now):
-            self.latest.drop()
-            here = self.displacement(now)
-            self.latest.keep(before, now, *self._expanded(before, now, here, np.zeros_like(here)))
-        assert self.latest.system is not None
-        return self.latest.system
+        """As in ``Problem``."""
+        here = self.displacement(now)
+        return self._expanded(before, now, here, np.zeros_like(here))
 
     def ahead(self, before: State, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
         there, now = self.displacement(before), replace(before, time=time)
-        return self._expanded(before, now, there, self.displacement(now) - there)[0]
+        return self._expanded(before, now, there, self.displacement(now) - there)
 
-    def accepted(self, before: State, now: State) -> State:
+    def accepted(self, before: State, now: State, system: Linearised) -> State:
         """As in ``Problem``."""
+        now = super().accepted(before, now, system)
+        return self._marked(replace(now, history=now.history.with_term(LANDED, self._landed(before, now))))
+
+    def again(self, before: State, state: State) -> Linearised:
+        """As in ``Problem``: the functions and fits are those of ``state``."""
         history = before.history
-        slips = self._slips(before, now)
-        if slips:
-            history = history.with_term(CONTACTS, slips)
-        history = history.with_term(LANDED, self._landed(before, now))
-        self.linearise(before, now)
-        for term, share in zip(self.terms, self.latest.shares):
-            history = history.with_term(term.name, share.history)
-        self.latest.drop()
-        return self._marked(replace(now, history=history))
+        for term in (INNER, FOLLOWING, FIT):
+            history = history.without(term).with_term(term, state.history.of(term))
+        return self.linearise(replace(before, history=history), state)
 
     def with_functions(self, before: State, now: State) -> State:
         """A converged state from which a step begins, with the functions and gaps that belong to the state ``now``: ordinary
@@ -162,7 +131,7 @@ class FiniteProblem(ContactProblem):
             if kind is None:
                 continue
             name = kind.pair.contact.name
-            now = kind.following(here, touching, self._added(kind.pair, near.time))
+            now = kind.following(here, touching, self.added(kind.pair, near.time))
             known = old.get(name, np.arange(len(now.to))).astype(np.int64)
             if not np.array_equal(now.to, known) and not (
                 settled and not now.matters(known, touching[kind.pair.normal])
@@ -225,7 +194,7 @@ class FiniteProblem(ContactProblem):
             None if late is None else SlipPoints.from_array(late),
         )  # fmt: skip
 
-    def _expanded(self, before: State, now: State, here: Array, change: Array) -> tuple[Linearised, list[Share]]:
+    def _expanded(self, before: State, now: State, here: Array, change: Array) -> Linearised:
         """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
         time."""
         factors = weights(self.model.histories, now.time)
@@ -251,13 +220,12 @@ class FiniteProblem(ContactProblem):
         pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
         gap = np.concatenate([pair_now.gap + pair_now.by_position @ change for pair_now in contacts])
         load = -about.unbalanced
-        system = Linearised(
+        return Linearised(
             now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
             unit_of(stiffness), about=replace(about, symmetric=False),
             pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
-            bending=by_contact,
+            bending=by_contact, shares=self._named(shares),
         )  # fmt: skip
-        return system, shares
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers (n,), pair by pair."""
@@ -286,12 +254,12 @@ class FiniteProblem(ContactProblem):
             if kind is None:
                 result.append(_tie(pair, tie, here))
                 continue
-            past, offset = self._past(kind, before) if pair.frictional else None, self._added(pair, now.time)
+            past, offset = self._past(kind, before) if pair.frictional else None, self.added(pair, now.time)
             chosen = (each.get(pair.contact.name) for each in (inner, following, fits))
             result.append(kind.at(Place(here, there, past, offset, *chosen), part))
         return result
 
-    def _added(self, pair: Pair, time: float) -> float:
+    def added(self, pair: Pair, time: float) -> float:
         """What is added to all gaps of a pair at a time."""
         constant, varying = offsets(self.model, pair.contact)
         return constant + float(varying @ weights(self.model.histories, time))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.restraint import Restraint
+from abut.problem.terms import Share
 from abut.solution.state import State
 from abut.types import Array, Operator, Sparse
 
@@ -68,7 +69,8 @@ class Linearised:
     contact lets go; forces: f before condensation; unit: size of the stiffness' entries, before condensation;
     about: under finite deformation, else None; B q is then B (q - at). Contact forces may have other columns than gaps have
     rows: F^T p with ``pushing`` F (n, n_free); bending: (n_free, n_free) their derivative, which K has with opposite sign;
-    forgotten: (n,) multipliers of friction without a past, which carry nothing.
+    forgotten: (n,) multipliers of friction without a past, which carry nothing; shares: of the terms by name, without their
+    tangents, none where the problem is constant.
     """
 
     time: float
@@ -87,6 +89,7 @@ class Linearised:
     pushing: Operator | None = None
     forgotten: NDArray[np.bool_] | None = None
     bending: Operator | None = None
+    shares: Mapping[str, Share] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Number of multipliers."""

@@ -44,12 +44,18 @@ class Problem(Protocol):
         """The problem near the trial state ``now``, at its time, which follows the converged ``before``."""
         ...
 
-    def accepted(self, before: State, now: State) -> State:
-        """The converged state ``now`` with the history that it leaves."""
+    def accepted(self, before: State, now: State, system: Linearised) -> State:
+        """The converged state ``now`` with the history that it leaves; system: the whole problem near it, as from
+        ``expand``."""
         ...
 
-    def expand(self, before: State, state: State, laws: Laws) -> State:
-        """A solution in all free displacements, which follows the converged ``before``; laws: the ones it meets."""
+    def expand(self, before: State, state: State, laws: Laws, system: Linearised) -> tuple[State, Linearised]:
+        """A solution in all free displacements, which follows the converged ``before``, and the problem near it, nothing
+        condensed; laws: the ones it meets; system: this problem near the solution."""
+        ...
+
+    def again(self, before: State, state: State) -> Linearised:
+        """The whole problem near a converged state with its history, as the step from ``before`` ended."""
         ...
 
     def restrict(self, state: State) -> State:
@@ -139,7 +145,12 @@ class ContactProblem:
             now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
             self.restraint, load, self.unit or unit_of(stiffness),
             about=self._expansion(shares, at, self.displacement(now), force, stiffness),
+            shares={} if self.constant else self._named(shares),
         )  # fmt: skip
+
+    def _named(self, shares: Sequence[Share]) -> dict[str, Share]:
+        """Of the terms by name, without their tangents."""
+        return {term.name: replace(share, tangent=None) for term, share in zip(self.terms, shares)}
 
     def _expansion(
         self, shares: Sequence[Share], at: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
@@ -160,20 +171,22 @@ class ContactProblem:
         rounding = 4.0 * np.finfo(float).eps * unit * max(moduli) / min(moduli) * float(np.abs(moved).max(initial=0.0))
         return Expansion(at, unbalanced, max(largest, SLIGHT * unit * size), symmetric, rounding)
 
-    def accepted(self, before: State, now: State) -> State:
+    def accepted(self, before: State, now: State, system: Linearised) -> State:
         """As in ``Problem``."""
         history = before.history
         if any(pair.frictional for pair in self.pairs):
-            history = history.with_term(CONTACTS, self._slips(before, now))
-        if self.constant:
-            return now if history is before.history else replace(now, history=history)
-        for term, share in zip(self.terms, self._shares(before, now)):
-            history = history.with_term(term.name, share.history)
-        return replace(now, history=history)
+            history = history.with_term(CONTACTS, self._slips(before, now, system))
+        for name, share in system.shares.items():
+            history = history.with_term(name, share.history)
+        return now if history is before.history else replace(now, history=history)
 
-    def expand(self, before: State, state: State, laws: Laws) -> State:
+    def expand(self, before: State, state: State, laws: Laws, system: Linearised) -> tuple[State, Linearised]:
         """As in ``Problem``: nothing has been condensed."""
-        return state
+        return state, system
+
+    def again(self, before: State, state: State) -> Linearised:
+        """As in ``Problem``."""
+        return self.linearise(before, state)
 
     def restrict(self, state: State) -> State:
         """As in ``Problem``."""
@@ -233,10 +246,10 @@ class ContactProblem:
         factors = weights(self.model.histories, before.time)
         return [pair.gap + pair.operator @ before.unknowns + pair.prescribed @ factors for pair in self.pairs]
 
-    def _slips(self, before: State, now: State) -> dict[str, NDArray[np.float64]]:
+    def _slips(self, before: State, now: State, system: Linearised) -> dict[str, NDArray[np.float64]]:
         """Slip of each pair with friction by name, (n, 4): in the step that ends ``now``, in all steps in contact, what did
         not count in the step because it only came closer, and 1 where nothing did, for want of a past."""
-        system, earlier = self.linearise(before, now), before.history.of(CONTACTS)
+        earlier = before.history.of(CONTACTS)
         result, gaps = {}, system.gap(now)
         forgotten = np.zeros(len(gaps), bool) if system.forgotten is None else system.forgotten
         gaps = np.where(forgotten, 0.0, gaps)  # what has no past has nothing to slip from

@@ -19,6 +19,7 @@ from abut.model.offset import smallest_offset
 from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
+from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
 from abut.solution.progress import Iteration
 from abut.solution.state import State
@@ -101,6 +102,7 @@ class Step:
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     flips: Mapping[str, Flips] = field(default_factory=dict)  # contact name -> nodes that do, with friction
     spring: float | None = None  # largest force that constrains free rigid-body modes; None where there are none
+    neutral: float = 0.0  # share of the forces that facets put on those that contact resists by its facets alone
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
     strain: float = (
@@ -112,10 +114,14 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
-    turn: float = 0.0  # largest of a body as a whole, radians, with small kinematics
+    turn: float = 0.0  # largest of a body as a whole, radians, where they are taken for small
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
+    remembered: Mapping[str, NDArray[np.float64]] = field(
+        default_factory=dict
+    )  # by materials, at points: (n_points, ...)
+    flow: Flow | None = None  # None where no material yields
 
     def __repr__(self) -> str:
         """The main numbers, in some lines."""
@@ -160,7 +166,7 @@ class Step:
         """Of ``regularisation``: the resultant of what the solver leaves of the balance of forces at all points together, at
         least and at most fixed shares of the reference force."""
         left = self.iterations[-1].residual * float(np.sqrt(self.displacement.size)) if self.iterations else 0.0
-        return min(max(REGULARISATION, left), ROUNDED)
+        return max(min(max(REGULARISATION, left), ROUNDED), self.neutral)
 
     @property
     def reference_force(self) -> float:
@@ -268,16 +274,18 @@ class Solution:
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             turn = Check("", "rotation", step.turn, TURN,
-                         "largest turn of a body, radians, which small kinematics takes for small",
+                         "largest turn of a body, radians, which this kinematics takes for small",
                          notice=TURN_NOTICED)  # fmt: skip
-            model = [balance, response] if self.model.finite else [balance, response, strain, turn]
+            model = [balance, response, *((strain, turn) if self.model.small_strains else ())]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
                 model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
-                                   "work of loads and supports less what is stored and what friction takes, over the "
-                                   "work of all nodal forces by size"))  # fmt: skip
+                                   "work of loads and supports less what is stored and what friction and flow take, over "
+                                   "the work of all nodal forces by size"))  # fmt: skip
+            if step.flow is not None:
+                model.append(step.flow.check(self.model.finite))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
                                    "estimated error of the elements' stresses in the energy norm, of the whole model "
