@@ -73,12 +73,23 @@ def test_cycles_are_found() -> None:
 
 
 def of_python(source: str) -> Iterator[tuple[str, int, int]]:
-    """Name, lines and parameters of each function; ``self`` and ``cls`` are none."""
+    """Name, lines and parameters of each function; its docstring does not count, nor do ``self`` and ``cls``."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             own = node.args
             names = [a.arg for a in (*own.posonlyargs, *own.args, *own.kwonlyargs, own.vararg, own.kwarg) if a]
-            yield node.name, (node.end_lineno or 0) - node.lineno + 1, len(names) - (names[:1] in (["self"], ["cls"]))
+            first = node.body[0]
+            text = (
+                isinstance(first, ast.Expr)
+                and isinstance(first.value, ast.Constant)
+                and isinstance(first.value.value, str)
+            )
+            said = (first.end_lineno or 0) - first.lineno + 1 if text else 0
+            yield (
+                node.name,
+                (node.end_lineno or 0) - node.lineno + 1 - said,
+                len(names) - (names[:1] in (["self"], ["cls"])),
+            )
 
 
 HEADER = re.compile(r"([~\w]+)\s*\(((?:[^()]|\([^()]*\))*)\)\s*(?:const|noexcept|override|->[^{;]*|:[^{;]*|\s)*$")

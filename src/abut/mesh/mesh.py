@@ -16,17 +16,32 @@ __all__ = ["CellBlock", "Mesh"]
 class Mesh(MeshRecord):
     """Points and cells with names.
 
-    points:    (n_points, dim) float64, dim 2 or 3, any length unit.
-    blocks:    cells by type; cell numbers run through the blocks in order.
-    bodies:    name -> (n,) int64 cell numbers, sorted.
-    surfaces:  name -> (n, 2) int64 rows (cell number, local facet number).
-    node_sets: name -> (n,) int64 point numbers, sorted.
-    axisymmetric: the coordinates are (r, z) with r >= 0, and integrals run round the axis.
-    notes:     what was changed when the mesh was read, in words.
+    Arrays of other types, lists, and arrays that are not contiguous are copied.
 
-    Arrays of other types, lists, and arrays that are not contiguous are copied. Raises InputError for other shapes, and
-    numbers of points, cells and facets that are not whole or do not fit.
+    Parameters
+    ----------
+    points : (n_points, dim) array of float
+        Coordinates, dim 2 or 3 [length].
+    blocks : tuple of CellBlock
+        Cells by type; cell numbers run through the blocks in order.
+    bodies : mapping of str to (n,) array of int
+        Cell numbers, sorted.
+    surfaces : mapping of str to (n, 2) array of int
+        Rows (cell number, local facet number).
+    node_sets : mapping of str to (n,) array of int
+        Point numbers, sorted.
+    axisymmetric : bool
+        The coordinates are (r, z) with r >= 0, and integrals run round the axis.
+    notes : tuple of str
+        What was changed when the mesh was read, in words.
 
+    Raises
+    ------
+    InputError
+        For other shapes, and numbers of points, cells and facets that are not whole or do not fit.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> import abut
     >>> from abut.mesh.mesh import CellBlock
