@@ -13,7 +13,7 @@ from abut.errors import AbutError
 EVERY = {name: getattr(abut, name) for name in abut.__all__}
 DESCRIBED = [name for name, item in EVERY.items() if not (inspect.isclass(item) and issubclass(item, AbutError))]
 SECTION = re.compile(r"^([A-Z][a-z]+)\n-+\n(.*?)(?=^[A-Z][a-z]+\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
-ENTRY = re.compile(r"^([a-z_, ]+) : (.+)$", re.MULTILINE)
+ENTRY = re.compile(r"^([a-z0-9_, ]+) : (.+)$", re.MULTILINE)
 
 
 def sections(item: object) -> dict[str, str]:

@@ -26,7 +26,7 @@ def test_a_changed_page_is_noticed(name: str, tmp_path: Path, monkeypatch: pytes
     copy.write_text(page.read_text(encoding="utf-8"), encoding="utf-8")
     write_marked(copy, name, read_marked(page, name).replace("|", "/", 1))
     monkeypatch.setitem(tables.TABLES, name, (copy, make))
-    assert tables.stale() == [name]
+    assert name in tables.stale()
 
 
 def test_nothing_is_in_the_built_site_only() -> None:

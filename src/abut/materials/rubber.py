@@ -111,8 +111,27 @@ class Rubber:
 
 @dataclass(frozen=True, kw_only=True)
 class MooneyRivlin(Rubber):
-    """C10 (I1 - 3) + C01 (I2 - 3) of the volume-preserving invariants.
+    """Mooney and Rivlin: C10 (I1 - 3) + C01 (I2 - 3) of the volume-preserving invariants.
 
+    Parameters
+    ----------
+    bulk : float or sequence of float
+        Modulus K of the energy K/2 (J - 1)^2 [force per area], > 0; or factors of (J - 1)^2, (J - 1)^4, ... as
+        CalculiX' 1/D1, 1/D2, ...
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+    c10, c01 : float
+        The constants [force per area].
+
+    Raises
+    ------
+    InputError
+        For constants that are out of range or no numbers.
+
+    Examples
+    --------
     >>> import abut
     >>> abut.MooneyRivlin(c10=0.4, c01=0.1, bulk=1000.0).energy.shear
     1.0
@@ -130,7 +149,25 @@ class MooneyRivlin(Rubber):
 
 @dataclass(frozen=True, kw_only=True)
 class Yeoh(Rubber):
-    """C10 (I1 - 3) + C20 (I1 - 3)^2 + C30 (I1 - 3)^3."""
+    """Yeoh: C10 (I1 - 3) + C20 (I1 - 3)^2 + C30 (I1 - 3)^3 of the volume-preserving invariant.
+
+    Parameters
+    ----------
+    bulk : float or sequence of float
+        Modulus K of the energy K/2 (J - 1)^2 [force per area], > 0; or factors of (J - 1)^2, (J - 1)^4, ... as
+        CalculiX' 1/D1, 1/D2, ...
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+    c10, c20, c30 : float
+        The constants [force per area].
+
+    Raises
+    ------
+    InputError
+        For constants that are out of range or no numbers.
+    """
 
     c10: float
     c20: float = 0.0
@@ -144,8 +181,27 @@ class Yeoh(Rubber):
 
 @dataclass(frozen=True, kw_only=True)
 class Ogden(Rubber):
-    """Sum of mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3) over ``terms`` (mu, alpha), with volume-preserving stretches l:
-    Ogden's own form. Abaqus and CalculiX have 2 mu / alpha^2: their mu is half of mu alpha here."""
+    """Ogden: sum of mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3), with volume-preserving stretches l.
+
+    This is Ogden's own form. Abaqus and CalculiX have 2 mu / alpha^2: their mu is half of mu alpha here.
+
+    Parameters
+    ----------
+    bulk : float or sequence of float
+        Modulus K of the energy K/2 (J - 1)^2 [force per area], > 0; or factors of (J - 1)^2, (J - 1)^4, ... as
+        CalculiX' 1/D1, 1/D2, ...
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+    terms : sequence of (float, float)
+        Pairs of mu [force per area] and alpha, which is not 0.
+
+    Raises
+    ------
+    InputError
+        For constants that are out of range or no numbers.
+    """
 
     terms: Sequence[Sequence[float]]
 
@@ -166,7 +222,27 @@ class Ogden(Rubber):
 
 @dataclass(frozen=True, kw_only=True)
 class ArrudaBoyce(Rubber):
-    """Chains of eight, five terms of their series: ``shear`` mu of the series, ``locking`` stretch at which they lock."""
+    """Arruda and Boyce: chains of eight, five terms of their series.
+
+    Parameters
+    ----------
+    bulk : float or sequence of float
+        Modulus K of the energy K/2 (J - 1)^2 [force per area], > 0; or factors of (J - 1)^2, (J - 1)^4, ... as
+        CalculiX' 1/D1, 1/D2, ...
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+    shear : float
+        mu of the series [force per area], > 0.
+    locking : float
+        Stretch at which the chains lock, > 0.
+
+    Raises
+    ------
+    InputError
+        For constants that are out of range or no numbers.
+    """
 
     shear: float
     locking: float
