@@ -21,7 +21,7 @@ from abut.model.conditions import weights
 from abut.model.side_choice import choices
 from abut.nonlinear.large_steps import march_finite
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.pace import pace_of
+from abut.nonlinear.pace import given_pace, pace_of
 from abut.nonlinear.stabilised import STRIDES
 from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
 from abut.probing import Place, find_places, read
@@ -143,7 +143,9 @@ class Run:
         control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves)
         attempts: Iterator[Attempt]
         if isinstance(problem, FiniteProblem):
-            pace = pace_of(solve.steps, solve.times, self.model.histories)
+            histories = self.model.histories
+            sliding = len(problem.pairs) > 0
+            pace = pace_of(solve.steps, solve.times, histories) if sliding else given_pace(self.model.ends, histories)
             for saved in done:
                 strides = STRIDES if is_dragged(saved.state) else ()
                 pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)

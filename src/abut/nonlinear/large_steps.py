@@ -36,13 +36,14 @@ def march_finite(
     before, cuts = done[-1], 0
     stands_in: LinearSolver | None = None
     earlier = done[-2] if len(done) > 1 else None
-    number, limit = len(done), min(MOST, control.limit)
-    control.prepared(f"{solver.name}, unsymmetric, new in every {'iteration' if solver.count is None else 'step'}")
+    number, limit = len(done), min(MOST, control.limit) if problem.pairs else control.limit
+    control.prepared(f"{solver.name}, new in every {'iteration' if solver.count is None else 'step'}")
     while (time := pace.end) is not None:
         if cuts == 0 and stands_in is None:
             control.begins(number, time)
         tried = cuts > (AGAIN if problem.restraint.by_supports else 0)
-        begins = tried or pace.turned or earlier is None or is_dragged(before) or let_go(problem, earlier, before)
+        begins = tried or pace.turned or is_dragged(before) or not problem.pairs
+        begins = begins or earlier is None or let_go(problem, earlier, before)
         guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
         setting = Setting(problem, stands_in or solver, number, limit, control.observe)
         try:
@@ -55,8 +56,9 @@ def march_finite(
         if attempts[-1].converged:
             stands_in = None
             pace.take(sum(len(part.iterations) for part in attempts), landed_in(attempts[-1].state).share)
-            yield from attempts
-            earlier, before, number, cuts = before, attempts[-1].state, number + 1, 0
+            last = replace(attempts[-1], whole=pace.whole(time))
+            yield from (*attempts[:-1], last)
+            earlier, before, number, cuts = before, last.state, number + last.whole, 0
             continue
         if gave_up:
             yield attempts[-1]

@@ -21,13 +21,14 @@ SAME = 1e-12  # times that differ by less are the same
 class Pace:
     """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
     goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
-    ahead is new."""
+    ahead is new; given: the goals are the load steps, however many iterations they take, and what ends between is a part
+    of one."""
 
     def __init__(
         self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
-        kinks: Sequence[float] = (),
+        kinks: Sequence[float] = (), given: bool = False,
     ) -> None:  # fmt: skip
-        self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
+        self._goals, self._longest, self._share, self._kinks, self._given = goals, longest, first, kinks, given
         self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
         self.time = 0.0
         self._length = self._fresh()
@@ -47,6 +48,10 @@ class Pace:
         if left <= self._length * (1.0 + SAME):
             return goal
         return self.time + min(self._length, 0.5 * left if left < 2.0 * self._length else left)
+
+    def whole(self, time: float) -> bool:
+        """Whether what ends at a time is a load step, not a part of one."""
+        return not self._given or time in self._goals
 
     @property
     def turned(self) -> bool:
@@ -82,7 +87,7 @@ class Pace:
         if any(abs(end - leg) < SAME for leg in self._legs):
             self._length = self._fresh()
             return
-        factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+        factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD and not self._given else 1.0
         if self._share < 1.0 and landed > 0.0:
             factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
         self._length = min(factor * self._length, self._longest)
@@ -107,6 +112,11 @@ class Pace:
 
     def _fresh(self) -> float:
         return min(self._share * self._leg, self._longest)
+
+
+def given_pace(ends: Sequence[float], histories: Sequence[History]) -> Pace:
+    """Load steps that end at given times, theory (D11): the way of bodies without contact is smooth."""
+    return Pace(ends, first=1.0, legs=ends[:-1], kinks=named_times(histories)[1], given=True)
 
 
 def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:

@@ -54,8 +54,7 @@ def assemble(
     reduced = backend.reduce(constraints)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    sliding = model.finite and bool(model.contacts)
-    every = finite_pairs(model, constraints) if sliding else pairs(model, constraints, backend.couple)
+    every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
@@ -93,7 +92,7 @@ def assemble(
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
-    problem = finite_problem(problem, backend.differentiate) if sliding else problem
+    problem = finite_problem(problem, backend.differentiate) if model.finite else problem
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
