@@ -1,4 +1,4 @@
-# make demo | make test | make exhaustive | make mpi | make lint | make docs | make bench
+# make demo | make test | make exhaustive | make mpi | make lowest | make lint | make docs | make bench
 # `make build` puts the compiled core and the libraries of the report into src/, for work on the code.
 PYTHON ?= python3
 BIN := .venv/bin
@@ -20,6 +20,16 @@ test: .venv/installed-test
 exhaustive: .venv/installed-test
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "exhaustive or long" --durations=5
 
+# The tests with the lowest versions that pyproject.toml allows, in an environment of their own; `make test` has the newest ones.
+.venv-lowest/installed: pyproject.toml CMakeLists.txt $(SOURCES)
+	test -x .venv-lowest/bin/python || $(PYTHON) -m venv .venv-lowest
+	.venv-lowest/bin/python tests/source/lowest.py > .venv-lowest/constraints.txt
+	.venv-lowest/bin/python -m pip install --quiet -c .venv-lowest/constraints.txt ".[test]"
+	touch $@
+
+lowest: .venv-lowest/installed
+	OMP_NUM_THREADS=1 .venv-lowest/bin/python -m pytest -n 2
+
 # Many processes: petsc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
 MPI_PYTHON ?= /usr/bin/python3
 MPI_BIN := .venv-mpi/bin
@@ -28,7 +38,7 @@ PETSC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/petscdir/petsc3*/*-real)))
 .venv-mpi/installed: pyproject.toml CMakeLists.txt $(SOURCES)
 	test -x $(MPI_BIN)/python || $(MPI_PYTHON) -m venv --system-site-packages .venv-mpi
 	$(MPI_BIN)/python -m pip install --quiet --upgrade pip
-	$(MPI_BIN)/python -m pip install --quiet ".[mpi,test]" \
+	$(MPI_BIN)/python -m pip install --quiet ".[test]" \
 	  "numpy<$$($(MPI_PYTHON) -c 'import numpy; print(int(numpy.__version__.split(".")[0]) + 1)')"
 	touch $@
 
@@ -58,7 +68,7 @@ build: .venv/ready
 	  -DPython_EXECUTABLE=$(abspath $(BIN)/python) -DCMAKE_LIBRARY_OUTPUT_DIRECTORY=$(CURDIR)/src/abut/_core
 	$(BIN)/cmake --build build/dev
 
-.PHONY: demo test exhaustive mpi lint docs build bench
+.PHONY: demo test exhaustive mpi lowest lint docs build bench
 
 bench: .venv/installed-bench
 	$(BIN)/python bench/segments.py

@@ -1,105 +1,8 @@
 // The integration over cells for Python: strains at points, and forces, stiffness and stresses of the isotropic
 // material or of stresses and tangents that Python has evaluated.
-#include "bind.hpp"
-#include "integrate.hpp"
-#include "parallel.hpp"
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/tuple.h>
-#include <optional>
-#include <tuple>
+#include "cell_arrays.hpp"
 
 namespace abut {
-
-template <int n> using Output = nb::ndarray<double, nb::numpy, nb::ndim<n>, nb::c_contig, nb::device::cpu>;
-using Tangent = std::tuple<Vector<std::int64_t>, Vector<std::int32_t>, Output<1>>; // indptr, indices, values
-
-// Cells of one type with a rule, all that their kinematics need; shares the arrays with Python.
-class CellArrays {
-public:
-  CellArrays(Matrix<double> points, Matrix<std::int32_t> nodes, Matrix<double> shapes, Tensor3<double> derivatives,
-             Vector<double> weights, bool axisymmetric, bool mean_dilatation)
-      : points(points), nodes(nodes), shapes(shapes), derivatives(derivatives), weights(weights),
-        axisymmetric(axisymmetric), mean_dilatation(mean_dilatation) {
-    const std::size_t q = weights.shape(0), n = nodes.shape(1);
-    if (q == 0 || shapes.shape(0) != q || shapes.shape(1) != n || derivatives.shape(0) != q ||
-        derivatives.shape(1) != n || derivatives.shape(2) != dim() || (dim() != 2 && (axisymmetric || dim() != 3)))
-      throw nb::value_error("points, cells and rule disagree");
-  }
-
-  std::size_t dim() const { return points.shape(1); }
-  std::size_t rows() const { return points.shape(0); }
-  std::size_t count() const { return nodes.shape(0); }
-  std::size_t integration_points() const { return count() * weights.shape(0); }
-
-  Cells view() const {
-    return {points.data(),      nodes.data(),   count(),          nodes.shape(1), shapes.data(),
-            derivatives.data(), weights.data(), weights.shape(0), mean_dilatation};
-  }
-
-  State state(const std::optional<Matrix<double>> &displacement, const std::optional<Matrix<double>> &thermal) const {
-    if (displacement && (displacement->shape(0) != rows() || displacement->shape(1) != dim()))
-      throw nb::value_error("points and displacement disagree");
-    if (thermal && (thermal->shape(0) != count() || thermal->shape(1) != nodes.shape(1)))
-      throw nb::value_error("cells and thermal strain disagree");
-    return {displacement ? displacement->data() : nullptr, thermal ? thermal->data() : nullptr};
-  }
-
-  Results results(const std::optional<Output<2>> &force, const std::optional<Tangent> &tangent,
-                  const std::optional<Output<2>> &at_points) const {
-    Results out;
-    if (force) {
-      if (force->shape(0) != rows() || force->shape(1) != dim())
-        throw nb::value_error("points and force disagree");
-      out.force = force->data();
-    }
-    if (tangent) {
-      const auto &[indptr, indices, values] = *tangent;
-      if (indptr.shape(0) != rows() + 1 || values.shape(0) != indices.shape(0) * dim() * dim())
-        throw nb::value_error("points and pattern disagree");
-      out.indptr = indptr.data(), out.indices = indices.data(), out.stiffness = values.data();
-    }
-    if (at_points) {
-      if (at_points->shape(0) != integration_points() || at_points->shape(1) != STRAINS)
-        throw nb::value_error("integration points and stresses disagree");
-      out.stress = at_points->data();
-    }
-    return out;
-  }
-
-  // Calls call.operator()<Kinematics>() with the kinematics of these cells.
-  template <template <int, bool> class Kinematics, class Call> void with_kinematics(Call call) const {
-    if (axisymmetric)
-      call.template operator()<Kinematics<2, true>>();
-    else if (dim() == 2)
-      call.template operator()<Kinematics<2, false>>();
-    else
-      call.template operator()<Kinematics<3, false>>();
-  }
-
-  template <template <int, bool> class Kinematics, class Material>
-  Unsound integrate(const State &state, const Material &material, const Results &results) const {
-    const Cells cells = view();
-    nb::gil_scoped_release release;
-    const std::size_t parts = cells.count < FEW_CELLS ? 1 : thread_count();
-    std::vector<Unsound> unsound(parts);
-    with_kinematics<Kinematics>([&]<class Own>() {
-      run_parts(parts, [&](std::size_t part) {
-        const Rows own{std::int32_t(rows() * part / parts), std::int32_t(rows() * (part + 1) / parts)};
-        unsound[part] = abut::integrate<Own>(cells, state, material, results, own);
-      });
-    });
-    return *std::min_element(unsound.begin(), unsound.end(),
-                             [](const Unsound &a, const Unsound &b) { return a.cell < b.cell; });
-  }
-
-private:
-  Matrix<double> points;
-  Matrix<std::int32_t> nodes;
-  Matrix<double> shapes;
-  Tensor3<double> derivatives;
-  Vector<double> weights;
-  bool axisymmetric, mean_dilatation;
-};
 
 static nb::ndarray<nb::numpy, double> strains(const CellArrays &cells, Matrix<double> displacement,
                                               std::optional<Matrix<double>> thermal) {
@@ -145,21 +48,40 @@ static void integrate_given(const CellArrays &cells, std::optional<Matrix<double
 }
 
 static std::optional<std::tuple<std::size_t, double>>
-integrate_hyperelastic(const CellArrays &cells, Matrix<double> constants, int law, bool plane_stress,
+integrate_hyperelastic(const CellArrays &cells, Matrix<double> constants, Law law, bool plane_stress,
                        Matrix<double> displacement, std::optional<Matrix<double>> thermal,
                        std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
                        std::optional<Output<1>> energy) {
   if (constants.shape(0) != cells.count() || constants.shape(1) != 2 || (energy && energy->shape(0) != cells.count()))
     throw nb::value_error("cells and materials or energies disagree");
-  if (law < 0 || law > int(Law::ISOCHORIC))
-    throw nb::value_error("no such law");
   Results results = cells.results(force, tangent, stress);
   results.energy = energy ? energy->data() : nullptr;
-  const Unsound unsound = cells.integrate<FiniteStrain>(
-      cells.state(displacement, thermal), Hyperelastic{constants.data(), Law(law), plane_stress}, results);
-  if (unsound.cell == SIZE_MAX)
-    return std::nullopt;
-  return std::make_tuple(unsound.cell, unsound.determinant);
+  const Unsound unsound = cells.integrate<FiniteStrain>(cells.state(displacement, thermal),
+                                                        Hyperelastic{constants.data(), law, plane_stress}, results);
+  return told(unsound);
+}
+
+static std::tuple<nb::ndarray<nb::numpy, double>, std::optional<std::tuple<std::size_t, double>>>
+finite_strains(const CellArrays &cells, Matrix<double> displacement, std::optional<Matrix<double>> thermal) {
+  std::vector<double> result(cells.integration_points() * STRAINS);
+  const Unsound unsound =
+      cells.integrate<FiniteStrain>(cells.state(displacement, thermal), Told{result.data()}, Results{});
+  return {to_numpy(std::move(result), {cells.integration_points(), STRAINS}), told(unsound)};
+}
+
+static void integrate_given_finite(const CellArrays &cells, Matrix<double> displacement,
+                                   std::optional<Matrix<double>> thermal, Matrix<double> strains,
+                                   Matrix<double> stresses, Tensor3<double> tangents, bool plane_stress,
+                                   std::optional<Output<2>> force, std::optional<Tangent> tangent,
+                                   std::optional<Output<2>> stress) {
+  const std::size_t points = cells.integration_points();
+  if (strains.shape(0) != points || strains.shape(1) != STRAINS || stresses.shape(0) != points ||
+      stresses.shape(1) != STRAINS || tangents.shape(0) != points || tangents.shape(1) != STRAINS ||
+      tangents.shape(2) != STRAINS)
+    throw nb::value_error("integration points and what is given there disagree");
+  cells.integrate<FiniteStrain>(cells.state(displacement, thermal),
+                                GivenFinite{strains.data(), stresses.data(), tangents.data(), plane_stress},
+                                cells.results(force, tangent, stress));
 }
 
 void bind_integrate(nb::module_ &m) {
@@ -185,6 +107,23 @@ void bind_integrate(nb::module_ &m) {
         nb::arg("tangents").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(),
         "The same with stresses (cells q, 6) and tangents (cells q, 6, 6) at the integration points.");
+  m.def("finite_strains", &finite_strains, nb::arg("cells"), nb::arg("displacement").noconvert(),
+        nb::arg("thermal").noconvert() = nb::none(),
+        "Strains (cells q, 6) of Green and Lagrange at the integration points, shear strains doubled, without what "
+        "heat makes "
+        "freely; and where a cell is inside out its number and det F, with which the strains end.");
+  m.def("integrate_given_finite", &integrate_given_finite, nb::arg("cells"), nb::arg("displacement").noconvert(),
+        nb::arg("thermal").noconvert().none(), nb::arg("strains").noconvert(), nb::arg("stresses").noconvert(),
+        nb::arg("tangents").noconvert(), nb::arg("plane_stress"), nb::arg("force").noconvert() = nb::none(),
+        nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
+        "As ``integrate_given`` at these strains, with the second stresses of Piola and Kirchhoff and their tangents; "
+        "stress: "
+        "Cauchy's is written.");
+  nb::enum_<Law>(m, "Hyperelastic")
+      .value("SAINT_VENANT_KIRCHHOFF", Law::SAINT_VENANT_KIRCHHOFF)
+      .value("LOG_SQUARED", Law::LOG_SQUARED)
+      .value("SQUARE_LOG", Law::SQUARE_LOG)
+      .value("ISOCHORIC", Law::ISOCHORIC);
   m.def("integrate_hyperelastic", &integrate_hyperelastic, nb::arg("cells"), nb::arg("constants").noconvert(),
         nb::arg("law"), nb::arg("plane_stress"), nb::arg("displacement").noconvert(),
         nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),

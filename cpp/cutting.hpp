@@ -106,7 +106,8 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reac
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
-  if (!reach.has(at.look(t, own.finished.middle())))
+  own.gap = at.look(t, own.finished.middle());
+  if (!reach.has(own.gap) || !(over.c.flat || before_focus(over.c.facet, at.own.xi, own.gap)))
     return;
   double y[3], tangent[2][3], facing[3];
   t.position.at(at.other.xi, y, tangent);
@@ -114,6 +115,7 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reac
   if (dot(facing, at.n, 3) >= -EDGE_ON * std::sqrt(dot(facing, facing, 3)))
     return;
   std::copy(at.own.xi, at.own.xi + 2, own.xi), std::copy(at.other.xi, at.other.xi + 2, own.eta);
+  std::copy(at.x, at.x + 3, own.x), std::copy(at.n, at.n + 3, own.n);
   out.push_back(own);
 }
 
@@ -211,6 +213,7 @@ struct Interface {
   const Options &options;
   std::vector<Facet> targets;
   std::vector<Hull> hulls;
+  std::vector<std::array<double, 3>> normals; // in the middle of each, where the target may be a body all round
   Tree tree;
 };
 
@@ -224,8 +227,11 @@ inline Interface interface(const Planned &contactor, const Planned &target, cons
     targets[t] = surface.facet(t);
     hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
   }
+  std::vector<std::array<double, 3>> normals(surface.kin ? surface.facets : 0);
+  for (std::size_t t = 0; t < normals.size(); ++t)
+    middle_normal(targets[t], normals[t].data());
   Tree tree(std::move(boxes), surface.dim);
-  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(tree)};
+  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(normals), std::move(tree)};
 }
 
 // Cuts contactor facets, one after another; one for each thread.
@@ -270,16 +276,51 @@ private:
             std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
   }
 
-  // Says what each segment is for.
-  void cast(std::size_t f) {
-    for (Segment &own : segments_)
+  // Says what each segment is for. add(own, plane) gives the plane that touches a segment its corners.
+  template <class Add> void cast(std::size_t f, const Facet &c, Add add) {
+    double deep = 0;
+    for (Segment &own : segments_) {
       own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
+      if (own.role == Role::counts)
+        deep = std::max(deep, -own.gap);
+    }
+    if (!both_.contactor.surface.kin || deep <= 0 || !find_sides(f, c, deep))
+      return;
+    for (Segment &own : segments_)
+      if (own.role == Role::counts && own.gap < 0 && seen_through(own, add))
+        own.role = Role::hides;
+  }
+
+  // The target's facets that are nearer than `deep` to the contactor facet.
+  bool find_sides(std::size_t f, const Facet &c, double deep) {
+    Box around = box_of(Hull(c, c.x), c.dim);
+    around.inflate(deep, c.dim);
+    both_.tree.query(around, sides_, [](const Box &) { return true; });
+    std::erase_if(sides_,
+                  [&](int t) { return !may_touch(both_.contactor.surface, f, both_.target.surface, std::size_t(t)); });
+    return !sides_.empty();
+  }
+
+  // Whether a segment sees its target through the target's body: theory (S18), (S19).
+  template <class Add> bool seen_through(const Segment &own, Add add) const {
+    Touching plane(both_.target.surface.dim, own.x, own.n);
+    add(own, plane);
+    return std::any_of(sides_.begin(), sides_.end(), [&](int t) {
+      return same_body(both_.target.surface, std::size_t(t), std::size_t(own.target)) &&
+             plane.shows_through(both_.targets[t], both_.normals[t].data(), -own.gap);
+    });
   }
 
   void cut_all(std::size_t f, const Facet &c) {
     for (int t : found_)
       cut_line(c, both_.targets[t], t, reach(f, t), segments_);
-    cast(f);
+    cast(f, c, [&](const Segment &own, Touching &plane) {
+      for (const double xi : {own.begin, own.end}) {
+        const double at[2] = {xi, 0};
+        double x[3];
+        c.position.at(at, x), plane.add(x);
+      }
+    });
     if (!both_.options.hidden)
       find_hidden(c, both_.targets, both_.target.surface.nodes, segments_);
   }
@@ -290,13 +331,18 @@ private:
     for (int t : found_)
       cut_facet(over, both_.targets[t], {t, target.surface.facet_nodes(t), target.subdivisions[t]}, reach(f, t),
                 carried_, segments_);
-    cast(f);
+    cast(f, over.c.facet, [&](const Segment &own, Touching &plane) {
+      for (int i = 0; i < own.finished.size; ++i) {
+        double x[3];
+        over.c.plane.lift(own.finished.v[i].p, x), plane.add(x);
+      }
+    });
     if (!both_.options.hidden)
       find_hidden(over, both_.targets, target.surface.nodes, segments_);
   }
 
   const Interface &both_;
-  std::vector<int> found_;
+  std::vector<int> found_, sides_;
   std::vector<Piece> pieces_;
   std::vector<Segment> segments_;
   Carried carried_;

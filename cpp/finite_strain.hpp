@@ -92,11 +92,11 @@ public:
     }
   }
 
-  // Whether the stiffness is; then only nodes i <= k are added up.
+  // Whether the stiffness is where the tangent is.
   bool symmetric() const { return !cells.mean_dilatation; }
 
-  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8).
-  void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, double *block) {
+  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8); half: for nodes i <= k only.
+  void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
     const double w = volume[q] * power(q);
     double sigma[3][3], b[STRAINS][dim];
@@ -111,7 +111,7 @@ public:
     for (std::size_t i = 0; i < n; ++i) {
       derivative(q, i, b);
       const double *g = &gradient[(q * n + i) * dim];
-      for (std::size_t k = symmetric() ? i : 0; k < n; ++k) {
+      for (std::size_t k = half ? i : 0; k < n; ++k) {
         double *out = &block[(i * n + k) * dim * dim], scalar = 0;
         const double *r = &response[k * STRAINS * dim];
         for (int a = 0; a < dim; ++a)

@@ -21,6 +21,7 @@ struct Segment {
   Polygon polygon, finished; // 3D: uncut by others, its vertices on the chords, and where the curves cross
   int mine = 0, theirs = 0;  // 3D: the two pieces
   double xi[2], eta[2];      // where the integration begins to look
+  double x[3], n[3], gap;    // in the middle: place and normal on the contactor, and how far away the target is
   std::vector<int> behind;   // segments that lie nearer
 };
 

@@ -6,15 +6,7 @@
 
 namespace abut {
 
-// What a hyperelastic material says at a point. sound: false where plane stress found no stretch out of the plane.
-struct Dense {
-  static constexpr bool symmetric = false;
-  double c[STRAINS * STRAINS], energy;
-  bool sound;
-};
-
-// Codes as in ``abut.materials.hyperelastic``.
-enum class Law : int { SAINT_VENANT_KIRCHHOFF, LOG_SQUARED, SQUARE_LOG, ISOCHORIC };
+enum class Law { SAINT_VENANT_KIRCHHOFF, LOG_SQUARED, SQUARE_LOG, ISOCHORIC };
 
 // The right Cauchy-Green tensor 1 + 2 E, its inverse and what of it is small where strains are small.
 struct Metric {
@@ -64,6 +56,8 @@ struct Hyperelastic {
   const double *constants;
   Law law;
   bool plane_stress;
+
+  static constexpr bool symmetric() { return true; }
 
   Dense evaluate(const Point &at, double *strain, double *stress) const {
     const double first = constants[2 * at.cell], mu = constants[2 * at.cell + 1];

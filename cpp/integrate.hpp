@@ -6,6 +6,7 @@
 #include "materials.hpp"
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace abut {
@@ -23,7 +24,7 @@ struct Results {
   const std::int32_t *indices = nullptr; // sorted in each row
   double *stiffness = nullptr;           // values of the pattern with dim x dim blocks
   double *stress = nullptr; // (cells, rule, 6) at the integration points, written; Cauchy's of finite strains
-  double *energy = nullptr; // (cells,) of finite strains
+  double *energy = nullptr; // (cells,) of laws that know it, written
 };
 
 // The first cell, in their order, that has no sound deformation, and the determinant of the deformation gradient there;
@@ -129,7 +130,10 @@ private:
   static constexpr int dim = Kinematics::DIM;
   using Tangent = typename Material::Tangent;
 
+  static constexpr bool knows_energy = std::is_same_v<Tangent, Dense>;
+
   void evaluate(std::size_t c) {
+    double energy = 0;
     const bool stressed = results.force || results.stress;
     const bool strained = (Material::stress_by_strain && stressed) || Material::tangent_by_strain;
     const double *thermal = state.thermal ? state.thermal + c * n : nullptr;
@@ -141,7 +145,11 @@ private:
         mechanical_strain(kinematics, cells, q, u.data(), thermal, strain);
       const Point point{c, c * cells.rule + q, rows.has(own[0])};
       tangent[q] = material.evaluate(point, strain, stressed ? &stress[q * STRAINS] : nullptr);
+      if constexpr (knows_energy)
+        energy += kinematics.reference_volume(q) * tangent[q].energy;
     }
+    if (knows_energy && results.energy && rows.has(own[0]))
+      results.energy[c] = energy;
   }
 
   // Not a number where all is sound, else the determinant of the deformation gradient.
@@ -186,10 +194,12 @@ private:
     std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
       if constexpr (Kinematics::finite)
-        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], block.data());
-      else
+        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], half(), block.data());
+      else if constexpr (std::is_same_v<Tangent, Moduli>)
         kinematics.add_stiffness(q, tangent[q], block.data());
-    if constexpr (!Kinematics::finite)
+      else
+        kinematics.add_stiffness(q, tangent[q].c, half(), block.data());
+    if constexpr (std::is_same_v<Tangent, Moduli>)
       kinematics.finish(tangent[0], block.data());
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
@@ -199,9 +209,9 @@ private:
   // Whether the block is symmetric.
   bool half() const {
     if constexpr (Kinematics::finite)
-      return kinematics.symmetric();
+      return material.symmetric() && kinematics.symmetric();
     else
-      return Tangent::symmetric;
+      return material.symmetric();
   }
 
   // The rows of node i. A symmetric block holds nodes i <= k only.

@@ -24,6 +24,11 @@ inline bool may_touch(const SurfaceView &contactor, std::size_t c, const Surface
          !adjacent(contactor.facet_nodes(c), target.facet_nodes(t));
 }
 
+// Whether two facets of a surface are of one body, as far as that is known.
+inline bool same_body(const SurfaceView &surface, std::size_t a, std::size_t b) {
+  return !surface.kin || surface.kin[KIN * a] == surface.kin[KIN * b];
+}
+
 // How deep two facets may lie in each other: what is seen at a greater depth is seen through a body.
 inline double deepest(const SurfaceView &contactor, std::size_t c, const SurfaceView &target, std::size_t t) {
   constexpr double most = 0.75; // of the thickness

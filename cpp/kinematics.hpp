@@ -31,7 +31,7 @@ public:
 
   explicit SmallStrain(const Cells &cells)
       : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),
-        volume(cells.rule), mean(n * dim), response(n * STRAINS * dim) {}
+        volume(cells.rule), mean(n * dim), response(n * (STRAINS + 1) * dim) {}
 
   // Moves to the cell with nodes at x (n, dim).
   void place(const double *x) {
@@ -98,27 +98,31 @@ public:
     }
   }
 
-  // Adds the stiffness (n, n, dim, dim) of any tangent at point q.
-  void add_stiffness(std::size_t q, const Full &tangent, double *block) {
-    double b[STRAINS][dim];
-    for (std::size_t k = 0; k < n; ++k) {
-      derivative(q, k, b);
-      double *out = &response[k * STRAINS * dim];
-      for (int s = 0; s < STRAINS; ++s)
-        for (int a = 0; a < dim; ++a) {
-          double sum = 0;
-          for (int t = 0; t < STRAINS; ++t)
-            sum += tangent.c[s * STRAINS + t] * b[t][a];
-          out[s * dim + a] = volume[q] * sum;
-        }
-    }
+  // Adds the stiffness (n, n, dim, dim) of any tangent at point q; symmetric: it is, and only nodes i <= k are added up.
+  void add_stiffness(std::size_t q, const double *c, bool symmetric, double *block) {
+    for (std::size_t k = 0; k < n; ++k)
+      respond(q, k, c, &response[k * (STRAINS + 1) * dim]);
     for (std::size_t i = 0; i < n; ++i) {
-      derivative(q, i, b);
-      for (std::size_t k = 0; k < n; ++k)
-        for (int s = 0; s < STRAINS; ++s)
-          for (int a = 0; a < dim; ++a)
-            for (int c = 0; c < dim; ++c)
-              block[((i * n + k) * dim + a) * dim + c] += b[s][a] * response[(k * STRAINS + s) * dim + c];
+      double g[dim], more[dim]; // local, so that they stay in registers
+      std::copy_n(&gradient[(q * n + i) * dim], dim, g);
+      for (int a = 0; a < dim; ++a)
+        more[a] = cells.mean_dilatation ? (mean[i * dim + a] - dilatation(q, i, a)) / 3 : 0;
+      for (std::size_t k = symmetric ? i : 0; k < n; ++k) {
+        const double *r = &response[k * (STRAINS + 1) * dim];
+        double *out = &block[(i * n + k) * dim * dim];
+        for (int d = 0; d < dim; ++d) {
+          const double normal = r[STRAINS * dim + d];
+          out[d] += g[0] * r[d] + g[1] * r[3 * dim + d] + more[0] * normal;
+          out[dim + d] += g[1] * r[dim + d] + g[0] * r[3 * dim + d] + more[1] * normal;
+          if constexpr (dim == 3) {
+            out[d] += g[2] * r[5 * dim + d];
+            out[dim + d] += g[2] * r[4 * dim + d];
+            out[2 * dim + d] += g[2] * r[2 * dim + d] + g[1] * r[4 * dim + d] + g[0] * r[5 * dim + d] + more[2] * normal;
+          }
+          if constexpr (axisymmetric)
+            out[d] += hoop[q * n + i] * r[2 * dim + d];
+        }
+      }
     }
   }
 
@@ -160,25 +164,35 @@ public:
           for (int b = 0; b < dim; ++b)
             block[((i * n + k) * dim + a) * dim + b] += bulk * mean[i * dim + a] * mean[k * dim + b];
   }
-  void finish(const Full &, double *) const {} // it is in the derivatives already
+
+  double reference_volume(std::size_t q) const { return volume[q]; }
 
 private:
-  // b[s][a]: strain s at point q per displacement a of node i.
-  void derivative(std::size_t q, std::size_t i, double (&b)[STRAINS][dim]) const {
-    const double *g = &gradient[(q * n + i) * dim];
-    for (auto &row : b)
-      std::fill_n(row, dim, 0.0);
+  // r[s][a]: stress s at point q, times its weight, by displacement a of node k under a tangent c; last the sum of the
+  // normal ones.
+  void respond(std::size_t q, std::size_t k, const double *c, double *r) const {
+    const double *g = &gradient[(q * n + k) * dim], w = volume[q];
+    double more[dim];
     for (int a = 0; a < dim; ++a)
-      b[a][a] = g[a];
-    b[3][0] = g[1], b[3][1] = g[0];
-    if constexpr (dim == 3)
-      b[4][1] = g[2], b[4][2] = g[1], b[5][0] = g[2], b[5][2] = g[0];
-    if constexpr (axisymmetric)
-      b[2][0] = hoop[q * n + i];
-    for (int a = 0; cells.mean_dilatation && a < dim; ++a) {
-      const double more = (mean[i * dim + a] - dilatation(q, i, a)) / 3;
-      for (int s = 0; s < 3; ++s)
-        b[s][a] += more;
+      more[a] = cells.mean_dilatation ? (mean[k * dim + a] - dilatation(q, k, a)) / 3 : 0, r[STRAINS * dim + a] = 0;
+    for (int s = 0; s < STRAINS; ++s, c += STRAINS) {
+      const double swelling = c[0] + c[1] + c[2];
+      double own[dim];
+      if constexpr (dim == 3) {
+        own[0] = c[0] * g[0] + c[3] * g[1] + c[5] * g[2];
+        own[1] = c[1] * g[1] + c[3] * g[0] + c[4] * g[2];
+        own[2] = c[2] * g[2] + c[4] * g[1] + c[5] * g[0];
+      } else {
+        own[0] = c[0] * g[0] + c[3] * g[1];
+        own[1] = c[1] * g[1] + c[3] * g[0];
+        if constexpr (axisymmetric)
+          own[0] += c[2] * hoop[q * n + k];
+      }
+      for (int a = 0; a < dim; ++a) {
+        r[s * dim + a] = w * (own[a] + swelling * more[a]);
+        if (s < 3)
+          r[STRAINS * dim + a] += r[s * dim + a];
+      }
     }
   }
 

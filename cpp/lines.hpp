@@ -3,6 +3,7 @@
 #include "accumulator.hpp"
 #include "hidden.hpp"
 #include "project.hpp"
+#include "sight.hpp"
 #include <numbers>
 
 namespace abut {
@@ -79,7 +80,8 @@ inline void cut_line(const Facet &c, const Facet &t, int number, Reach reach, st
   const double *along = slope[0], size = std::sqrt(dot(along, along, 2));
   if (along[1] * at.n[0] - along[0] * at.n[1] >= -EDGE_ON * size)
     return;
-  own.eta[0] = at.other.xi[0];
+  own.eta[0] = at.other.xi[0], own.gap = at.gap;
+  std::copy(at.x, at.x + 2, own.x), std::copy(at.n, at.n + 2, own.n);
   out.push_back(own);
 }
 

@@ -18,12 +18,16 @@ struct Point {
 
 // Tangents: what the stiffness of a cell is made of. Two constants of an isotropic material, or any (6, 6).
 struct Moduli {
-  static constexpr bool symmetric = true;
   double lambda, mu;
 };
 struct Full {
-  static constexpr bool symmetric = false;
   const double *c;
+};
+
+// What a law says at a point: tangent and energy. sound: false where plane stress found no strain out of the plane.
+struct Dense {
+  double c[STRAINS * STRAINS], energy;
+  bool sound;
 };
 
 // Isotropic linear elasticity with the constants (cells, 2) of each cell; in plane stress lambda is the reduced one.
@@ -32,6 +36,8 @@ struct Isotropic {
   static constexpr bool stress_by_strain = true, tangent_by_strain = false; // what strains have to be known for
   const double *constants;
   bool plane_stress;
+
+  static constexpr bool symmetric() { return true; } // its tangent
 
   Moduli evaluate(const Point &at, const double *strain, double *stress) const {
     const double lambda = constants[2 * at.cell], mu = constants[2 * at.cell + 1];
@@ -54,10 +60,46 @@ struct Given {
   static constexpr bool stress_by_strain = false, tangent_by_strain = false;
   const double *stresses, *tangents;
 
+  static constexpr bool symmetric() { return false; }
+
   Full evaluate(const Point &at, const double *, double *stress) const {
     if (stress)
       std::copy_n(stresses + at.number * STRAINS, STRAINS, stress);
     return {tangents ? tangents + at.number * STRAINS * STRAINS : nullptr};
+  }
+};
+
+// The same under finite strains, with the strains (points, 6) that belong to them.
+struct GivenFinite {
+  using Tangent = Dense;
+  static constexpr bool stress_by_strain = true, tangent_by_strain = true;
+  const double *strains, *stresses, *tangents;
+  bool plane_stress;
+
+  static constexpr bool symmetric() { return false; }
+
+  Dense evaluate(const Point &at, double *strain, double *stress) const {
+    Dense result;
+    result.sound = true, result.energy = 0;
+    std::copy_n(strains + at.number * STRAINS, STRAINS, strain);
+    std::copy_n(stresses + at.number * STRAINS, STRAINS, stress);
+    std::copy_n(tangents + at.number * STRAINS * STRAINS, STRAINS * STRAINS, result.c);
+    return result;
+  }
+};
+
+// Writes the strains (points, 6) down.
+struct Told {
+  using Tangent = Dense;
+  static constexpr bool stress_by_strain = true, tangent_by_strain = true, plane_stress = false;
+  double *strains;
+
+  static constexpr bool symmetric() { return false; }
+
+  Dense evaluate(const Point &at, const double *strain, double *stress) const {
+    std::copy_n(strain, STRAINS, strains + at.number * STRAINS);
+    std::fill_n(stress, STRAINS, 0.0);
+    return {{0}, 0, true};
   }
 };
 

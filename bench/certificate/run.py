@@ -1,7 +1,7 @@
 """What the certificate says of contacts with known pressures, beside their true errors.
 
-``python bench/certificate/run.py`` takes some of the cases (a few minutes), ``--full`` all of them, ``--part TEXT`` those
-whose names contain the text, ``--out FILE`` writes the table as CSV. The summary asks of a certificate that runs with a
+``python bench/certificate/run.py`` takes 858 cases of all 1 716 (ten minutes on one core), in shares that may run at once with
+``--share K N --out FILE`` (then ``--sum FILES``). The summary asks of a certificate that runs with a
 true error above 20 % are not green, that those below 3 % neither fail (1 %) nor warn (5 %), and that the
 estimate "pressure error" is the true error in the median.
 """
@@ -42,7 +42,7 @@ class Outcome:
 
 
 def outcome(case: Case) -> Outcome:
-    begin = time.perf_counter()
+    begin = time.process_time()
     try:
         solution = abut.solve(case.model())
     except abut.AbutError as reason:
@@ -53,7 +53,7 @@ def outcome(case: Case) -> Outcome:
         case.name, case.order, true_error(case, solution), next(c.value for c in lines if c.name == "pressure error"),
         (*failed, *(c.name for c in lines if not c.passed)),
         tuple(c.name for c in lines if c.name != OF_CELLS and (c.warns or (c.name == "pressure error" and c.unknown))),
-        time.perf_counter() - begin,
+        time.process_time() - begin,
     )  # fmt: skip
 
 
@@ -62,42 +62,76 @@ def share(of: Sequence[Outcome], verdict: str) -> str:
     return f"{count} of {len(of)} ({100.0 * count / max(len(of), 1):.1f} %)"
 
 
-def summary(found: Sequence[Outcome]) -> None:
+def summary(found: Sequence[Outcome]) -> list[list[str]]:
+    """What runs, errors and verdicts come to, in rows of two."""
     wrong, fine = [o for o in found if o.error > WRONG], [o for o in found if o.error < FINE]
-    print(f"{len(found)} runs, {sum(o.seconds for o in found):.0f} s")
-    print(f"true error above {WRONG:.0%}: green {share(wrong, 'green')}, warned {share(wrong, 'warn')}")
-    print(f"true error below {FINE:.0%}: failed {share(fine, 'FAIL')}, warned {share(fine, 'warn')}")
-    for degree in (1, 2):
+    rows = [
+        ["runs", str(len(found))],
+        [f"true error above {WRONG:.0%}: green", share(wrong, "green")],
+        ["with a warning only", share(wrong, "warn")],
+        [f"true error below {FINE:.0%}: fails", share(fine, "FAIL")],
+        ["warns", share(fine, "warn")],
+    ]
+    for degree, name in ((1, "first"), (2, "second")):
         ratios = [o.estimate / o.error for o in found if o.order == degree and o.error > TELLING and o.estimate >= 0.0]
         if ratios:
             low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
-            print(f"order {degree}: estimate over truth {middle:.2f} in the median of {len(ratios)}, "
-                  f"{low:.2f} to {high:.2f} of 80 %")  # fmt: skip
+            text = f"{middle:.2f} in the median of {len(ratios)}, {low:.2f} to {high:.2f} of 80 %"
+            rows.append([f"estimate over true error above {TELLING:.0%}, {name} order", text])
+    return rows
+
+
+def chosen(every: int = 2, part: str = "") -> list[Case]:
+    """One of so many cases, taken at random but always the same ones; of these those whose names contain the text."""
+    every_case = list(cases())
+    some = np.sort(np.random.default_rng(27).permutation(len(every_case))[: len(every_case) // every])
+    return [every_case[i] for i in some if part in every_case[i].name]
+
+
+def read(path: str) -> list[Outcome]:
+    """What ``--out`` has written."""
+    with open(path, newline="") as file:
+        return [
+            Outcome(
+                row["name"], int(row["order"]), float(row["error"]), float(row["estimate"]),
+                *(tuple(filter(None, row[key].split("; "))) for key in ("failed", "warned")), float(row["seconds"]),
+            )
+            for row in csv.DictReader(file)
+        ]  # fmt: skip
+
+
+def write(path: str, found: Sequence[Outcome]) -> None:
+    """A table of all runs."""
+    with open(path, "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(("name", "order", "error", "estimate", "verdict", "failed", "warned", "seconds"))
+        table.writerows(
+            (o.name, o.order, o.error, o.estimate, o.verdict, "; ".join(o.failed), "; ".join(o.warned), o.seconds)
+            for o in found
+        )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--full", action="store_true")
-    parser.add_argument("--part", default="")
-    parser.add_argument("--every", type=int, default=11, help="which share of the cases without --full")
-    parser.add_argument("--out")
+    parser.add_argument("--every", type=int, default=2, help="one of so many cases: 1 takes all 1 716")
+    parser.add_argument("--part", default="", help="only cases whose names contain this")
+    parser.add_argument(
+        "--share", type=int, nargs=2, default=(0, 1), metavar=("K", "N"), help="the K-th of N shares, from 0"
+    )
+    parser.add_argument("--out", help="a CSV file of the runs")
+    parser.add_argument("--sum", nargs="+", metavar="CSV", help="sum up such files, and solve nothing")
     asked = parser.parse_args()
-    chosen = [case for case in cases() if asked.part in case.name]
-    found = []
-    for case in chosen if asked.full or asked.part else chosen[:: asked.every]:
+    found = [one for path in asked.sum or () for one in read(path)]
+    for case in [] if asked.sum else chosen(asked.every, asked.part)[asked.share[0] :: asked.share[1]]:
         one = outcome(case)
         found.append(one)
         lines = ", ".join((*one.failed, *(f"({name})" for name in one.warned)))
         print(f"{one.error:8.4f} {one.estimate:8.4f} {one.verdict:5s} {one.name}: {lines}", flush=True)
-    summary(found)
+    print(f"{sum(o.seconds for o in found):.0f} s")
+    for row in summary(found):
+        print("  ".join(row))
     if asked.out:
-        with open(asked.out, "w", newline="") as file:
-            table = csv.writer(file)
-            table.writerow(("name", "order", "error", "estimate", "verdict", "failed", "warned"))
-            table.writerows(
-                (o.name, o.order, o.error, o.estimate, o.verdict, "; ".join(o.failed), "; ".join(o.warned))
-                for o in found
-            )
+        write(asked.out, found)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,10 @@
 """Which side should be the contactor: local errors of the pressure with either side, and with the one that abut chooses.
 
-python bench/sides/study.py [--full] [--kind line|rings|punch|ball] [--markdown]
-The short form takes a few minutes, --full (all facet types and ratios) an hour.
+python bench/sides/study.py [PART ...] [--chosen] [--markdown] [--rows]
+Parts: those of ``PARTS`` with closed forms, and "edge" and "snap" (large sliding); all of them by default. A part takes a
+minute or two, those of solids of second order ten: --chosen solves each model once, with abut's choice.
+The exit status is 1 where abut's choice misses a limit, or where the wrong side is off by more than that and no
+line that says "swap" fails.
 """
 
 from __future__ import annotations
@@ -11,101 +14,150 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cases import KINDS, Case, cases
+from problems import KINDS, Case
+from moving import MOVING
 
 import abut
-from abut.cells import CELLS
+from abut.diagnosis.cures import cures
 from abut.errors import AbutError
 
-PLANE = ["quad4", "tri3", "quad8", "tri6", "quad9"]
-SOLID = ["hex8", "tet4", "hex20", "tet10", "wedge6", "hex27", "wedge15"]
-LIMITS = {"line": 0.04, "rings": 0.15, "punch": 0.1, "hex": 0.06, "wedge": 0.06, "tet": 0.09}
-RATIOS = [1e-3, 1e-1, 1.0, 10.0, 1e3]
-MORE_RATIOS = [1e-3, 1e-2, 0.1, 0.5, 0.8, 1.0, 1.25, 2.0, 10.0, 1e2, 1e3]
-SIZES = {
-    "line": [(8, 8), (8, 12), (12, 8), (8, 16), (16, 8), (8, 40), (40, 8)],
-    "rings": [(8, 8), (8, 12), (12, 8), (8, 24), (24, 8)],
-    "punch": [(10, 10), (10, 20), (20, 10), (10, 50), (50, 10)],
-    "ball": [(8, 8), (8, 12), (12, 8)],
+RATIOS = (1e-3, 1e-1, 1.0, 10.0, 1e3)
+FLAT = ("quad4", "tri3", "quad8", "tri6", "quad9")
+MIXED = (("quad4", "quad8"), ("tri6", "quad4"), ("quad9", "tri3"))
+SOLID, SOLID_2 = ("hex8", "tet4", "wedge6"), ("hex20", "tet10", "hex27", "wedge15")
+MIXED_SOLID = (("hex8", "tet10"), ("tet4", "hex20"))
+
+
+@dataclass(frozen=True)
+class Part:
+    """kind: of problem; cells: of both sides; at: pairs of a ratio of moduli and numbers of facets; limit: of errors, of each
+    cell type by how its name begins, largest of both sides."""
+
+    kind: str
+    cells: tuple[tuple[str, str], ...]
+    at: tuple[tuple[float, tuple[int, int]], ...]
+    limit: dict[str, float]
+
+    def cases(self) -> Iterator[Case]:
+        """All models of the part."""
+        for pair in self.cells:
+            for ratio, sizes in self.at:
+                yield KINDS[self.kind](pair, ratio, sizes)
+
+
+def _every(ratios: tuple[float, ...], *sizes: tuple[int, int]) -> tuple[tuple[float, tuple[int, int]], ...]:
+    return tuple((ratio, both) for ratio in ratios for both in sizes)
+
+
+def _corners(n: int, fine: int) -> tuple[tuple[float, tuple[int, int]], ...]:
+    """Of the range of moduli and sizes, and its middle."""
+    unlike = ((n, fine), (fine, n))
+    return ((1.0, (n, n)), *_every((1e-3, 1.0, 1e3), *unlike))
+
+
+def _diagonal(n: int, fine: int) -> tuple[tuple[float, tuple[int, int]], ...]:
+    """The middle; the softer side finer, coarser, and alike bodies."""
+    return ((1.0, (n, n)), (1e-3, (fine, n)), (1e3, (fine, n)), (1.0, (n, fine)))
+
+
+def _alike(*cells: str) -> tuple[tuple[str, str], ...]:
+    return tuple((cell, cell) for cell in cells)
+
+
+HERTZ = {"quad": 0.04, "tri": 0.04, "hex": 0.06, "tet": 0.09, "wedge": 0.09}
+LAME = {"quad": 0.15, "tri": 0.15}
+# Of facets of 0.2 of the half width and a pressure without limit at its edge.
+PUNCH = {"quad": 0.1, "tri": 0.15}
+LINES = ((8, 8), (8, 12), (12, 8), (8, 16), (16, 8), (8, 40), (40, 8))
+PARTS = {
+    "line": Part("line", _alike(*FLAT), _every(RATIOS, *LINES), HERTZ),
+    "line-mixed": Part("line", MIXED, _corners(8, 24), HERTZ),
+    "column": Part("column", _alike(*FLAT), _corners(10, 50), HERTZ),
+    "rings": Part("rings", _alike(*FLAT), _every(RATIOS, (8, 8), (8, 12), (12, 8), (8, 24), (24, 8)), LAME),
+    "punch": Part("punch", _alike(*FLAT), _every((1e4,), (10, 10), (10, 20), (20, 10), (10, 50), (50, 10)), PUNCH),
+    "ball": Part("ball", _alike(*SOLID), _corners(8, 12), HERTZ),
+    "ball-fine": Part("ball", _alike(*SOLID), _diagonal(8, 40), HERTZ),
+    "ball-2": Part("ball", _alike(*SOLID_2), _diagonal(8, 16), HERTZ),
+    "ball-mixed": Part("ball", MIXED_SOLID, _diagonal(8, 12), HERTZ),
+    "column-3d": Part("column", _alike(*SOLID, *SOLID_2), _corners(10, 20), HERTZ),
 }
-MORE_SIZES = {**SIZES, "ball": [(8, 8), (8, 10), (10, 8), (8, 12), (12, 8), (8, 16), (16, 8)]}
+LONG = ("ball-fine", "ball-2", "ball-mixed")  # whose models docs/make/studies.py solves with abut's choice only
 
 
 @dataclass(frozen=True)
 class Row:
-    """errors: at facet corners with the first side, and with the second, as contactor; everywhere: at all nodes; chosen: by
-    abut, 0 or 1; why: in its words."""
+    """errors: with the first side, and with the second, as contactor, NaN where not solved; chosen: by abut, 0 or 1; why: in
+    its words; said: whether with the other side a line fails ("sides", "oscillation") that says to swap them; limit: of errors."""
 
     case: Case
     errors: tuple[float, float]
-    everywhere: tuple[float, float]
     chosen: int
     why: str
+    said: bool
+    limit: float
 
     @property
-    def limit(self) -> float:
-        cell = self.case.cells[0]
-        return LIMITS.get(self.case.kind) or next(LIMITS[k] for k in ("hex", "wedge", "tet") if cell.startswith(k))
+    def silent(self) -> bool:
+        """Whether the other side is off by more than the limit, and no line says that it is the sides."""
+        return self.errors[1 - self.chosen] > self.limit and not self.said
 
 
-def run(case: Case) -> Row:
-    """Solve a case with either side, and see which one abut takes."""
+def run(case: Case, limit: float, both: bool) -> Row:
+    """Solve a case with the side that abut takes, and with the other one."""
     (contact,) = case.model().contacts
-    found = []
-    for side in (0, 1):
+    chosen, said, errors = int(contact.turned), False, [math.nan, math.nan]
+    for side in (chosen, 1 - chosen) if both else (chosen,):
         try:
             solution = abut.solve(case.forced(side))
-            found.append((case.error(solution, True), case.error(solution, False)))
         except AbutError:
-            found.append((math.inf, math.inf))
-    corner, every = zip(*found)
-    return Row(case, corner, every, int(contact.turned), contact.chosen)
+            errors[side] = math.inf
+            continue
+        errors[side] = case.error(solution)
+        said = side != chosen and any("swap" in way for check, way in cures(solution) if not check.passed)
+    return Row(case, (errors[0], errors[1]), chosen, contact.chosen, said, limit)
 
 
-def chosen_cases(kind: str, full: bool) -> Iterator[Case]:
-    """Cases of one kind: one cell type on both sides, and mixed ones."""
-    types = SOLID if kind == "ball" else PLANE
-    if not full:
-        types = types[:4] if kind != "ball" else types[:2]
-    pairs = [(cell, cell) for cell in types]
-    if full:
-        pairs += [(a, b) for a, b in ((types[0], types[2]), (types[2], types[0]))]
-    ratios, sizes = (MORE_RATIOS, MORE_SIZES) if full else (RATIOS, SIZES)
-    return cases(kind, pairs, ratios, sizes[kind])
+def rows_of(part: Part, both: bool) -> Iterator[Row]:
+    """Solve a part's models."""
+    for case in part.cases():
+        limit = max(part.limit[key] for cell in case.cells for key in part.limit if cell.startswith(key))
+        yield run(case, limit, both)
 
 
 def line_of(row: Row) -> list[str]:
-    """A row of the table: the chosen side's errors are marked."""
+    """A row of the table: the chosen side's error is marked, and where the other one is called a wrong choice."""
     case = row.case
-    cells = case.cells[0] if case.cells[0] == case.cells[1] else " on ".join(case.cells)
-    text = [case.kind, cells, f"{case.ratio:g}", f"{case.sizes[0]}, {case.sizes[1]}"]
-    for side in (0, 1):
-        numbers = f"{100 * row.errors[side]:.1f}"
-        if any(CELLS[cell].degree == 2 for cell in case.cells):
-            numbers += f" ({100 * row.everywhere[side]:.1f})"
-        text.append(numbers + (" *" if row.chosen == side else ""))
-    return [*text, row.why]
+    text = [_named(case), f"{case.ratio:g}", f"{case.sizes[0]}, {case.sizes[1]}"]
+    marks = [" *" if row.chosen == side else " said" if row.said else "" for side in (0, 1)]
+    return [*text, *(_percent(error) + mark for error, mark in zip(row.errors, marks)), row.why]
 
 
-HEADER = ["problem", "cells", "ratio", "facets", "first", "second", "abut's choice (*)"]
-
-
-def summary(rows: list[Row]) -> list[list[str]]:
-    """Worst errors of each kind and cell type: with abut's choice, with the better side, with the worse one."""
+def summary(part: str, rows: list[Row]) -> list[list[str]]:
+    """Worst errors of each kind and cell type: with abut's choice, with the better side, with the worse one; of how many
+    models the other side is off by more than the limit, and of how many of these a line says so."""
     result = []
-    for key in dict.fromkeys((row.case.kind, row.case.cells) for row in rows):
-        own = [row for row in rows if (row.case.kind, row.case.cells) == key]
-        taken, best, worst = (
-            max(f(row) for row in own)
-            for f in (lambda r: r.errors[r.chosen], lambda r: min(r.errors), lambda r: max(r.errors))
+    for key in dict.fromkeys(row.case.cells for row in rows):
+        own = [row for row in rows if row.case.cells == key]
+        taken = max(row.errors[row.chosen] for row in own)
+        best, worst = (max(f(row.errors) for row in own) for f in (min, max))
+        wrong = [row for row in own if row.errors[1 - row.chosen] > row.limit]
+        numbers = [_percent(value) for value in (taken, own[0].limit, best, worst)]
+        result.append(
+            [part, _named(own[0].case), str(len(own)), *numbers, f"{sum(r.said for r in wrong)} of {len(wrong)}"]
         )
-        mid = max(row.everywhere[row.chosen] for row in own)
-        numbers = [f"{100 * v:.1f}" for v in (taken, mid, best, worst, own[0].limit)]
-        result.append([key[0], " on ".join(dict.fromkeys(key[1])), str(len(own)), *numbers])
     return result
 
 
-SUMMARY = ["problem", "cells", "models", "chosen", "with mid-nodes", "better side", "worse side", "limit"]
+def _named(case: Case) -> str:
+    return " on ".join(dict.fromkeys(case.cells))
+
+
+def _percent(value: float) -> str:
+    return "-" if math.isnan(value) else f"{100 * value:.1f}"
+
+
+HEADER = ["cells", "ratio", "facets", "first", "second", "abut's choice (*)"]
+SUMMARY = ["part", "cells", "models", "abut's choice", "limit", "better side", "worse side", "wrong and said"]
 
 
 def show(header: list[str], rows: list[list[str]], markdown: bool) -> None:
@@ -115,23 +167,30 @@ def show(header: list[str], rows: list[list[str]], markdown: bool) -> None:
         rows = [["---"] * len(header), *rows]
     for row in (header, *rows):
         if markdown:
-            print("| " + " | ".join(row) + " |")
+            print("| " + " | ".join(row) + " |", flush=True)
         else:
-            print("  ".join(text.ljust(w) for text, w in zip(row, width)).rstrip())
+            print("  ".join(text.ljust(w) for text, w in zip(row, width)).rstrip(), flush=True)
 
 
 def main() -> int:
-    """Run the study; 1 where abut's choice misses a limit at facet corners."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--full", action="store_true")
-    parser.add_argument("--kind", choices=KINDS, action="append")
+    """Run the study, part by part."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, *MOVING, []], metavar="PART")
+    parser.add_argument("--chosen", action="store_true", help="solve with abut's choice only")
+    parser.add_argument("--rows", action="store_true", help="show every model")
     parser.add_argument("--markdown", action="store_true")
     arguments = parser.parse_args()
-    rows = [run(case) for kind in arguments.kind or KINDS for case in chosen_cases(kind, arguments.full)]
-    show(HEADER, [line_of(row) for row in rows], arguments.markdown)
-    print()
-    show(SUMMARY, summary(rows), arguments.markdown)
-    return int(any(row.errors[row.chosen] > row.limit for row in rows))
+    missed = False
+    for name in arguments.parts or [*PARTS, *MOVING]:
+        if name in MOVING:
+            show(*MOVING[name](), arguments.markdown)
+            continue
+        rows = list(rows_of(PARTS[name], not arguments.chosen))
+        if arguments.rows:
+            show(HEADER, [line_of(row) for row in rows], arguments.markdown)
+        show(SUMMARY, summary(name, rows), arguments.markdown)
+        missed |= any(row.errors[row.chosen] > row.limit or row.silent for row in rows)
+    return int(missed)
 
 
 if __name__ == "__main__":

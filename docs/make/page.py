@@ -13,9 +13,13 @@ DOCS = Path(__file__).resolve().parents[1]
 def write_table(page: Path, name: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Replace what stands between ``<!-- begin table NAME -->`` and ``<!-- end table -->``."""
     lines = [header, ["---"] * len(header), *rows]
-    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    write_marked(page, name, "".join(f"| {' | '.join(line)} |\n" for line in lines))
+
+
+def write_marked(page: Path, name: str, content: str) -> None:
+    """Replace what stands between the same markers by text."""
     text = page.read_text(encoding="utf-8")
-    new, count = _marked(name).subn(lambda m: f"{m[1]}\n{table}{m[3]}", text)
+    new, count = _marked(name).subn(lambda m: f"{m[1]}\n{content}{m[3]}", text)
     if count != 1:
         raise SystemExit(f"{page}: expected one place marked 'begin table {name}', found {count}")
     page.write_text(new, encoding="utf-8")
@@ -23,11 +27,17 @@ def write_table(page: Path, name: str, header: Sequence[str], rows: Sequence[Seq
 
 def read_table(page: Path, name: str) -> list[dict[str, str]]:
     """Rows of a table by column heading."""
+    lines = read_marked(page, name).strip().split("\n")
+    header, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    return [dict(zip(header, row)) for row in rows]
+
+
+def read_marked(page: Path, name: str) -> str:
+    """What stands between the markers of that name."""
     found = _marked(name).search(page.read_text(encoding="utf-8"))
     if found is None:
         raise ValueError(f"{page}: no table {name}")
-    header, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in found[2].strip().split("\n"))
-    return [dict(zip(header, row)) for row in rows]
+    return found[2]
 
 
 def _marked(name: str) -> re.Pattern[str]:

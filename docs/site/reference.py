@@ -1,8 +1,7 @@
-"""What the site reads off the code: the keys of a job file, the generators of bodies, docstrings.
+"""What the site reads off the code: docstrings.
 
-Directives: ``{job-keys}`` every table of the job file; ``{generators}`` the kinds of ``[mesh.bodies.NAME]``;
-``{exports} MODULE ...`` the public names of ``abut`` that live in these modules. A public name in none of them, or a key
-without a meaning, is a warning, and so stops a strict build.
+Directive: ``{exports} MODULE ...`` the public names of ``abut`` that live in these modules. A public name in none of them is
+a warning, and so stops a strict build.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from __future__ import annotations
 import importlib
 import inspect
 import re
-from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
 from docutils import nodes
@@ -19,133 +17,12 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 import abut
-from abut.job import json_schema
-from abut.job.load import GENERATORS
 
 LOG = logging.getLogger(__name__)
-SECTIONS = {  # how a top-level key appears in a file, by what it holds
-    "object": "[{}]", "map": "[{}.NAME]", "array": "[[{}]]",
-}  # fmt: skip
-UNIT = re.compile(r"(.*) \[([^\]]+)\]$")
 ARGUMENT = re.compile(r"^((?:[a-z_]\w*, )*[a-z_]\w*):\s+(.*)$")
 
 BETWEEN = re.compile(r"; (?=(?:[a-z_]\w*, )*[a-z_]\w*: )")
 PROSE = ("Raises", "Surfaces", "For ", "Integrals", "The ", "Function")  # what follows the arguments
-
-
-class JobKeys(SphinxDirective):
-    """Tables of all keys of a job file with type, default, unit and meaning, from the JSON Schema."""
-
-    def run(self) -> list[nodes.Node]:
-        schema = json_schema()
-        lines: list[str] = []
-        plain = {k: e for k, e in schema["properties"].items() if not _tables(e, schema)}
-        lines += ["### At the top", "", *_table(plain, schema), ""]
-        for key, entry in schema["properties"].items():
-            for header, table in _tables(entry, schema, key):
-                lines += _section(header, table, entry.get("description", ""), schema)
-        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
-
-
-def _section(header: str, table: Mapping[str, Any], meaning: str, schema: Mapping[str, Any]) -> Iterable[str]:
-    """One table of the file and those within it."""
-    inner = [(key, entry) for key, entry in table["properties"].items() if _tables(entry, schema)]
-    kind = table["properties"].get("kind", {})
-    meaning = kind["description"] if "kind = " in header else meaning  # of one load, not of all
-    yield from (f"### `{header}`", "", f"{meaning[:1].upper()}{meaning[1:]}.", "")
-    yield from (*_table(table["properties"], schema, table.get("required", ())), "")
-    for key, entry in inner:
-        name = header.strip("[]")
-        for _, nested in _tables(entry, schema):
-            style = "[{}.{}.NAME]" if "additionalProperties" in entry else "{}.{}"
-            yield from _section(style.format(name, key), nested, entry.get("description", ""), schema)
-
-
-def _resolve(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any]:
-    while "$ref" in entry:
-        entry = schema["$defs"][entry["$ref"].rsplit("/", 1)[1]]
-    return entry
-
-
-def _given(entry: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What an entry is where it is given: "or nothing" left out."""
-    options = [option for option in entry.get("anyOf", ()) if option.get("type") != "null"]
-    return options[0] if len(options) == 1 else entry
-
-
-def _tables(entry: Mapping[str, Any], schema: Mapping[str, Any], key: str = "") -> list[tuple[str, Mapping[str, Any]]]:
-    """The tables that an entry holds, each with the header that opens it in a file."""
-    entry = _given(entry)
-    style = "array" if "items" in entry else "map" if isinstance(entry.get("additionalProperties"), dict) else "object"
-    held = entry.get("items") or entry.get("additionalProperties") or entry
-    options = held.get("oneOf", [held]) if isinstance(held, dict) else []
-    found = []
-    for option in options:
-        table = _resolve(option, schema)
-        if table.get("type") == "object" and "properties" in table:
-            header = SECTIONS[style].format(key)
-            kind = table["properties"].get("kind", {})
-            found.append((f'{header} kind = "{kind["const"]}"' if "oneOf" in held else header, table))
-    return found
-
-
-def _table(entries: Mapping[str, Any], schema: Mapping[str, Any], required: Iterable[str] = ("schema",)) -> list[str]:
-    rows = ["| key | value | default | unit | meaning |", "|---|---|---|---|---|"]
-    for key, entry in entries.items():
-        text = entry.get("description", "")
-        if not text:
-            LOG.warning("job file: no meaning of key %r; add it to abut/job/key_descriptions.py", key)
-        meaning, unit = match.groups() if (match := UNIT.match(text)) else (text, "")
-        default = "**required**" if key in required else _default(entry)
-        rows.append(f"| `{key}` | {_value(entry, schema)} | {default} | {unit} | {meaning} |")
-    return rows
-
-
-def _default(entry: Mapping[str, Any]) -> str:
-    value = entry.get("default")
-    return "" if value is None or isinstance(value, (dict, list)) or value == "" else f"`{value}`"
-
-
-def _value(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
-    """What may stand there, in words."""
-    entry = _resolve(entry, schema)
-    if "const" in entry:
-        return f"`{entry['const']}`"
-    if "enum" in entry:
-        return ", ".join(f"`{value}`" for value in entry["enum"])
-    options = entry.get("anyOf") or entry.get("oneOf")
-    if options:
-        return " or ".join(dict.fromkeys(_value(o, schema) for o in options if o.get("type") != "null"))
-    if entry.get("type") == "array":
-        inner = _value(entry["items"], schema) if isinstance(entry.get("items"), dict) else ""
-        return f"list of {inner}{'' if ' or ' in inner else 's'}" if inner else "list"
-    names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true, false"}
-    return names.get(entry.get("type", ""), "table")
-
-
-class Generators(SphinxDirective):
-    """Each generator with its arguments, their defaults, and its docstring."""
-
-    def run(self) -> list[nodes.Node]:
-        lines: list[str] = []
-        for kind, make in GENERATORS.items():
-            lines += [f"### `{kind}`", "", *_markdown(inspect.getdoc(make) or ""), ""]
-            lines += ["| key | default |", "|---|---|"]
-            for name, parameter in inspect.signature(make).parameters.items():
-                default = parameter.default
-                shown = "" if default is None else f"`{list(default) if isinstance(default, tuple) else default!r}`"
-                lines.append(f"| `{name}` | {shown.replace(chr(39), chr(34))} |")
-            lines.append("")
-        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
-
-
-def _markdown(docstring: str) -> list[str]:
-    """A plain docstring: lines that begin with an argument stand in a list."""
-    lines = []
-    for line in docstring.replace("``", "`").splitlines():
-        match = ARGUMENT.match(line)
-        lines += ["", f"- `{match[1].replace(', ', '`, `')}`: {match[2]}"] if match else [line]
-    return lines
 
 
 class Exports(SphinxDirective):
@@ -243,8 +120,6 @@ def keep_short_cells(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    app.add_directive("job-keys", JobKeys)
-    app.add_directive("generators", Generators)
     app.add_directive("exports", Exports)
     app.connect("autodoc-process-docstring", as_list)
     app.connect("autodoc-process-signature", as_written)

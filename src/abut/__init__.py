@@ -10,8 +10,11 @@ if TYPE_CHECKING:
     from abut.analysis import solve
     from abut.contact.overclosure import PressureOverclosure
     from abut.detection import FoundContact, add_surfaces, find_contacts
+    from abut.diagnosis import check
     from abut.materials.elastic import LinearElastic
     from abut.materials.hyperelastic import NeoHooke
+    from abut.materials.logarithmic import Hencky
+    from abut.materials.plastic import Plastic
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -51,15 +54,16 @@ _HOME = {  # of public names that do not come from abut.model
     "write_report": "abut.report", "plot": "abut.output.pyvista_export", "to_pyvista": "abut.output.pyvista_export",
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
-    "PressureOverclosure": "abut.contact.overclosure",
+    "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
+    "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
 __all__ = [
     "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
-    "FoundContact", "Gravity", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "NeoHooke",
-    "NodalForce", "Output", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid",
-    "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction", "add_surfaces", "find_contacts", "plot",
-    "solve", "to_pyvista", "write", "write_report",
+    "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment",
+    "NeoHooke", "NodalForce", "Output", "Plastic", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

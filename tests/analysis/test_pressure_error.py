@@ -73,7 +73,7 @@ def test_it_is_near_the_true_error(name: str) -> None:
     solution = abut.solve(model())
     error, estimate = truth(solution), checked(solution).value
     second = not any(cell in name for cell in ("quad4", "tri3", "hex8", "wedge6", "tet4"))
-    assert error > (0.003 if second else 0.04)
+    assert error > (0.002 if second else 0.03)  # else there is nothing to estimate
     assert estimate > 0.3 * error
     assert estimate < (3.0 * error if error > 0.02 else 0.08)
 

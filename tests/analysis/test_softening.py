@@ -17,7 +17,7 @@ def told(solution: abut.Solution) -> str:
 def test_the_verdict_follows_the_peak(epsilon: float, verdict: str) -> None:
     """Of a Hertz contact: beside complementarity the peak is lower by less than 2 % where nothing is said, by 2 to 20 %
     where it
-    warns, by more where it fails."""
+    warns, by more where it fails; more than all of it cannot be lost."""
     right = abut.solve(ball("quad4", 10)).contacts[0].max_pressure
     solution = abut.solve(ball("quad4", 10, law="constraint-function", epsilon=epsilon))
     lost = 1.0 - solution.contacts[0].max_pressure / right
@@ -26,7 +26,7 @@ def test_the_verdict_follows_the_peak(epsilon: float, verdict: str) -> None:
     assert low < lost < high
     for check in solution.certificate:
         if check.name == "softening":
-            assert 0.25 < lost / check.value < 1.5
+            assert 0.25 < lost / min(check.value, 1.0) < 1.5
             assert "complementarity" in cure(check, solution)
 
 

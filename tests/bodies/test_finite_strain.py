@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from abut.bodies.assemble import stiffness
-from abut.bodies.finite import is_symmetric, respond_finite
+from abut.bodies.assemble import is_symmetric, respond, stiffness
 from abut.bodies.inverted import Inverted
 from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids, TemperatureChange
@@ -64,15 +63,15 @@ def test_force_and_tangent(kind: str, plane: str | None, rule: str, name: str) -
     solids = body(kind, plane, rule, LAWS[name])
     u = deformed(solids)
     along = np.random.default_rng(3).standard_normal(u.shape)
-    told = respond_finite(solids, u, HOT)
-    by = difference(lambda at: respond_finite(solids, at, HOT, tangent=False).force, u, along)
+    told = respond(solids, u, HOT)
+    by = difference(lambda at: respond(solids, at, HOT, tangent=False).force, u, along)
     assert np.abs(told.tangent @ along.ravel() - by).max() < 1e-7 * np.abs(by).max()
     symmetric = abs(told.tangent - told.tangent.T).max() < 1e-12 * abs(told.tangent).max()
     assert symmetric or not is_symmetric(solids)
     in_plane = plane == "strain" and name in ("square-log", "log-squared")  # the area of a quad4 is that of its centre
     assert symmetric == (rule != "b-bar" or in_plane)
     if rule != "b-bar":  # whose forces have no energy
-        by = difference(lambda at: respond_finite(solids, at, HOT, tangent=False).energy.sum(), u, along)
+        by = difference(lambda at: respond(solids, at, HOT, tangent=False).energy.sum(), u, along)
         assert by == pytest.approx(told.force @ along.ravel(), abs=1e-7 * np.abs(told.force * along.ravel()).sum())
 
 
@@ -82,7 +81,7 @@ def test_at_rest(kind: str, plane: str | None, rule: str, name: str) -> None:
     """Without displacement it is the material of small strains."""
     solids = body(kind, plane, rule, LAWS[name])
     small = replace(solids, kinematics="small", materials={"body": LAWS["linear"]})
-    rest = respond_finite(solids, np.zeros(solids.points.shape))
+    rest = respond(solids, np.zeros(solids.points.shape))
     assert abs(rest.tangent - stiffness(small)).max() < 1e-13 * abs(rest.tangent).max()
     assert not rest.force.any()
     assert not rest.energy.any()
@@ -96,13 +95,13 @@ def test_rigid_turn(kind: str, plane: str | None, rule: str, name: str) -> None:
     dim, angle = solids.points.shape[1], np.deg2rad(70.0)
     turn = np.eye(dim)
     turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
-    told = respond_finite(solids, solids.points @ (turn - np.eye(dim)).T, tangent=False)
+    told = respond(solids, solids.points @ (turn - np.eye(dim)).T, tangent=False)
     assert np.abs(told.force).max() < 1e-12
     assert np.abs(told.energy).max() < 1e-12
     assert np.abs(nodal_stress(solids, solids.points @ (turn - np.eye(dim)).T)).max() < 1e-12
     u = deformed(solids)
     turned = (solids.points + u) @ turn.T - solids.points
-    before, after = respond_finite(solids, u, tangent=False), respond_finite(solids, turned, tangent=False)
+    before, after = respond(solids, u, tangent=False), respond(solids, turned, tangent=False)
     assert np.abs(before.force.reshape(-1, dim) @ turn.T - after.force.reshape(-1, dim)).max() < 1e-12
     assert after.energy == pytest.approx(before.energy, rel=1e-11)
     full = np.eye(3)
@@ -171,7 +170,7 @@ def test_free_expansion(kind: str, plane: str | None, rule: str, name: str) -> N
     if plane == "strain":
         return
     solids = body(kind, plane, rule, LAWS[name])
-    told = respond_finite(solids, 0.15 * solids.points, HOT, tangent=False)
+    told = respond(solids, 0.15 * solids.points, HOT, tangent=False)
     assert np.abs(told.force).max() < 1e-13
 
 
@@ -181,11 +180,11 @@ def test_inside_out(kind: str, plane: str | None, rule: str) -> None:
     u = np.zeros(solids.points.shape)
     u[:, 1] = -2.0 * solids.points[:, 1]
     with pytest.raises(Inverted, match=r"cell 0 of body 'body' turns inside out \(det F = -1") as found:
-        respond_finite(solids, u)
+        respond(solids, u)
     assert found.value.determinant == pytest.approx(-1.0)
     assert found.value.cell == 0
     with pytest.raises(Inverted):
-        respond_finite(solids, np.full(u.shape, np.nan))
+        respond(solids, np.full(u.shape, np.nan))
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49999])
@@ -204,4 +203,4 @@ def test_no_thickness() -> None:
     """Saint Venant and Kirchhoff's material would have to become thinner than nothing."""
     solids = body("quad4", "stress", "full", LinearElastic(1.0, 0.3))
     with pytest.raises(Inverted, match="has no stretch out of the plane without stress there \\(det F = 4\\)"):
-        respond_finite(solids, solids.points)
+        respond(solids, solids.points)

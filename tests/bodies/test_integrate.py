@@ -176,17 +176,17 @@ def test_plane_stress_of_any_material() -> None:
     """No stress out of the plane, Hooke's law as it is known, and a tangent that is the derivative."""
     strain = np.zeros((40, 6))
     strain[:, [0, 1, 3]] = np.random.default_rng(4).uniform(-0.5, 0.5, (40, 3))
-    stress, c, _ = in_plane_stress(STEEL.evaluate, strain, STEEL.initial(40))
+    _, (stress, c, _) = in_plane_stress(STEEL.evaluate, strain, STEEL.initial(40))
     lambda_, mu = lame(STEEL, "stress")
     want = 2.0 * mu * strain[:, :2] + lambda_ * strain[:, :2].sum(axis=1, keepdims=True)
     assert stress[:, :2] == pytest.approx(want, abs=1e-14)
     assert c[0, 0, :2] == pytest.approx([lambda_ + 2.0 * mu, lambda_], abs=1e-14)
     material, h = Stiffening(), 1e-6
-    stress, c, _ = in_plane_stress(material.evaluate, strain, material.initial(40))
+    _, (stress, c, _) = in_plane_stress(material.evaluate, strain, material.initial(40))
     assert np.array_equal(stress[:, [2, 4, 5]], np.zeros((40, 3)))
     for k in (0, 1, 3):
         step = h * np.eye(6)[k]
-        ends = [in_plane_stress(material.evaluate, strain + s * step, material.initial(40))[0] for s in (1.0, -1.0)]
+        ends = [in_plane_stress(material.evaluate, strain + s * step, material.initial(40))[1][0] for s in (1.0, -1.0)]
         assert np.abs(c[:, :, k] - (ends[0] - ends[1]) / (2 * h)).max() < 1e-8
 
 

@@ -7,9 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from models.steps import job
+
+INSIDE_NUMPY = f"numpy.{'core' if np.__version__.startswith('1.') else '_core'}.multiarray"
 
 # A module that is looked for sends the signal, as a hand that comes just then would.
 SCRIPT = """
@@ -26,7 +29,7 @@ runpy.run_module("abut", run_name="__main__")
 
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 @pytest.mark.parametrize(
-    "module", ["argparse", "abut.cli", "numpy", "numpy._core.multiarray", "scipy.sparse", "pydantic", "abut.analysis"]
+    "module", ["argparse", "abut.cli", "numpy", INSIDE_NUMPY, "scipy.sparse", "pydantic", "abut.analysis"]
 )
 def test_ctrl_c_during_imports(module: str, tmp_path: Path) -> None:
     command = [sys.executable, "-c", SCRIPT, module, "run", str(job(tmp_path))]

@@ -248,14 +248,16 @@ def test_values_beside_derivatives(kinds: tuple[str, str]) -> None:
         assert np.abs(pressed + square.T @ traction.ravel() - tangent.force).max() < 1e-12 * np.abs(tangent.force).max()
 
 
+@pytest.mark.parametrize("slid", [0.0, 0.3])
 @pytest.mark.parametrize("kinds", [("line3", "line2"), ("quad8", "quad4"), ("tri6", "quad9")])
-def test_slips(kinds: tuple[str, str]) -> None:
-    """Of places that are held, against differences."""
+def test_slips(kinds: tuple[str, str], slid: float) -> None:
+    """Of places that are held, against differences; where they are, and slid apart: then the turn of normals counts."""
     own, other = lines(kinds) if kinds[0] in LINES else faces(kinds)
     shared = np.vstack([own.points, other.points])
     target = np.where(other.nodes >= 0, other.nodes + len(own.points), -1).astype(np.int32)
     pair = replace(own, points=shared), replace(other, points=shared, nodes=target)
     normals, held = normal_pattern(pair[0]), SlipPoints.of(*pair, 1, CouplingOptions())
+    shared = shared + slid * np.outer(np.arange(len(shared)) >= len(own.points), [1.0, 0.4, -0.2][: own.dim])
 
     def at(points: np.ndarray) -> SlipNow:
         moved = replace(pair[0], points=points)
@@ -265,6 +267,7 @@ def test_slips(kinds: tuple[str, str]) -> None:
     far = [at(shared + k * 1e-4 * way).value for k in (-2, -1, 1, 2)]
     expected = (far[0] - 8 * far[1] + 8 * far[2] - far[3]).ravel() / 12e-4
     now, dim = at(shared), pair[0].dim
+    assert (np.abs(now.value).max() > 0.1 * slid * held.weight.max()) or not slid
     turning = normals.at(pair[0]).turning(len(shared))
     found = block_rows(now.by_points, len(shared)) + block_rows(now.by_normals, turning.shape[0] // dim) @ turning
     assert np.abs(found @ way.ravel() - expected).max() < 1e-9 * np.abs(expected).max()

@@ -34,11 +34,11 @@ SLOW = pytest.mark.long
 
 
 @pytest.mark.parametrize("contactor", SIDES)
-@pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.003)])
+@pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.004)])
 @pytest.mark.parametrize("cell", ["quad4", "quad8", "quad9", "tri6"])
 def test_hertz_line(cell: str, n: int, limit: float, contactor: str) -> None:
-    """With the cylinder as contactor the formula itself, that of a half space under a parabola while a / R = 0.12, is off
-    by 0.3 to 0.4 % at its nodes, on any mesh: 0.1 % more, and 0.45 % at least, are allowed (quad4, n = 10: 1.01 %)."""
+    """The formula itself, that of a half space under a parabola while a / R = 0.12, is off by 0.3 to 0.4 % with normals
+    between both sides, at the cylinder's nodes a little more: there 0.1 % more, and 0.45 % at least, are allowed."""
     if contactor == "cylinder":
         limit = max(limit + 0.001, 0.0045)
     solution = abut.solve(line(cell, n, contactor))
@@ -145,7 +145,7 @@ def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: 
 @pytest.mark.parametrize(("cell", "first"), [("tri3", 10), ("quad4", 6)])
 def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
     """A ball on a softer one, axisymmetric, cells of first order: no hole and no peak on the axis. A little more with the
-    stiffer and finer side as contactor, the wrong one."""
+    stiffer and finer side as contactor, the wrong one; what is off falls with the facets and has no part that stays."""
     limit = 0.1 if contactor == "lower" else 0.12
     for n in (first, 16, 24, 40):
         solution = abut.solve(balls(cell, n, contactor))
@@ -153,7 +153,7 @@ def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
         axis = np.argsort(x[:, 0])[:3]
         assert np.abs(p - ellipse(BALLS, BALLS_PEAK, 2)(x))[axis].max() <= limit * BALLS_PEAK
         assert errors(solution, BALLS, BALLS_PEAK)[0] <= limit
-    assert errors(solution, BALLS, BALLS_PEAK)[0] <= 0.3 * limit
+    assert errors(solution, BALLS, BALLS_PEAK)[0] <= (0.3 if contactor == "lower" else 0.4) * limit
 
 
 @pytest.mark.long

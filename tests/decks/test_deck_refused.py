@@ -70,14 +70,14 @@ def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
     text = (
         DECK.replace("*ELASTIC", "*ELASTIC, TYPE=ORTHO")
         .replace("PRESSURE-OVERCLOSURE=HARD", "PRESSURE-OVERCLOSURE=SOFT")
-        .replace("*BOUNDARY", "*PLASTIC\n1., 0.\n*BOUNDARY")
+        .replace("*BOUNDARY", "*VISCOELASTIC\n1., 0.\n*BOUNDARY")
         .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, PERTURBATION")
         .replace("*STATIC", "*STATIC\n*CLOAD\n18, 7, 1.\n*BOUNDARY\n1, 9\n")
     )
     lines = text.splitlines()
-    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*PLASTIC: ", "*EQUATION: 2 terms",
-                "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
-    starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*PLASTIC", "*EQUATION", "*STEP", "18, 7", "1, 9"]
+    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*VISCOELASTIC: ",
+                "*EQUATION: 2 terms", "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
+    starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*VISCOELASTIC", "*EQUATION", "*STEP", "18, 7", "1, 9"]
     own = told(tmp_path, text)
     assert len(own) == len(expected)
     for i, (reason, want, start) in enumerate(zip(own, expected, starts)):
@@ -122,10 +122,10 @@ def test_no_more_than_a_screen_of_reasons(tmp_path):
 
 
 def test_all_refusals_come_at_once(tmp_path):
-    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*PLASTIC\n1., 0.\n*STEP, PERTURBATION")
+    text = DECK.replace("*STEP", "*CREEP\n0.1,\n*VISCOELASTIC\n1., 0.\n*STEP, PERTURBATION")
     with pytest.raises(InputError) as caught:
         load(tmp_path, text)
-    assert all(f"--ignore {name}" in str(caught.value) for name in ("CREEP", "PLASTIC", "PERTURBATION"))
+    assert all(f"--ignore {name}" in str(caught.value) for name in ("CREEP", "VISCOELASTIC", "PERTURBATION"))
 
 
 def test_friction_without_effect_needs_no_permission(tmp_path):
@@ -288,7 +288,7 @@ def test_empty_surfaces_and_sets_are_faults_only_where_they_are_used(tmp_path):
         load(tmp_path, text.replace("BOTTOM, 1, 3", "NONE, 1, 3"))
 
 
-@pytest.mark.parametrize("card", ["*ELEMENT, TYPE=S4", "*PLASTIC", "*AMPLITUDE, NAME=A", "*FANCY"])
+@pytest.mark.parametrize("card", ["*ELEMENT, TYPE=S4", "*VISCOELASTIC", "*AMPLITUDE, NAME=A", "*FANCY"])
 def test_files_of_cards_that_are_refused_are_not_opened(card, tmp_path):
     with pytest.raises(InputError) as caught:
         load(tmp_path, DECK.replace("*STEP", f"{card}, INPUT=none.inc\n*STEP"))

@@ -120,3 +120,22 @@ def test_amplitudes_outside_the_steps(table: str, expected: tuple[float, ...], l
     held = "*BOUNDARY, AMPLITUDE=A\nTOP, 3, 3, -0.01\n"
     text = BAR + (held + table if last else table + held) + step() + step() + step()
     assert heights(tmp_path, text, 3) == pytest.approx(expected, rel=1e-9)
+
+
+def test_an_amplitude_that_begins_elsewhere_jumps_there(tmp_path: Path) -> None:
+    """It acts from the beginning of its step on: twice the load, not a ramp from what the step before has left."""
+    jump = "*AMPLITUDE, NAME=B\n0., 2., 1., 3.\n"
+    text = BAR + jump + step("*DLOAD", "1, P2, 10.") + step("*DLOAD, AMPLITUDE=B", "1, P2, 10.")
+    (load_,) = load(tmp_path, text).model.loads
+    found = [load_.value * load_.amplitude(time) for time in (0.25, 0.5, 0.5 + 1e-6, 0.75, 1.0)]
+    assert found == pytest.approx([5.0, 10.0, 20.0, 25.0, 30.0], rel=1e-5)
+
+
+def test_of_temperatures_given_twice_the_later_one_holds(tmp_path: Path) -> None:
+    """In a step, as of supports; loads given twice add up."""
+    text = BAR + step("*TEMPERATURE", "ALL, 4.\nALL, 10.")
+    assert heights(tmp_path, text, 1) == pytest.approx([-0.01], rel=1e-9)
+    both = BAR + step("*TEMPERATURE", "ALL, 4.", "*TEMPERATURE", "ALL, 10.")
+    assert heights(tmp_path, both, 1) == pytest.approx([-0.01], rel=1e-9)
+    loads = BAR + step("*DLOAD", "1, P2, 4.", "*DLOAD", "1, P2, 10.")
+    assert heights(tmp_path, loads, 1) == pytest.approx([0.014], rel=1e-9)

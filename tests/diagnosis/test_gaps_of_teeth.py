@@ -1,10 +1,11 @@
-"""Gaps that `check` reads off toothed bodies: what is seen through a tooth is no overlap."""
+"""Toothed bodies: what is seen through a tooth is no overlap in `check`, and no contact in a run."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import abut
 from abut.diagnosis import check
@@ -26,7 +27,7 @@ def rack(first: int) -> tuple[np.ndarray, np.ndarray]:
     return np.array(list(places), dtype=float), np.array(cells, dtype=np.int32)
 
 
-def test_flanks_behind_a_tooth_are_no_overlap() -> None:
+def racks() -> abut.Model:
     """Flanks GAP apart; the contactor's first left flank has no tooth before it, only the far flank of the next one, two
     teeth of 2 behind it."""
     (x, lower), (y, upper) = rack(1), rack(3)
@@ -43,12 +44,24 @@ def test_flanks_behind_a_tooth_are_no_overlap() -> None:
         "lower.bottom": rows[low & (middle[:, 1] < -1.99)], "upper.top": rows[~low & (middle[:, 1] > 6.4)],
     }  # fmt: skip
     material = abut.LinearElastic(1000.0, 0.3)
-    model = abut.Model(
+    return abut.Model(
         replace(mesh, surfaces=surfaces), plane="strain",
         solids=[abut.Solid(body, material) for body in bodies],
         supports=[abut.Support("lower.bottom", x=0, y=0), abut.Support("upper.top", x=-0.01, y=0)],
         contacts=[abut.Contact("lower.teeth", "upper.teeth", name="teeth")],
     )  # fmt: skip
-    found = [f.what for f in check(model).findings if f.where == "contact 'teeth'"]
+
+
+def test_flanks_behind_a_tooth_are_no_overlap() -> None:
+    found = [f.what for f in check(racks()).findings if f.where == "contact 'teeth'"]
     assert not [what for what in found if "overlap" in what]
     assert any(what.startswith("gap 0.0006 to") for what in found)
+
+
+def test_flanks_behind_a_tooth_do_not_touch() -> None:
+    """Displacements are small: with both kinematics the upper teeth push the lower ones by the same force along x alone."""
+    small, finite = (
+        abut.solve(replace(racks(), kinematics=kinematics)).contacts[0].force for kinematics in ("small", "finite")
+    )
+    assert small[0] == pytest.approx(finite[0], rel=1e-3)
+    assert abs(small[1]) < 1e-9 * abs(small[0])

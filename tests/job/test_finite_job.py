@@ -94,16 +94,16 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"finite"', '"large"', "model.kinematics: expected 'small' or 'finite', got 'large'"),
+        ('"finite"', '"large"', "model.kinematics: expected 'small', 'finite' or 'small-strain', got 'large'"),
         (
             '"finite"',
             '"small"',
-            "solids\\[0\\].material: the neo-Hookean material of body 'strip' is for finite strains",
+            "solids\\[0\\].material: NeoHooke of body 'strip' is for finite strains",
         ),
         (
             '"neo-hooke"',
             '"neohooke"',
-            "rubber.kind: expected one of 'linear-elastic', 'neo-hooke', got 'neohooke'",
+            "rubber.kind: expected one of 'linear-elastic', 'neo-hooke', 'hencky', 'plastic', got 'neohooke'",
         ),
         ('kind = "neo-hooke"', "", "materials.rubber.kind: missing"),
         ("lame = 2.0", "lam = 2.0", "materials.rubber.lam: unknown key; did you mean 'lame'"),

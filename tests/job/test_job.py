@@ -30,7 +30,7 @@ BAD = {
     "unknown key": ("target = ", "tagret = ", "contacts[0].tagret: unknown key; did you mean 'target'?"),
     "key of other programs": ("poisson = 0.3", "nu = 0.3", "materials.steel.nu: unknown key; it is called 'poisson' here"),
     "master": ("target = ", "master = ", "contacts[0].master: unknown key; it is called 'target' here"),
-    "plasticity": ('kind = "linear-elastic"', 'kind = "plastic"', "got 'plastic'; metal that yields is not supported"),
+    "plasticity": ('kind = "linear-elastic"', 'kind = "elastoplastic"', "got 'elastoplastic'; plastic is what it is called"),
     "unknown surface": ('"lower.top"', '"lower.topp"', "did you mean 'lower.top'?"),
     "unknown material": ('material = "steel"', 'material = "stel"', "did you mean 'steel'?"),
     "unknown body": ('body = "upper"', 'body = "uper"', "did you mean 'upper'?"),

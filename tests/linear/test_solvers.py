@@ -108,6 +108,16 @@ def test_small_right_hand_sides_are_no_sign_of_a_singular_matrix() -> None:
     assert np.abs(dense.solve_dense(matrix, small, False) - large).max() < 1e-6
 
 
+def test_dense_systems_are_refined() -> None:
+    """Wilkinson's matrix, well conditioned, whose pivots grow to 2^29: elimination alone leaves 1e-9, one refinement
+    rounding."""
+    n = 30
+    matrix = np.eye(n) - np.tri(n, k=-1)
+    matrix[:, -1] = 1.0
+    solution = np.random.default_rng(2).uniform(1.0, 2.0, n)
+    assert np.abs(dense.solve_dense(matrix, matrix @ solution, False) - solution).max() < 1e-13
+
+
 def test_singular_dense_systems() -> None:
     """The smallest solution where there is one, an error where there is none."""
     matrix, solution, _ = bordered(1.0)

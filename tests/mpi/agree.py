@@ -169,7 +169,10 @@ CASES: dict[str, Callable[[], Any]] = {
     "lifted": lifted,
     "loose": loose,
     "pin-lug": lambda: example("pin-lug/job.toml"),
-    **{name: partial(finite, name) for name in ("beam", "folds", "jaws", "slid", "cushion", "punch", "pad", "turned")},
+    **{
+        name: partial(finite, name)
+        for name in ("beam", "folds", "jaws", "slid", "linear", "cushion", "punch", "pad", "turned")
+    },
 }
 
 

@@ -33,6 +33,11 @@ def slid() -> abut.Model:
     return replace(model, loads=[abut.Pressure("upper.left", 1.0)])
 
 
+def linear() -> abut.Model:
+    """The same with linear bodies, whose stiffness every iteration needs again."""
+    return replace(slid(), kinematics="small-strain")
+
+
 def cushion() -> abut.Model:
     """3D: pressed and slid along and across with friction, under a pressure that follows a side."""
     model = pressed_in_space(0.3)
@@ -93,6 +98,6 @@ def jaws() -> abut.Model:
 
 
 MODELS = {
-    "folds": folds, "jaws": jaws, "beam": beam, "slid": slid, "cushion": cushion, "punch": punch, "pad": pad,
-    "turned": turned,
+    "folds": folds, "jaws": jaws, "beam": beam, "slid": slid, "linear": linear, "cushion": cushion, "punch": punch,
+    "pad": pad, "turned": turned,
 }  # fmt: skip

@@ -20,7 +20,7 @@ from abut.cli import main
 from models.steps import job, stop_in
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
-MODELS = ["beam", "slid", "folds", "jaws", "cushion", "punch", "pad", "turned"]
+MODELS = ["beam", "slid", "linear", "folds", "jaws", "cushion", "punch", "pad", "turned"]
 SLID = """
 schema = 1
 [mesh.bodies.plate]

@@ -10,7 +10,7 @@ import pytest
 import abut
 from abut.analysis.run import Run
 from abut.benchmarks.finite_rubber import cook
-from abut.bodies.finite import respond_finite
+from abut.bodies.assemble import respond
 from abut.bodies.inverted import Inverted
 from abut.bodies.recovery import nodal_stress
 from abut.bodies.solids import Solids
@@ -20,8 +20,7 @@ from abut.linear.direct import solve
 from abut.linear.repeated import Repeated
 from abut.materials.material import OwnMaterial
 from abut.mesh.make import box, join, rectangle
-from abut.problem.finite_bodies import FiniteBodies
-from abut.problem.terms import Motion
+from abut.problem.terms import Motion, SolidBodies
 
 RUBBER = abut.NeoHooke(2.0, 0.3)
 BLOCK = join({"body": rectangle((0.0, 2.0), (0.0, 1.0), (4, 2), "quad8")})
@@ -52,9 +51,7 @@ def test_quadratic(load: object, material: object) -> None:
 def test_unsymmetric_tangent_is_quadratic_too() -> None:
     rows = abut.solve(replace(cook(4), solve=abut.SolveOptions(steps=1, max_iterations=30))).steps[-1].iterations
     assert rows[-1].residual < 1e-9
-    assert rows[-1].residual < max(
-        1e-3 * rows[-2].residual, 1e-10
-    )  # rounding
+    assert rows[-1].residual < max(1e-3 * rows[-2].residual, 1e-10)  # rounding
 
 
 def test_dead_and_following_pressure() -> None:
@@ -87,7 +84,7 @@ def test_energy_is_the_work_of_the_load() -> None:
     run = Run.of(own, lambda _: None, lambda *_: None, None, ())
     run.march(run.restore(()))
     bodies, forces = run.assembled.bodies, run.assembled.loaded.forces[:, 0]
-    assert isinstance(bodies, FiniteBodies)
+    assert isinstance(bodies, SolidBodies)
     moved = np.array([0.0, *(forces @ step.displacement.ravel() for step in run.steps)])
     times = np.array([0.0, *(step.factor for step in run.steps)])
     third = times[1] / 3.0
@@ -153,7 +150,7 @@ class Own(OwnMaterial):
     ("given", "words"),
     [
         ({"material": Own()}, "Own of body 'body' is a law for small strains"),
-        ({"kinematics": "small"}, "neo-Hookean material of body 'body' is for finite strains"),
+        ({"kinematics": "small"}, "NeoHooke of body 'body' is for finite strains"),
         ({"kinematics": "large"}, "expected one of small, finite"),
         ({"supports": [abut.Support("body.left", normal=0.1)]}, "has no meaning once they turn"),
     ],
@@ -217,7 +214,7 @@ def test_stresses_of_a_cell_that_is_sound_at_its_integration_points_only(kind: s
     for _ in range(2000):
         u = 0.35 * rng.standard_normal(mesh.points.shape)
         try:
-            respond_finite(solids, u, tangent=False)
+            respond(solids, u, tangent=False)
         except Inverted:
             continue
         found += 1

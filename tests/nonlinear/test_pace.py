@@ -6,7 +6,7 @@ import pytest
 
 from abut.errors import InputError
 from abut.model import Amplitude, SolveOptions
-from abut.nonlinear.pace import Pace, given_pace, pace_of
+from abut.nonlinear.pace import EASY, FIRST, GROWTH, HARD, SHRINK, SMALLEST, Pace, given_pace, pace_of
 
 
 def ends(pace: Pace, iterations: int) -> list[float]:
@@ -97,6 +97,64 @@ def test_a_jump_of_a_history_is_one_goal() -> None:
 def test_times_that_are_one_are_refused(times: tuple[float, ...]) -> None:
     with pytest.raises(InputError, match="are one time, as they differ by 1e-09 at most; leave one out"):
         SolveOptions(times=times)
+
+
+@pytest.mark.parametrize(("iterations", "factor"), [(EASY, GROWTH), (EASY + 1, 1.0), (HARD, 1.0), (HARD + 1, SHRINK)])
+def test_how_iterations_count(iterations: int, factor: float) -> None:
+    pace = Pace([1.0])
+    pace.take(iterations)
+    assert pace.end - pace.time == pytest.approx(factor * FIRST)
+    capped = Pace([1.0], longest=0.12)
+    capped.take(1)
+    assert capped.end - capped.time == pytest.approx(0.12)
+
+
+def test_what_is_left_of_the_way() -> None:
+    """A last step that would be shorter than the one before is shared with it; one that is as long is taken whole."""
+    pace = Pace([1.0], longest=0.4, first=1.0)
+    pace.take(HARD)
+    assert pace.end == pytest.approx(0.7)
+    pace.take(HARD)
+    assert pace.end == 1.0
+
+
+def test_steps_that_become_too_short() -> None:
+    """``last`` is told one failure before ``stuck``, both by the way from goal to goal."""
+    for legs, way in (((), 1.0), ((0.25,), 0.25)):
+        pace, cuts = Pace([*legs, 1.0], legs=legs), 0
+        while not pace.last:
+            assert not pace.stuck
+            pace.halve()
+            cuts += 1
+        pace.halve()
+        assert pace.stuck
+        assert pace.end <= SMALLEST * way < 2.0 * pace.end
+        assert FIRST * 0.5 ** (cuts + 1) < SMALLEST <= FIRST * 0.5**cuts
+
+
+def test_strides_are_followed() -> None:
+    """Of an earlier run, that went on after failures with a share of the way."""
+    pace, followed = Pace([1.0], legs=(0.5,)), Pace([1.0], legs=(0.5,))
+    pace.stride(0.3)
+    time = pace.end
+    assert time == pytest.approx(0.15)  # of the way to the next leg
+    pace.take(EASY)
+    followed.repeat(time, EASY, strides=(0.7, 0.3))
+    assert (followed.time, followed.end) == (time, pace.end)
+    pace, followed = Pace([1.0]), Pace([1.0])
+    pace.take(EASY)
+    followed.repeat(FIRST, EASY, strides=(0.7, 0.3))  # it was none of them
+    assert (followed.time, followed.end) == (FIRST, pace.end)
+
+
+def test_where_the_way_ahead_is_new() -> None:
+    pace = Pace([0.1, 1.0], kinks=(0.1,))
+    assert not pace.turned
+    pace.take(1)
+    assert pace.time == 0.1
+    assert pace.turned
+    pace.take(1)
+    assert not pace.turned
 
 
 def test_given_numbers_and_times() -> None:

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+import abut
 from abut.nonlinear.holding import lifted
-from abut.nonlinear.unsettled import circling, most_at
+from abut.nonlinear.unsettled import circling, gives_way, most_at
 from models.clamps import NAMED, WHOLE, clamp
 from models.corners import peg, pin_in_cradle
 from models.sliding import finite
@@ -65,3 +66,14 @@ def test_a_pin_that_is_lifted() -> None:
         "the loads carry it off what it touches: body 'pin' is free to translate along y; "
         "hold it by a support, or move it to where it rests"
     )
+
+
+def test_a_law_that_gives_way() -> None:
+    """A body whose cells turn inside out is offered a law that stiffens, where its own does not."""
+    problem = finite(peg("quad4"))
+    reason = "cell 7 of body 'plate' turns inside out (det F = -0.1 at an integration point)"
+    assert gives_way(problem, reason).startswith("body 'plate' is linear elastic")
+    assert "NeoHooke" in gives_way(problem, reason)
+    assert gives_way(problem, "25 iterations were not enough") == ""
+    rubber = [replace(solid, material=abut.NeoHooke(2000.0, 0.35)) for solid in problem.model.solids]
+    assert gives_way(replace(problem, model=replace(problem.model, solids=rubber)), reason) == ""

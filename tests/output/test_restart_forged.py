@@ -24,12 +24,15 @@ HEADS: dict[str, Any] = {
     "number": 7, "number as text": {"number": "1"}, "linear": {"linear": 3}, "no iterations": {"iterations": []},
     "iteration": {"iterations": [{"step": 1}]}, "residual": {"iterations": [{**vars(ROW), "residual": "y"}]},
     "parts": {"parts": 3}, "part": {"parts": [1]}, "model": {"model": ["plane"]}, "no model": {"model": None},
-    "version": {"abut": 3}, "list": [], "nothing": None, "deep": "[" * 100_000,
+    "version": {"abut": 3}, "schema": {"schema": 99}, "list": [], "nothing": None,
+    "schema as text": {"schema": "3"}, "deep": "[" * 100_000,
 }  # fmt: skip
 ARRAYS: dict[str, dict[str, Any]] = {
     "no numbers": {"unknowns": np.array([0.1, np.nan])}, "complex": {"unknowns": np.array([1j, 0.0])},
     "status": {"status": np.array([99, 0], dtype=np.int8)}, "shorter status": {"status": np.zeros(1, dtype=np.int8)},
     "time": {"time": np.array(5.0)}, "no time": {"time": np.array(np.nan)}, "inside": {"inside": np.zeros(2)},
+    "longer inside": {"inside": np.zeros(3, dtype=bool)},
+    "inside of two dimensions": {"inside": np.zeros((2, 1), dtype=bool)},
     "head": {"head": np.zeros(3)},
 }  # fmt: skip
 NPYS = {

@@ -54,6 +54,18 @@ def test_a_second_run_is_refused_while_the_first_one_goes_on(
 
 
 @POSIX
+def test_writing_from_python_takes_the_same_lock(tmp_path: Path) -> None:
+    solution = abut.solve(load_job(job(tmp_path, steps=1)).model)
+    folder = tmp_path / "a" / "b"
+    with Stream(folder, {}), pytest.raises(abut.InputError, match=f"process {os.getpid()} still writes results to"):
+        abut.write(solution, folder)
+    assert not folder.parent.exists()
+    abut.write(solution, folder)
+    assert "summary.json" in names(folder)
+    assert lock.NAME not in names(folder)
+
+
+@POSIX
 def test_the_lock_of_a_process_that_has_died_holds_nobody(tmp_path: Path) -> None:
     folder = tmp_path / "results"
     process = subprocess.Popen(

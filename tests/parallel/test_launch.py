@@ -132,6 +132,51 @@ def test_what_is_missing_is_said_with_the_recipe(monkeypatch: pytest.MonkeyPatch
         launch.require()
 
 
+ORDER = "import builtins; builtins.order = [*getattr(builtins, 'order', []), __name__]\n"
+BUNDLED = {  # what its wheel and those that it needs bring
+    "dolfinx_solver": "import mpi4py.MPI\n",
+    "mpi4py": "",
+    "mpi4py/MPI": "class COMM_WORLD: size = 1\n",
+    "petsc4py": "",
+    "petsc4py/lib": "import numpy\ndef ImportPETSc():\n    import petsc4py.PETSc as found\n    return found\n",
+    "petsc4py/PETSc": "import numpy\nScalarType = numpy.float64\n",
+}
+
+
+def bundle(folder: Path, **changes: str) -> str:
+    """Packages of these names there, which note when they are imported; what ``require`` says, and that order."""
+    for name, code in {**BUNDLED, **changes}.items():
+        file = folder / f"{name}.py" if "/" in name else folder / name / "__init__.py"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(ORDER + code)
+    ask = (
+        "import builtins\nfrom abut.parallel.launch import require\n"
+        "try: require()\nexcept Exception as error: print(type(error).__name__, error)\nprint(builtins.order)"
+    )
+    source = str(Path(abut.__file__).parents[1])
+    own = {name: value for name, value in os.environ.items() if not name.startswith(TOLD)}
+    paths = {"PYTHONPATH": os.pathsep.join([str(folder), source])}
+    return subprocess.run(
+        [sys.executable, "-c", ask], capture_output=True, text=True, env={**own, **paths}, check=True
+    ).stdout
+
+
+def test_petsc_in_wheels_is_imported_in_its_order(tmp_path: Path) -> None:
+    """As dolfinx-solver-real asks: itself, then MPI, then petsc4py. What it says of another one in its way is told."""
+    assert (
+        bundle(tmp_path)
+        == str(["dolfinx_solver", "mpi4py", "mpi4py.MPI", "petsc4py", "petsc4py.lib", "petsc4py.PETSc"]) + "\n"
+    )
+    said = bundle(tmp_path, dolfinx_solver="raise ImportError('petsc4py is installed\\n beside. Uninstall it')\n")
+    assert said.startswith(
+        "InputError dolfinx-solver-real cannot be used: petsc4py is installed beside. Uninstall it\n"
+    )
+    said = bundle(tmp_path, dolfinx_solver="import what_is_not_there\n")
+    assert said.startswith(
+        "InputError dolfinx-solver-real cannot be loaded (No module named 'what_is_not_there'): install"
+    )
+
+
 def test_without_petsc_only_process_0_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -114,3 +114,13 @@ def test_contactor_held_in_part(friction: float, kinematics: str) -> None:
     (along, one), (_, other) = map(drag, solutions)
     assert one == pytest.approx(other, rel=0.01)
     assert along == pytest.approx(friction * one, rel=0.02, abs=0.005 * one)
+
+
+def test_held_contactor_by_multigrid() -> None:
+    """Functions of held nodes that nothing is opposite follow others and have no place on the surface: multigrid's
+    preconditioner has them stand by themselves. Forces are those of the direct solver, to what both leave."""
+    model = sliding("xy", 6, 4, kinematics="finite", steps=2)
+    direct, multigrid = (
+        drag(abut.solve(replace(model, solve=abut.SolveOptions(steps=2, linear=kind)))) for kind in ("direct", "amg")
+    )
+    assert multigrid == pytest.approx(direct, rel=1e-6)

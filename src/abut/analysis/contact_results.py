@@ -272,10 +272,11 @@ def reported(state: PairState, at: Averages) -> Recovery:
     pair, average = state.pair, at.of(state.normal)
     plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
     if smooth:
-        sharp = at.sharpened(average, at.surface.points)
+        across = None if pair.planes is None else pair.planes.across[split_at_creases(pair.contactor)[1]]
+        sharp = at.sharpened(average, at.surface.points, across)
         plain, smooth = (sharp, True) if pair.two_way or sharp.min() >= 0.0 else (average, False)
-    if not smooth and pair.planes is not None:
-        plain = evened(pair.contactor, at, average, pair.planes)
+    if pair.planes is not None:
+        plain = evened(pair.contactor, at, plain, pair.planes, smooth)
     places = _places(pair, at.surface, smooth)
     return recovered(at, average, plain, places, pair.two_way)
 

@@ -65,7 +65,7 @@ def covered(
 def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
     border = rim_of_sides(pair.contactor)
-    return planes_of(pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
+    return planes_of(problem.model.mesh, pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
 def whole_supports(problem: FiniteProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:

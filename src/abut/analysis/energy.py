@@ -21,7 +21,8 @@ Vector = NDArray[np.float64]
 class Acting:
     """A converged state with the forces in it, each (dim n_points,). displacement; prescribed: the part of it that is given;
     internal: of stresses; loads; reaction: of what holds the points; pressing: of pressures and ties; tractions: (n,) of
-    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these."""
+    each pair's multipliers of friction; free: (n_free,) displacements; residual: largest force left on these;
+    flowed: work of plastic flow so far."""
 
     displacement: Vector
     prescribed: Vector
@@ -32,6 +33,7 @@ class Acting:
     tractions: Sequence[Vector]
     free: Vector
     residual: float = 0.0
+    flowed: float = 0.0
 
     @classmethod
     def none(cls, prescribed: Vector, balance: Balance) -> Acting:
@@ -88,9 +90,11 @@ def energy(
         loads=float(mean("loads") @ moved),
         supports=float(mean("reaction") @ given),
         contact=float(mean("pressing") @ moved) + closing,
-        stored=float(internal @ moved),
+        stored=float(internal @ moved) - (now.flowed - before.flowed),
+        plastic=now.flowed - before.flowed,
         friction=sum(c.friction.work for c in contacts if c.friction is not None),
         stepping=stepping,
         size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
         left=float(rounding + unbalanced),
+        earlier=earlier,
     )

@@ -21,7 +21,8 @@ class FiniteActing:
     """A converged state with the forces in it, each (dim n_points,). displacement; internal: of stresses; loads; reaction:
     of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy;
     free: (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest
-    force left on these; drag: (n_free,) that of a step which it leads, None without."""
+    force left on these; drag: (n_free,) that of a step which it leads, None without; flowed: work of plastic
+    flow so far. stored is not a number where a material does not tell its energy."""
 
     displacement: Vector
     internal: Vector
@@ -34,6 +35,7 @@ class FiniteActing:
     follows: Sparse
     residual: float = 0.0
     drag: Vector | None = None
+    flowed: float = 0.0
 
     @classmethod
     def none(cls, follows: Sparse) -> FiniteActing:
@@ -53,9 +55,10 @@ def finite_energy(
         return float(0.5 * (getattr(before, name) + getattr(now, name)) @ moved)
 
     supports = sum(0.5 * float(side.reaction @ (moved - side.follows @ step)) for side in (before, now))
-    stored, friction = now.stored - before.stored, sum(c.friction.work for c in contacts if c.friction is not None)
+    friction, plastic = sum(c.friction.work for c in contacts if c.friction is not None), now.flowed - before.flowed
     dragged = sum(0.5 * float(side.drag @ step) for side in (before, now) if side.drag is not None)
     internal, way = work("internal"), np.abs(step)
+    stored = now.stored - before.stored if np.isfinite(now.stored) else internal - plastic
     rounding = np.finfo(float).eps * (np.abs(stiffness) * np.abs(now.free)) @ way
     size = 0.5 * float(np.abs(before.internal + now.internal) @ np.abs(moved))
     return Energy(
@@ -64,10 +67,11 @@ def finite_energy(
         contact=work("pressing"),
         stored=stored,
         friction=friction,
-        stepping=(internal - stored) - (work("rubbing") + friction),
+        stepping=(internal - stored - plastic) - (work("rubbing") + friction),
         size=max(size, NOTHING * earlier, 1e-300),
         left=float(rounding + max(before.residual, now.residual) * way.sum()),
         earlier=earlier,
         elastic=now.stored,
         stabilisation=dragged,
+        plastic=plastic,
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,14 +47,13 @@ def _plane(surface: Surface) -> bool:
     return bool(len(unit) and np.linalg.norm(unit - unit[0], axis=1).max() < PLANE)
 
 
-def largest_turn(mesh: Mesh, displacement: Array) -> float:
+def largest_turn(mesh: Mesh, displacement: Array, bodies: Iterable[str] | None = None) -> float:
     """The largest turn of a body as a whole, by the rigid motion nearest to the displacement (n_points, dim) of its points,
-    radians (its tangent). Axisymmetric bodies do not turn."""
+    radians (its tangent). bodies: which, all where left out. Axisymmetric bodies do not turn."""
     if mesh.axisymmetric:
         return 0.0
-    return max(
-        (_turn(mesh.points[nodes], displacement[nodes]) for nodes in map(mesh.nodes_of, mesh.bodies)), default=0.0
-    )
+    names = mesh.bodies if bodies is None else bodies
+    return max((_turn(mesh.points[nodes], displacement[nodes]) for nodes in map(mesh.nodes_of, names)), default=0.0)
 
 
 def _turn(points: Array, moved: Array) -> float:

@@ -14,6 +14,7 @@ from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
+from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -41,7 +42,7 @@ from abut.problem.scales import scales
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, Energy, Flips, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, Flow, RigidResult, Step
 from abut.solution.state import State
 
 Acted = Acting | FiniteActing | None  # what acts at the end of a step
@@ -66,6 +67,7 @@ class _End:
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
     cycling: NDArray[np.bool_]
+    flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
 
     @property
@@ -87,7 +89,7 @@ def step_result(
     carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
     by_supports = carried.reshape(-1, model.dim)
     sampled = assembled.bodies.stress(end.motion)
-    points = model.mesh.points + end.nodal if model.finite else model.mesh.points
+    points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
     known = known_stress(model, points, state.time, balance.pairs, contacts)
@@ -122,11 +124,14 @@ def step_result(
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
         rounding=_rounding(balance, state.unknowns),
         spring=springs.force(state.unknowns) if len(springs) else None,
+        neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
-        turn=0.0 if model.finite else largest_turn(model.mesh, end.nodal),
+        turn=_turn(model, end.nodal),
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
+        remembered=remembered(solids, end.motion.history),
+        flow=end.flow,
     )
     return step, acting
 
@@ -158,19 +163,9 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     loads = assembled.loaded.forces @ balance.factors + following
     reaction = internal - loads - contact_force
     return _End(
-        problem,
-        balance,
-        state,
-        motion,
-        displacement,
-        pressures,
-        internal,
-        loads,
-        reaction,
-        following,
-        cycling,
-        supports,
-    )
+        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, cycling,
+        flow(problem.model.deformable, motion.history), supports,
+    )  # fmt: skip
 
 
 def _energy(
@@ -178,19 +173,24 @@ def _energy(
 ) -> tuple[Acted, Energy | None]:
     """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
     balance, constraints = end.balance, end.problem.constraints
-    if not attempt.converged or not any(pair.frictional for pair in balance.pairs):
+    if not attempt.converged or not (end.flow or any(pair.frictional for pair in balance.pairs)):
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
         end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads, end.reaction,
-        pressing(balance.pairs, end.pressures), tractions(balance.pairs, end.pressures), end.state.unknowns,
-        largest * max(attempt.iterations[-1].residual, TOLERANCE),
+        _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
+        largest * max(attempt.iterations[-1].residual, TOLERANCE), end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, Acting):
         acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), balance)
     history = end.state.history.of(CONTACTS)
     slips = [history[pair.contact.name] if pair.frictional else None for pair in balance.pairs]
     return now, energy(balance, acted, now, slips, contacts, _largest_size(steps))
+
+
+def _pressed(end: _End) -> NDArray[np.float64]:
+    """Nodal forces of all pressures and ties, (dim n_points,)."""
+    return pressing(end.balance.pairs, end.pressures) if end.balance.pairs else np.zeros_like(end.internal)
 
 
 def _finite_energy(
@@ -201,17 +201,31 @@ def _finite_energy(
         return None, None
     problem, balance, state = end.problem, end.balance, end.state
     histories = problem.model.histories
-    pressed = pressing(balance.pairs, end.pressures) if balance.pairs else np.zeros_like(end.internal)
+    pressed = _pressed(end)
     left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
-    now = FiniteActing(
-        end.displacement, end.internal, end.loads, end.reaction, pressed,
-        end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
-        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        drag_of(state) if is_dragged(state) else None,
-    )  # fmt: skip
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
+    now = FiniteActing(
+        end.displacement, end.internal, end.loads, end.reaction, pressed,
+        end.internal - end.loads - end.reaction - pressed, _stored(end, acted), state.unknowns,
+        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
+        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,
+    )  # fmt: skip
     return now, finite_energy(acted, now, balance.diagonal, contacts, _largest_size(steps))
+
+
+def _stored(end: _End, before: FiniteActing) -> float:
+    """Strain energy, where bodies know it; under small strains the work of stresses up to now, the same for linear ones."""
+    if end.balance.energy is not None:
+        return end.balance.energy
+    return before.stored + 0.5 * float((before.internal + end.internal) @ (end.displacement - before.displacement))
+
+
+def _turn(model: Model, displacement: NDArray[np.float64]) -> float:
+    """Largest turn of a body, where they are taken for small; rigid ones may turn by any where contact follows them."""
+    if not model.small_strains:
+        return 0.0
+    return largest_turn(model.mesh, displacement, model.materials if model.finite else model.mesh.bodies)
 
 
 def _landed(state: State) -> tuple[float, float] | None:

@@ -20,6 +20,7 @@ from abut.benchmarks import (
     friction_statics,
     hertz,
     patch,
+    plastic,
     punches,
     stability,
 )
@@ -49,5 +50,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_gears.BENCHMARKS,
         *finite_wires.BENCHMARKS,
         *finite_capstan.BENCHMARKS,
+        *plastic.BENCHMARKS,
     )
 }

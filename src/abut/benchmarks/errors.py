@@ -101,7 +101,7 @@ def _energy(slope: Array, material: Material, plane: str | None) -> Array:
     once, again = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
     strain = full[:, once, again]
     strain[:, 3:] += full[:, again, once][:, 3:]
-    stress, _, _ = law(material.evaluate, plane)(strain, material.initial(n))
+    _, (stress, _, _) = law(material.evaluate, plane)(strain, material.initial(n))
     return np.asarray((stress * strain).sum(axis=1))
 
 

@@ -8,34 +8,39 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from abut._core import block_pattern, integrate_given, integrate_isotropic
-from abut.bodies.evaluation import History, evaluate
-from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
-from abut.materials.elastic import LinearElastic, lame
-from abut.materials.hyperelastic import at_rest
-from abut.mesh.quadrature import cell_rule
+from abut._core import block_pattern
+from abut.bodies.evaluation import History
+from abut.bodies.integrate import integrate
+from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
+from abut.materials.kernel import Wanted
+from abut.materials.material import linear
 from abut.types import Operator, Sparse
 
 
 @dataclass(frozen=True)
 class Response:
     """force: (dim n_points,) of the stresses; tangent: its derivative, (dim n_points, dim n_points) CSR with sorted rows, or
-    None; history: the new one."""
+    None; history: the new one; energy: (n_cells,) elastic energy of each cell, per unit thickness in 2D, all round if
+    axisymmetric: under finite strains, and of laws in the compiled core that have a history; not a number of other bodies
+    under finite strains."""
 
     force: Array
     tangent: Operator
     history: History
+    energy: Array
 
 
 def stiffness(solids: Solids) -> Sparse:
     """Stiffness matrix of all bodies at rest, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; for constant
     materials the tangent everywhere. Finite strains begin with the same one."""
     if solids.kinematics == "finite":
-        solids = replace(solids, kinematics="small", materials={b: at_rest(m) for b, m in solids.materials.items()})
-    values = no_values(solids)
+        rest = {body: linear(material) or material for body, material in solids.materials.items()}
+        solids = replace(solids, kinematics="small", materials=rest)
+    values = _no_values(solids)
     for group in solids.groups():
-        _add(solids, group, None, UNHEATED, None, None, values)
-    return matrix_of(solids, values)
+        wanted = Wanted(tangent=(*solids.pattern, values))
+        integrate(solids, group, group.rule, None, UNHEATED, None, wanted)
+    return _matrix_of(solids, values)
 
 
 def internal_force(
@@ -59,17 +64,29 @@ def respond(
     history: History | None = None,
     tangent: bool = True,
 ) -> Response:
-    """Internal force, tangent (unless not wanted) and new history together.
+    """Internal force, tangent (unless not wanted), new history and energy together; of finite strains theory (D1), (D2).
 
-    Raises InputError for a material that returns arrays of other shapes than it should."""
-    force = np.zeros(solids.points.shape)
-    values = no_values(solids) if tangent else None
+    Raises InputError for a material that returns arrays of other shapes than it should, and Inverted."""
+    force, energy = np.zeros(solids.points.shape), np.zeros(solids.mesh.n_cells)
+    values = _no_values(solids) if tangent else None
+    entries = None if values is None else (*solids.pattern, values)
     moved = np.ascontiguousarray(displacement, dtype=float)
     after: dict[str, list[Array]] = {}
     for group in solids.groups():
-        after.setdefault(group.body, []).extend(_add(solids, group, moved, temperature, history, force, values))
-    new = {body: np.concatenate(parts) for body, parts in after.items() if body}
-    return Response(force.ravel(), matrix_of(solids, values) if values is not None else None, new)
+        unknown = group.kernel is None and solids.kinematics == "finite"
+        of_cells = np.full(len(group.cells), np.nan if unknown else 0.0)
+        wanted = Wanted(force, entries, energy=of_cells)
+        new = integrate(solids, group, group.rule, moved, temperature, history, wanted)
+        energy[group.cells] = of_cells
+        after.setdefault(group.body, []).extend(new)
+    history = {body: np.concatenate(parts) for body, parts in after.items() if body}
+    return Response(force.ravel(), _matrix_of(solids, values) if values is not None else None, history, energy)
+
+
+def is_symmetric(solids: Solids) -> bool:
+    """Whether the tangent under finite strains is symmetric: F-bar's is not, that of a law with a history need not be."""
+    alike = "b-bar" not in {solids.integration.get(body, "full") for body in solids.materials}
+    return alike and all(not group.body for group in solids.groups())
 
 
 def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:
@@ -81,47 +98,11 @@ def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:
     return -internal_force(solids, np.zeros(solids.points.shape), temperature)
 
 
-def _add(
-    solids: Solids,
-    group: Group,
-    displacement: Array | None,
-    temperature: TemperatureChange,
-    history: History | None,
-    force: Array | None,
-    values: Array | None,
-) -> list[Array]:
-    """Adds the cells of a group to force and values of the tangent, in place; returns their new history, in parts."""
-    entries = None if values is None else (*solids.pattern, values)
-    rule = cell_rule(group.kind, group.integration)
-    if not group.body:
-        integrate_isotropic(
-            group.arrays(solids, rule), moduli(solids, group), solids.plane == "stress", displacement,
-            temperature.strain(solids, group), force, entries,
-        )  # fmt: skip
-        return []
-    after = []
-    for part, (stress, slope, new) in evaluate(solids, group, rule, displacement, temperature, history):
-        integrate_given(part, stress, None if values is None else slope, force, entries)
-        after.append(new)
-    return after
-
-
-def moduli(solids: Solids, group: Group) -> Array:
-    """Lame's constants of each cell of linear elastic bodies, (cells, 2); lambda reduced in plane stress."""
-    return solids.by_cell(
-        group,
-        {
-            body: lame(m, solids.plane) if isinstance(m, LinearElastic) else (0, 0)
-            for body, m in solids.materials.items()
-        },
-    )
-
-
-def no_values(solids: Solids) -> Array:
+def _no_values(solids: Solids) -> Array:
     return np.zeros(len(solids.pattern[1]) * solids.mesh.dim**2)
 
 
-def matrix_of(solids: Solids, values: Array) -> Sparse:
+def _matrix_of(solids: Solids, values: Array) -> Sparse:
     indptr, indices = block_pattern(*solids.pattern, solids.mesh.dim)
     if len(values) < 2**31:
         indptr = indptr.astype(np.int32)

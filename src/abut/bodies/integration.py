@@ -8,7 +8,23 @@ from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.quadrature import BBAR, REDUCED
 
-INTEGRATIONS = ("full", "reduced", "b-bar")
+INTEGRATIONS = ("auto", "full", "reduced", "b-bar")
+
+
+def resolved(how: str, kinds: Iterable[str], plane: str | None, volume_preserving: bool) -> str:
+    """What "auto" means for a body of some cell types: "full", but where its material hardly changes its volume "b-bar" or
+    "reduced" if that is for all of them; plane stress does not lock."""
+    if how != "auto":
+        return how
+    for choice, known in (("b-bar", BBAR), ("reduced", REDUCED)):
+        if volume_preserving and plane != "stress" and all(kind in known and _locks(kind) for kind in kinds):
+            return choice
+    return "full"
+
+
+def _locks(kind: str) -> bool:
+    """Whether it is stiffened by material that keeps its volume: what is not a triangle or tetrahedron of second order."""
+    return not (CELLS[kind].corners == CELLS[kind].dim + 1 and CELLS[kind].degree == 2)
 
 
 def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: str) -> None:

@@ -13,9 +13,7 @@ from abut.bodies.evaluation import History
 from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.cells import CELLS
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import at_rest
-from abut.materials.material import Material
+from abut.materials.material import Material, linear
 from abut.mesh.patches import Patches
 from abut.mesh.quadrature import Rule, error_rule, superconvergent_rule
 from abut.types import Sparse
@@ -119,12 +117,12 @@ def _own(solids: Solids, of: Patches, group: Group) -> NDArray[np.int32]:
 
 def _compliance(material: Material) -> Array:
     """(6, 6), at rest."""
-    rest = at_rest(material)
-    if isinstance(rest, LinearElastic):
+    rest = linear(material)
+    if rest is not None:
         result = np.diag([1.0] * 3 + [2.0] * 3) * (1.0 + rest.poisson)
         result[:3, :3] -= rest.poisson
         return np.asarray(result / rest.young)
-    tangent = rest.evaluate(np.zeros((1, 6)), rest.initial(1))[1][0]
+    tangent = material.evaluate(np.zeros((1, 6)), material.initial(1))[1][0]
     return np.ascontiguousarray(np.linalg.pinv(tangent, hermitian=True))
 
 

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from abut._core import Cells, node_pattern, shape_functions
 from abut.cells import CELLS
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import law
-from abut.materials.material import Material
+from abut.materials.kernel import Kernel
+from abut.materials.material import Material, compiled
 from abut.mesh.mesh import Mesh
 from abut.mesh.patches import Patches, patches
 from abut.mesh.quadrature import Rule, cell_rule
@@ -75,9 +74,13 @@ class Solids:
         return tuple(self._found())
 
     def _found(self) -> Iterator[Group]:
-        keys = {
-            body: (*self._kernel(body, m), self.integration.get(body, "full")) for body, m in self.materials.items()
-        }
+        kernels, keys = {}, {}
+        for body, material in self.materials.items():
+            known = compiled(material, self.kinematics == "finite")
+            kernel = None if known is None else known.kernel
+            alone = "" if kernel is not None and kernel.together else body
+            keys[body] = alone, "" if kernel is None else kernel.name, self.integration.get(body, "full")
+            kernels[keys[body]] = kernel
         distinct = sorted(set(keys.values()))
         number = np.array([-1, *(distinct.index(key) for key in keys.values())])
         used = dict.fromkeys(distinct, 0)
@@ -86,17 +89,12 @@ class Solids:
             for i in np.unique(body_numbers[body_numbers >= 0]).tolist():
                 rows = np.flatnonzero(body_numbers == i)
                 nodes = np.ascontiguousarray(block.nodes[rows], dtype=np.int32)
-                body, law, integration = distinct[i]
-                group = Group(block.kind, nodes, first + rows, body, integration, used[distinct[i]], law)
+                body, _, integration = distinct[i]
+                group = Group(
+                    block.kind, nodes, first + rows, body, integration, used[distinct[i]], kernels[distinct[i]]
+                )
                 yield group
                 used[distinct[i]] += len(rows) * len(group.rule[1])
-
-    def _kernel(self, body: str, material: Material) -> tuple[str, int]:
-        """``body`` and ``law`` of its group."""
-        if self.kinematics == "small":
-            return "" if isinstance(material, LinearElastic) else body, 0
-        known = law(material)
-        return ("", known[0]) if known is not None else (body, 0)
 
     def by_cell(self, group: Group, values: Mapping[str, tuple[float, ...]]) -> Array:
         """A row for every cell of a group, from those of all bodies."""
@@ -105,9 +103,9 @@ class Solids:
 
 @dataclass(frozen=True)
 class Group:
-    """Cells of one type that are integrated alike: nodes (n, n_nodes), cells (n,) their numbers. body: whose material is
-    evaluated in Python; empty for linear elastic bodies, which go together. first: row of its first point in the history of
-    its body. law: of finite strains, for the compiled core."""
+    """Cells of one type that are integrated alike: nodes (n, n_nodes), cells (n,) their numbers. body: whose material it is;
+    empty for bodies that go together. first: row of its first point in the history of its body. kernel: that integrates it,
+    None: the material is evaluated in Python."""
 
     kind: str
     nodes: NDArray[np.int32]
@@ -115,7 +113,7 @@ class Group:
     body: str
     integration: str
     first: int
-    law: int = 0
+    kernel: Kernel | None = None
 
     @cached_property
     def rule(self) -> Rule:

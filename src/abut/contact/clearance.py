@@ -22,12 +22,19 @@ STEP = 1e-3  # of the facet's size: gaps of neighbouring target facets that diff
 
 
 def partly_adjusted(
-    contactor: Surface, target: Surface, closed: Coupling, adjust: float, reach: float, without: Callable[[], Coupling]
+    contactor: Surface,
+    target: Surface,
+    closed: Coupling,
+    adjust: float,
+    reach: float,
+    without: Callable[[], Coupling],
+    normals: NDArray[np.float64] | None = None,
 ) -> Coupling:
     """``closed``, in which gaps and overlaps up to ``adjust`` are none, mended on facets that have larger ones too: there
     the contactor's nodes are moved on to the target one by one, without strain, so that the gap stays continuous.
 
-    adjust, reach: lengths; closed: with gap samples; without: the same coupling with nothing adjusted."""
+    adjust, reach: lengths; closed: with gap samples; without: the same coupling with nothing adjusted; normals: at the
+    contactor's facets' nodes, (n_facets, 9, dim), as both have them."""
     if not adjust or closed.gap_samples is None:
         return closed
     gap, facets = closed.gap_samples.gap, np.arange(len(contactor))
@@ -37,7 +44,8 @@ def partly_adjusted(
     if not partly.any():
         return closed
     plain = without()
-    move = _on_to_target(contactor, target, partly, adjust, reach)
+    normals = nodal_normals(contactor) if normals is None else normals
+    move = _on_to_target(contactor, normals, target, partly, adjust, reach)
     whole = np.zeros(plain.contactor_part.shape[1])
     whole[: move.size] = move.ravel()
     rows = np.repeat(partly, MAX_FACET_NODES)
@@ -55,11 +63,15 @@ def partly_adjusted(
 
 
 def _on_to_target(
-    contactor: Surface, target: Surface, partly: NDArray[np.bool_], adjust: float, reach: float
+    contactor: Surface,
+    normals: NDArray[np.float64],
+    target: Surface,
+    partly: NDArray[np.bool_],
+    adjust: float,
+    reach: float,
 ) -> NDArray[np.float64]:
     """How nodes of some facets move, (n_points, dim): corners along their normal where their gap is at most ``adjust``, the
     others linearly between them (a parabola through two closed nodes and an open one would cut into the target)."""
-    normals = nodal_normals(contactor)
     move = np.zeros_like(contactor.points)
     for kind, facets in by_kind(contactor):
         chosen, n = facets[partly[facets]], CELLS[kind].corners

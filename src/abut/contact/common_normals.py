@@ -1,4 +1,4 @@
-"""Normals for contact with friction: between those of contactor and target, theory (R2)."""
+"""Normals of contact at small displacements: between those of contactor and target, theory (R2)."""
 
 from __future__ import annotations
 
@@ -23,16 +23,24 @@ def common_normals(
     turned by ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by
     more than at a crease. outward, other: of contactor and target, as from ``nodal_normals``; reach: length, as for
     ``couple``."""
+    if share == 0.0 or _facing_planes(contactor, outward, target, other):
+        return outward
     at = couple(
         contactor, target, 1, CouplingOptions(points=POINTS, reach=reach, keep_points=True, normals=outward)
     ).points
-    if share == 0.0 or at is None or not len(at.weight):
+    if at is None or not len(at.weight):
         return outward
     tilt = _opposite(target, other, at) - at.normal
     tilt[np.einsum("na,na->n", at.normal, at.normal + tilt) < CREASE] = 0.0
     if np.abs(tilt).max(initial=0.0) <= NO_TILT:
         return outward
     return _turned(contactor, outward, share * _at_nodes(contactor, at, tilt))
+
+
+def _facing_planes(contactor: Surface, outward: Array, target: Surface, other: Array) -> bool:
+    """Whether all normals are one, of either side."""
+    mine, theirs = outward[contactor.nodes >= 0], other[target.nodes >= 0]
+    return bool(np.abs(mine - mine[0]).max() <= NO_TILT and np.abs(theirs + mine[0]).max() <= NO_TILT)
 
 
 def _opposite(target: Surface, normals: Array, at: IntegrationPoints) -> Array:

@@ -60,12 +60,17 @@ class Averages:
         np.add.at(weight, self.shared, self.weight)
         return _divided(loads, weight)[self.shared]
 
-    def sharpened(self, average: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def sharpened(
+        self, average: NDArray[np.float64], x: NDArray[np.float64], across: NDArray[np.float64] | None = None
+    ) -> NDArray[np.float64]:
         """Averages (n_points,) of a field on all of the contactor at points x (n_points, dim), without what averaging takes
-        from a linear field: theory (P12). Of the same resultant, since what one point gains another loses."""
+        from a linear field: theory (P12). Of the same resultant, since what one point gains another loses. across:
+        (n_points, 2, dim) unit normals of planes of symmetry at points, across which there is no slope, zero elsewhere."""
         rows, mass = self._masses()
         slope, used = np.zeros_like(x), np.unique(self.corners[self.corners >= 0])
         slope[used] = self.slopes(average, used)
+        for normal in () if across is None else across.transpose(1, 0, 2):
+            slope -= (slope * normal).sum(axis=1, keepdims=True) * normal
         g, away = slope[rows], x[rows][:, :, None] - x[rows][:, None]
         gain = 0.5 * np.einsum("fij,fijd,fijd->fi", mass, away, g[:, :, None] + g[:, None])
         return np.asarray(average + _divided(self._sum(gain), self.weight))

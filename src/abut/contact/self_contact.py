@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.coupling import CouplingOptions, GapSamples, couple
 from abut.contact.geometry import facet_sizes, mean_normals, straight
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -58,6 +58,15 @@ def with_kin(mesh: Mesh, contactor: Surface, target: Surface, all_round: bool) -
     parts[0][~np.isin(codes[0], codes[1]), RANK] = -np.inf
     parts[1][~np.isin(codes[1], codes[0]), RANK] = np.inf
     return replace(contactor, kin=parts[0]), replace(target, kin=parts[1])
+
+
+def lies_deep(contactor: Surface, target: Surface, at: GapSamples | None) -> bool:
+    """Whether some of the target lies deeper in the contactor than a facet is long: it may then be seen through the body, as
+    the far flank of the tooth beside, which surfaces with ``with_kin`` leave out."""
+    if at is None or not (at.gap < 0.0).any():
+        return False
+    size = np.maximum(facet_sizes(contactor)[at.facet], facet_sizes(target)[at.target_facet])
+    return bool((at.gap < -size).any())
 
 
 def _kin(surface: Surface, body: NDArray[np.int64]) -> Array:

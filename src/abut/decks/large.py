@@ -17,6 +17,7 @@ DRAG = (
 )
 NO_DRAG = "no effect without NLGEOM; abut says which body is loose"
 KINDS = ("boundary", "force", "pressure", *BODY_LOADS, *ALLOWED)
+FLOWING = 10  # load steps of plastic bodies where the deck leaves them open
 
 
 def is_finite(deck: Deck) -> bool:
@@ -59,6 +60,17 @@ def unsupported(deck: Deck) -> Iterator[DeckError]:
             yield DeckError(
                 material.place, f"*MATERIAL '{material.name}': *HYPERELASTIC needs large strains; write *STEP, NLGEOM"
             )
+
+
+def yields(deck: Deck) -> bool:
+    """Whether a material of the deck is plastic."""
+    return any(section.material.hardening is not None for section in deck.sections)
+
+
+def plastic_steps(deck: Deck) -> SolveOptions:
+    """Load steps of plastic bodies under small displacements: those of the deck's increments, or ``FLOWING``."""
+    given = load_steps(deck)
+    return SolveOptions(steps=FLOWING) if given == SolveOptions() else given
 
 
 def load_steps(deck: Deck) -> SolveOptions:

@@ -15,7 +15,7 @@ from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.friction import friction_options, path_notes
-from abut.decks.large import finite_notes, is_finite, load_steps, unsupported
+from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
@@ -34,6 +34,7 @@ from abut.io.deck.time_histories import Course, combine, courses, scaled, times,
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material
+from abut.materials.plastic import Plastic
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
@@ -143,7 +144,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         couplings=bound,
         plane=plane,
         kinematics="finite" if finite else "small",
-        solve=load_steps(deck) if finite else _options(deck),
+        solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored, laws)
 
@@ -222,6 +223,8 @@ def _solid(name: str, piece: Piece) -> Solid:
     try:
         if material.rubber:  # C10 and D1
             law = NeoHooke(None, None, 2.0 * a, 2.0 / b, None, "isochoric", *rest)
+        elif (metal := material.hardening) is not None:
+            law = Plastic(a, b, metal.table, backstresses=metal.backstresses, density=rest[0], expansion=rest[1])
         else:
             law = LinearElastic(a, b, *rest)
     except InputError as error:

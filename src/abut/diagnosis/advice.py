@@ -178,7 +178,8 @@ def _by_deformation(solution: Solution) -> Iterator[Remedy]:
     for solid in sorted(model.solids, key=lambda solid: f"'{solid.body}'" not in step.reason):
         at = model.mesh.nodes_of(solid.body)
         if (
-            isinstance(solid.material, LinearElastic)
+            not model.small_strains
+            and isinstance(solid.material, LinearElastic)
             and np.abs(step.stress[at]).max() > STRAINED * solid.material.young
         ):
             yield Remedy(

@@ -62,6 +62,8 @@ MODEL = {
     "no limit",
     "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`; if they are "
     "meant to be one, tie them or let them share nodes",
+    "plastic strain": 'with small kinematics: kinematics = "finite"; with finite: check loads and yield stress, strains of '
+    "this size stretch cells to more than twice their length",
     "rotation": 'kinematics = "finite": lengths change by half the square of a turn that is taken for small',
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
@@ -202,7 +204,8 @@ def _left_out(contact: Contact, result: ContactResult, sides: str) -> str:
 
 def _sliding(contact: Contact, result: ContactResult, sides: str) -> str:
     return (
-        'kinematics = "finite": contact then follows the bodies; with small kinematics it stays where it was at first'
+        'kinematics = "finite", or "small-strain" where bodies are linear: contact then follows them; with small kinematics '
+        "it stays where it was at first"
     )
 
 

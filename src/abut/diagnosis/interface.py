@@ -182,21 +182,22 @@ def _bars(gap: NDArray[np.float64], area: NDArray[np.float64], flat: float) -> t
 
 
 def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding]:
-    """A target is too small where the contactor sees facets of its body that do not belong to it."""
+    """A target is too small where the contactor sees facets of its body that do not belong to it, and may come near them."""
     where = f"contact '{pair.contact.name}'"
     covered, whole = pair.coupling.covered, full_moments(pair.contactor, 0)[:, 0]
     share = float(covered.sum() / whole.sum())
     bodies = bodies_at(model.mesh, pair.target.cells)
     cells = np.concatenate([model.mesh.bodies[body] for body in bodies])
     around = model.mesh.facets(outside[np.isin(outside[:, 0], cells)], "outside of the target's body")
-    possible = _covered(pair.contactor, around, default_reach(pair.contactor, pair.target), whole)
+    opposite = _opposite(pair, around, _prescribed(model))
+    missing = float(np.clip(np.minimum(opposite, whole - covered), 0.0, None).sum() / whole.sum())
     whose = ("body " if len(bodies) == 1 else "bodies ") + words(bodies)
-    if possible - share > MISSING:
+    if missing > MISSING:
         return [
             Finding(
                 "warning",
                 where,
-                f"target {words(pair.contact.target)} is too small: {possible - share:.0%} of contactor "
+                f"target {words(pair.contact.target)} is too small: {missing:.0%} of contactor "
                 f"{words(pair.contact.contactor)} lies opposite facets of {whose} that do not "
                 "belong to it, and would sink into them",
                 _more(pair.contact),
@@ -221,14 +222,22 @@ def _cover(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Finding
     return []
 
 
-def _covered(contactor: Surface, around: Surface, reach: float, whole: NDArray[np.float64]) -> float:
-    """Share of a contactor that lies opposite a surface, but for what it lies deep inside of: that is seen from behind."""
-    at = couple(contactor, around, 0, CouplingOptions(points=1, reach=reach, keep_points=True)).points
-    if at is None:
-        return 0.0
-    near = -at.gap <= DEEP * (facet_sizes(contactor)[at.facet] + facet_sizes(around)[at.target_facet])
-    area = np.bincount(at.facet[near], at.weight[near], minlength=len(whole))
-    return float(np.minimum(area, whole).sum() / whole.sum())
+def _opposite(pair: Pair, around: Surface, moved: float | None) -> NDArray[np.float64]:
+    """Area of each contactor facet that lies opposite facets of ``around`` that are not the target's, near enough to come
+    into contact: no further than supports move bodies by (``moved``, where nothing else does), else than half a facet
+    beyond where the bodies are closest. What a facet lies deep inside of is seen from behind, and does not count."""
+    contactor, target = pair.contactor, pair.target
+    options = CouplingOptions(points=1, reach=default_reach(contactor, target), keep_points=True)
+    at = couple(contactor, around, 0, options).points
+    if at is None or not len(at.gap):
+        return np.zeros(len(contactor))
+    half = DEEP * (facet_sizes(contactor)[at.facet] + facet_sizes(around)[at.target_facet])
+    seen = -at.gap <= half
+    closest = max(float(at.gap[seen].min(initial=np.inf)), 0.0)
+    near = seen & (at.gap <= (closest + DEEP * facet_sizes(contactor)[at.facet] if moved is None else moved))
+    named = np.isin(8 * around.cells + around.local, 8 * target.cells + target.local)
+    other = near & ~named[at.target_facet]
+    return np.bincount(at.facet[other], at.weight[other], minlength=len(contactor)).astype(np.float64)
 
 
 def _more(contact: Contact) -> str:

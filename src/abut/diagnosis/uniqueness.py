@@ -39,11 +39,12 @@ class Uniqueness:
 
 def uniqueness(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Uniqueness | None:
     """For all pairs with friction together; None where the model is too large for it, has materials or contacts of other
-    kinds (ties do), a coefficient over pressure or none at all, or bodies that friction alone holds."""
+    kinds (ties do), large sliding, a coefficient over pressure or none at all, or bodies that friction
+    alone holds."""
     rubs = [pair for pair in pairs if pair.frictional]
     others = [pair for pair in pairs if not (pair.tied or _plain(pair))]
     small = constraints.free.shape[1] <= MOST[model.dim] and sum(map(len, pairs)) <= MULTIPLIERS
-    if not rubs or others or not small or not model.deformable.constant:
+    if not rubs or others or not small or model.finite or not model.deformable.constant:
         return None
     rigid = rigid_modes(model.mesh)
     supports = [

@@ -90,7 +90,7 @@ def _loads(model: Model) -> list[Finding]:
         if STRAINED > strain > UNSTRAINED:
             continue
         large = strain >= STRAINED
-        if large and model.finite:
+        if large and not model.small_strains:
             continue
         says = "more than small strains allow" if large else "which is close to zero"
         findings.append(

@@ -16,7 +16,9 @@ from abut.job.load import Job
 from abut.job.schema import JobFile
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
+from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
+from abut.materials.plastic import Plastic
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -49,7 +51,9 @@ KINDS: dict[type, str] = {
 }
 
 
-MATERIALS: dict[type, str] = {LinearElastic: "linear-elastic", NeoHooke: "neo-hooke"}
+MATERIALS: dict[type, str] = {
+    LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
+}  # fmt: skip
 
 
 def write_job(path: Path, job: Job) -> list[Path]:

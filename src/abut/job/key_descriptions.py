@@ -29,7 +29,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
-        "rotations": "surfaces, node sets and bodies that turn about an axis; finite kinematics only",
+        "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
@@ -41,7 +41,8 @@ MEANINGS: dict[str, dict[str, str]] = {
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {
         "plane": "2D only: plane strain, plane stress, or axisymmetric (x is the radius, y the axis)",
-        "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration",
+        "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration; "
+        "small-strain: linear bodies whose strains and turns are small, contact where they have moved to, however far",
     },
     "MaterialTable": {
         "kind": "the material law",
@@ -62,12 +63,36 @@ MEANINGS: dict[str, dict[str, str]] = {
         "density": "mass per undeformed volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
+    "HenckyTable": {
+        "kind": "the material law, for finite kinematics: stress linear in the logarithmic strain",
+        "young": "Young's modulus, > 0 [force/length^2]",
+        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "PlasticTable": {
+        "kind": "the material law: metal that yields (von Mises)",
+        "young": "Young's modulus, > 0 [force/length^2]",
+        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "yield_stress": "in uniaxial tension, or a table of [equivalent plastic strain, yield stress] from strain 0 on, "
+        "linear between and constant beyond; true stresses [force/length^2]",
+        "hardening": "isotropic hardening: yield stress over equivalent plastic strain, added to yield_stress "
+        "[force/length^2]",
+        "saturation": "Voce's isotropic hardening: adds saturation (1 - exp(-rate x)) at an equivalent plastic strain x "
+        "[force/length^2]",
+        "rate": "of Voce's hardening, with saturation",
+        "backstresses": "kinematic hardening: [modulus, recall] of each back stress; recall 0 is linear (Prager), else "
+        "Armstrong and Frederick's [force/length^2, 1]",
+        "density": "mass per volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
     "SolidTable": {
         "body": "name of the body in the mesh",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
         "integration": "how elements integrate their stiffness: full, reduced, or b-bar, which does not lock near Poisson's "
-        "ratio 0.5 (F-bar with kinematics finite)",
+        "ratio 0.5 (F-bar with kinematics finite); auto: full, but of plastic bodies b-bar (quad4, hex8) or reduced (quad8, "
+        "hex20)",
     },
     "SupportTable": {
         "on": "name of the surface or node set",
@@ -79,7 +104,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "PressureTable": {
         "kind": "pressure on a surface",
         "value": "positive into the body, a number or an expression [force/length^2]",
-        "follows": "finite kinematics: along the normal and on the area of the deformed surface, or (false) of the "
+        "follows": "but for small kinematics: along the normal and on the area of the deformed surface, or (false) of the "
         "undeformed one, as a dead load; the other loads are dead",
     },
     "TractionTable": {

@@ -15,10 +15,13 @@ from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.other_names import key_called, kind_said
-from abut.job.schema import EquationTable, JobFile, MaterialTable, MeshTable, NeoHookeTable
+from abut.job.schema import EquationTable, JobFile, Materials, MeshTable
 from abut.job.values import values
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
+from abut.materials.logarithmic import Hencky
+from abut.materials.material import Material
+from abut.materials.plastic import Plastic
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -56,8 +59,8 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 }  # fmt: skip
 
 
-MATERIALS: Mapping[str, Callable[..., LinearElastic | NeoHooke]] = {
-    "linear-elastic": LinearElastic, "neo-hooke": NeoHooke,
+MATERIALS: Mapping[str, Callable[..., Material]] = {
+    "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
 }  # fmt: skip
 
 
@@ -165,7 +168,7 @@ def _equation(table: EquationTable, where: str) -> Equation:
         raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
-def _material(name: str, table: MaterialTable | NeoHookeTable) -> LinearElastic | NeoHooke:
+def _material(name: str, table: Materials) -> Material:
     given = table.model_dump()
     try:
         return MATERIALS[given.pop("kind")](**given)

@@ -9,12 +9,20 @@ KEYS: Mapping[str, str] = {
     "e": "young", "youngs_modulus": "young", "elastic_modulus": "young", "modulus": "young",
     "nu": "poisson", "poissons_ratio": "poisson", "alpha": "expansion",
     "slave": "contactor", "secondary": "contactor", "master": "target", "main": "target",
+    "yield": "yield_stress", "sigma_y": "yield_stress", "sigy": "yield_stress", "sy": "yield_stress", "sig0": "yield_stress",
+    "initial_yield_stress": "yield_stress", "yield_strength": "yield_stress", "re": "yield_stress", "rp02": "yield_stress",
+    "h": "hardening", "tangent_modulus": "hardening", "hardening_modulus": "hardening", "h_iso": "hardening",
+    "isotropic_hardening": "hardening", "q": "saturation", "q_inf": "saturation", "b": "rate", "c": "backstresses",
+    "prager": "backstresses", "kinematic": "backstresses", "kinematic_hardening": "backstresses",
+    "chaboche": "backstresses", "back_stress": "backstresses", "gamma": "backstresses",
     "clearance": "offset", "interference": "offset", "increments": "steps",
 }  # fmt: skip
-YIELDS = "metal that yields is not supported: stresses beyond the yield stress are those of an elastic body"
+YIELDS = "plastic is what it is called"
 RUBBER = "of the laws for rubber there is neo-Hooke"
 KINDS: Mapping[str, str] = {
-    "plastic": YIELDS, "elastic-plastic": YIELDS, "elastoplastic": YIELDS, "j2": YIELDS, "von-mises": YIELDS,
+    "elastic-plastic": YIELDS, "elastoplastic": YIELDS, "j2": YIELDS, "von-mises": YIELDS, "vmis": YIELDS, "mises": YIELDS,
+    "vmis-isot-line": YIELDS, "vmis-isot-trac": YIELDS, "vmis-cine-line": YIELDS, "chaboche": YIELDS,
+    "logarithmic": "hencky is what it is called", "elas-hyper-log": "hencky is what it is called",
     "hyperelastic": RUBBER, "mooney-rivlin": RUBBER, "ogden": RUBBER, "yeoh": RUBBER, "arruda-boyce": RUBBER,
     "viscoelastic": "there are no materials that creep or relax",
     "orthotropic": "materials are the same in all directions", "anisotropic": "materials are the same in all directions",

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchem
 from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
+from abut.bodies.integration import INTEGRATIONS
 from abut.errors import InputError
 from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
@@ -122,11 +123,38 @@ class NeoHookeTable(Table):
     expansion: Number = 0.0
 
 
+class HenckyTable(Table):
+    kind: Literal["hencky"]
+    young: Number
+    poisson: Number
+    density: Number = 0.0
+    expansion: Number = 0.0
+
+
+Pairs = list[Annotated[list[Number], Field(min_length=2, max_length=2)]]
+
+
+class PlasticTable(Table):
+    kind: Literal["plastic"]
+    young: Number
+    poisson: Number
+    yield_stress: Number | Pairs
+    hardening: Number = 0.0
+    saturation: Number = 0.0
+    rate: Number = 0.0
+    backstresses: Pairs = []
+    density: Number = 0.0
+    expansion: Number = 0.0
+
+
+Materials = MaterialTable | NeoHookeTable | HenckyTable | PlasticTable
+
+
 class SolidTable(Table):
     body: str
     material: str
     temperature: Number = 0.0
-    integration: Literal["full", "reduced", "b-bar"] = "full"
+    integration: Annotated[str, OneOf(INTEGRATIONS)] = INTEGRATIONS[0]
 
 
 class SupportTable(Table):
@@ -340,7 +368,7 @@ class JobFile(Table):
     schema_: Literal[1] = Field(alias="schema")
     mesh: MeshTable
     model: ModelTable = ModelTable()
-    materials: dict[str, Annotated[MaterialTable | NeoHookeTable, Field(discriminator="kind")]]
+    materials: dict[str, Annotated[Materials, Field(discriminator="kind")]]
     solids: list[SolidTable]
     supports: list[SupportTable] = []
     loads: list[LoadTable] = []

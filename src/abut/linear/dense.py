@@ -13,6 +13,7 @@ from abut.errors import SingularModelError
 from abut.linear.foresight import Predict, foresight
 from abut.linear.schur_preconditioner import half_spaces, interfaces
 from abut.linear.solver import ACCURATE, Solve, Vector
+from abut.linear.transposed import coupled, dense_matrix
 from abut.problem.linearised import Linearised, Rows
 from abut.types import Array
 
@@ -39,6 +40,13 @@ class Dense:
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``."""
         return self.flexibility.step(rows, residual, pressure, float(np.abs(self.system.forces).sum()))
+
+    def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Transposable``, in the unknowns of the condensed problem."""
+        part, n = coupled(self.system, rows), len(force)
+        rhs = np.concatenate([force, gap[part.chosen]])
+        x = solve_dense(dense_matrix(self.system, part), rhs, self.flexibility.redundant)
+        return x[:n], part.complete(self.system, rows, x[:n], x[n:], gap)
 
     def factorise(self, rows: Rows) -> Solve:
         """As in ``Prepared``."""

@@ -20,6 +20,7 @@ from abut.linear.loose_motions import Loose, loose
 from abut.linear.multigrid import Hierarchy, hierarchy
 from abut.linear.schur_preconditioner import Apply, PressureBlock, pressure_block
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
+from abut.linear.transposed import Coupled, by_iterations
 from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem, Problem
@@ -72,6 +73,29 @@ class Iterative:
         if not done or not np.isfinite(solution).all():
             raise NotConverged(FAILED)
         return solution[:n], interface.multipliers(interface.columns * solution[n:])
+
+    def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Transposable``."""
+        motions = self.loose.motions
+
+        def correction(part: Coupled, inverse: Apply) -> Apply:
+            if not motions.shape[1]:
+                return lambda r: np.zeros_like(r)
+            small = compliance(part.lower @ motions, inverse, part.forces @ motions, self.loose.stiffness)
+            return lambda r: np.asarray(motions @ (small @ (motions.T @ r)))
+
+        v, q, iterations = by_iterations(
+            self.system,
+            rows,
+            self.pressures,
+            self.hierarchy.cycle,
+            correction,
+            (force, gap),
+            accuracy,
+            (RESTART, CYCLES),
+        )
+        self.count.iterations += iterations
+        return v, q
 
     def factorise(self, rows: Rows) -> None:
         """No factors are kept."""
@@ -213,4 +237,7 @@ def _covered(pair: Pair) -> Vector:
     if pair.tied:
         return np.ones(len(pair))
     whole = pair.space.transfer.T @ full_moments(pair.contactor, pair.coupling.degree).ravel()
-    return pair.of_functions(np.maximum(pair.space.weight / whole, COVERED))
+    share = np.divide(
+        pair.space.weight, whole, out=np.zeros(len(whole)), where=whole > 0.0
+    )  # none of what follows others
+    return pair.of_functions(np.maximum(share, COVERED))

@@ -12,6 +12,7 @@ from abut.linear import direct
 from abut.linear.foresight import Predict
 from abut.linear.repeated import Repeated
 from abut.linear.solver import ACCURATE, Solve, Vector
+from abut.linear.transposed import by_factors
 from abut.problem.linearised import Linearised, Rows
 from abut.types import Sparse
 
@@ -127,6 +128,10 @@ class SaddlePoint:
             return self.repeated.solve(matrix, -residual, symmetric=symmetric), pressure
         repeated = None if self.system.about is None else self.repeated
         return newton_step(self.system.stiffness, self.system.columns, rows, residual, pressure, repeated)
+
+    def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """As in ``Transposable``."""
+        return by_factors(self.system, rows, force, gap)
 
     def factorise(self, rows: Rows) -> Solve:
         """As in ``Prepared``."""

@@ -65,15 +65,28 @@ def _interface(pair: Pair, space: PressureSpace, rows: NDArray[np.int64]) -> Int
     lowest = (2.0 / extent) ** 2
     if space.name not in CONTINUOUS or not pair.coupling.mass.any():
         # No Laplacian across jumps: lumped, with the compliance of the shortest waves.
-        mass = sp.diags(space.weight, format="csr")
+        mass = sp.diags(np.where(space.weight > 0.0, space.weight, _typical(space.weight)), format="csr")
         return Interface(rows, (np.pi / pair.size) ** 2 * mass, mass, mass, pair.compliance, (np.pi / pair.size) ** 2)
     transfer, plain = space.transfer, space.plain
     products = sp.block_diag(list(pair.coupling.mass), format="csr")
-    mass = (plain.T @ products @ plain).tocsr()
-    coupled = mass if space.ordinary else (transfer.T @ products @ plain).tocsr()
+    mass, alone = _with_idle((plain.T @ products @ plain).tocsr())
+    coupled = mass if space.ordinary else (transfer.T @ products @ plain + alone).tocsr()
     slopes = sp.block_diag(list(facet_stiffness(pair.contactor, pair.coupling.degree)), format="csr")
     laplacian = (plain.T @ slopes @ plain).tocsr()
     return Interface(rows, (laplacian + lowest * mass).tocsr(), mass, coupled, pair.compliance, lowest)
+
+
+def _with_idle(mass: Sparse) -> tuple[Sparse, Sparse]:
+    """M where functions without a place on the surface (those that follow others) stand by themselves, as large as others;
+    and what that adds."""
+    diagonal = mass.diagonal()
+    alone = sp.diags(np.where(diagonal > 0.0, 0.0, _typical(diagonal)), format="csr")
+    return (mass + alone).tocsr(), alone
+
+
+def _typical(weights: NDArray[np.float64]) -> float:
+    """The median of those that are not zero, else 1."""
+    return float(np.median(weights[weights > 0.0])) if (weights > 0.0).any() else 1.0
 
 
 def _tangential(pair: Pair, normal: Interface, rows: NDArray[np.int64]) -> Interface:

@@ -72,6 +72,18 @@ class Prepared(Protocol):
         ...
 
 
+class Transposable(Prepared, Protocol):
+    """A solver that solves the transposed system, too: those of one process."""
+
+    def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
+        """(v, q) of [K, -F^T; r_u, r_p]^T (v, q) = (force, gap), (n_free,) and (n,): the system of ``solve`` transposed, F
+        being the forces by multiplier; ``accuracy`` as there.
+
+        With a quantity's derivatives by displacements and multipliers on the right-hand side, v and -q are its derivatives
+        by loads and by residuals of the laws (the adjoint). Raises what ``solve`` raises."""
+        ...
+
+
 class LinearSolver(Protocol):
     """name: for the summary; count: iterations of an iterative one, else None."""
 

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from abut import checks
+from abut._core import Hyperelastic
 from abut.errors import InputError
+from abut.materials.kernel import Compiled, HyperelasticKernel, Isotropic
 from abut.materials.material import Array, Evaluated
 
 
@@ -48,6 +50,16 @@ class LinearElastic:
     def modulus(self) -> float:
         """Young's modulus."""
         return self.young
+
+    @property
+    def linear(self) -> LinearElastic:
+        """Itself, as in ``OwnMaterial``."""
+        return self
+
+    def compiled(self, finite: bool) -> Compiled | None:
+        """As in ``OwnMaterial``; under finite strains the law of Saint Venant and Kirchhoff."""
+        law = HyperelasticKernel(Hyperelastic.SAINT_VENANT_KIRCHHOFF) if finite else Isotropic()
+        return Compiled(law, lame(self, None))
 
     def initial(self, n: int) -> Array:
         """It has no history: (n, 0)."""

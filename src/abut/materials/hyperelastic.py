@@ -7,13 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from abut import checks
+from abut._core import Hyperelastic
 from abut.errors import InputError
 from abut.materials.elastic import LinearElastic, lame
-from abut.materials.material import Array, Evaluated, Material
+from abut.materials.kernel import Compiled, HyperelasticKernel
+from abut.materials.material import Array, Evaluated
 
 VOLUMETRIC = ("square-log", "log-squared", "isochoric")
-SAINT_VENANT_KIRCHHOFF = 0
-CODES = {"log-squared": 1, "square-log": 2, "isochoric": 3}  # of the compiled core
+LAWS = {
+    "log-squared": Hyperelastic.LOG_SQUARED, "square-log": Hyperelastic.SQUARE_LOG, "isochoric": Hyperelastic.ISOCHORIC,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,11 @@ class NeoHooke:
         return False
 
     @property
+    def small(self) -> bool:
+        """False, as in ``OwnMaterial``."""
+        return False
+
+    @property
     def modulus(self) -> float:
         """Young's modulus at rest."""
         return self.linear.young
@@ -97,19 +105,10 @@ class NeoHooke:
         """As in ``Material``, for small strains."""
         return self.linear.evaluate(strain, history)
 
-
-def law(material: Material) -> tuple[int, tuple[float, float]] | None:
-    """Code of a material's law under finite strains and its two constants, as the compiled core takes them; None for users'
-    own materials, whose strains are small."""
-    if isinstance(material, LinearElastic):
-        return SAINT_VENANT_KIRCHHOFF, lame(material, None)
-    if isinstance(material, NeoHooke):
-        lambda_, mu = material.moduli
-        first = lambda_ + 2.0 * mu / 3.0 if material.volumetric == "isochoric" else lambda_
-        return CODES[material.volumetric], (first, mu)
-    return None
-
-
-def at_rest(material: Material) -> Material:
-    """What a material is under small strains."""
-    return material.linear if isinstance(material, NeoHooke) else material
+    def compiled(self, finite: bool) -> Compiled | None:
+        """As in ``OwnMaterial``."""
+        if not finite:
+            return self.linear.compiled(False)
+        lambda_, mu = self.moduli
+        first = lambda_ + 2.0 * mu / 3.0 if self.volumetric == "isochoric" else lambda_
+        return Compiled(HyperelasticKernel(LAWS[self.volumetric]), (first, mu))

@@ -2,16 +2,21 @@
 
 Components are xx yy zz xy yz zx; shear strains are doubled (engineering), so that stress times strain is work and the
 tangent of a hyperelastic material is symmetric. Axisymmetric: xx radial, yy axial, zz hoop, xy their shear. Strains are
-small and without those of temperature; plane strain has zeros out of the plane, and in plane stress the caller finds the
-strains out of the plane (``abut.materials.plane_stress``). Stress and tangent: force per area.
+those that stress, without those of temperature; plane strain has zeros out of the plane, and in plane stress the caller
+finds the strains out of the plane (``abut.materials.plane_stress``). Stress and tangent: force per area.
 """
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from abut.materials.elastic import LinearElastic
+    from abut.materials.kernel import Compiled
 
 Array = NDArray[np.float64]
 Evaluated = tuple[Array, Array, Array]  # stress (n, 6), tangent d stress / d strain (n, 6, 6), new history (n, h)
@@ -19,7 +24,10 @@ Evaluated = tuple[Array, Array, Array]  # stress (n, 6), tangent d stress / d st
 
 @runtime_checkable
 class Material(Protocol):
-    """What bodies ask of their material; every class with these will do. Points are independent of each other."""
+    """What bodies ask of their material; every class with these will do. Points are independent of each other.
+
+    What a material may have beside these is in ``OwnMaterial``, with the values of a material that has none of it.
+    """
 
     @property
     def density(self) -> float:
@@ -47,18 +55,73 @@ class Material(Protocol):
         ...
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """Stress (n, 6), tangent (n, 6, 6) and new history (n, h) at strains (n, 6), after a history (n, h) that is not
-        to be changed in place."""
+        """Stress (n, 6), tangent (n, 6, 6) and new history (n, h) at small strains (n, 6), after a history (n, h) that is
+        not to be changed in place."""
         ...
 
 
 class OwnMaterial:
-    """What a user's own material may inherit: ``evaluate``, as in ``Material``, and ``modulus`` are left to be written."""
+    """What a user's own material may inherit: ``evaluate``, as in ``Material``, and ``modulus`` are left to be written, and
+    ``evaluate_finite`` of a material for finite strains.
+
+    small: it is a law for small strains, too. volume_preserving: it flows or deforms nearly without change of volume, so
+    that "auto" integrates cells that would lock otherwise. linear: the linear elastic material that it is at rest, where it
+    is isotropic; errors and scales use it. fields: columns of the history to write, by name: ``{"damage": slice(6, 7)}``.
+    """
 
     density = 0.0
     expansion = 0.0
     constant = False
+    small = True
+    volume_preserving = False
+    linear: LinearElastic | None = None
+    fields: Mapping[str, slice] = {}
 
     def initial(self, n: int) -> Array:
         """No history: (n, 0)."""
         return np.zeros((n, 0))
+
+    def compiled(self, finite: bool) -> Compiled | None:
+        """What integrates it in the compiled core; None: it is evaluated in Python."""
+        return None
+
+
+@runtime_checkable
+class FiniteMaterial(Protocol):
+    """A material for finite strains."""
+
+    def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
+        """As ``Material.evaluate`` at strains of Green and Lagrange E = (F^T F - 1) / 2, (n, 6): the stress is the second
+        one of Piola and Kirchhoff S, the tangent dS/dE. No turn of the body reaches the law, which is objective so."""
+        ...
+
+
+def compiled(material: Material, finite: bool) -> Compiled | None:
+    """As ``OwnMaterial.compiled``, None of materials that do not say."""
+    said = getattr(material, "compiled", None)
+    return None if said is None else said(finite)
+
+
+def is_small(material: Material) -> bool:
+    """As ``OwnMaterial.small``."""
+    return bool(getattr(material, "small", True))
+
+
+def linear(material: Material) -> LinearElastic | None:
+    """As ``OwnMaterial.linear``."""
+    return getattr(material, "linear", None)
+
+
+def volume_preserving(material: Material) -> bool:
+    """As ``OwnMaterial.volume_preserving``."""
+    return bool(getattr(material, "volume_preserving", False))
+
+
+def history_fields(material: Material) -> Mapping[str, slice]:
+    """As ``OwnMaterial.fields``."""
+    return getattr(material, "fields", {})
+
+
+def is_finite(material: Material) -> bool:
+    """Whether it knows finite strains."""
+    return isinstance(material, FiniteMaterial) or compiled(material, True) is not None

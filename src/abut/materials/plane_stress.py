@@ -15,14 +15,18 @@ LIMIT = 25  # iterations; Newton's method needs one for a linear material and ab
 STRESS_LEFT = 1e-13  # stress left out of the plane, relative to tangent times strain
 
 Evaluate = Callable[[Array, Array], Evaluated]
+Strained = tuple[Array, Evaluated]  # strains (n, 6) that a material has seen, and what it said
 
 
-def law(evaluate: Evaluate, plane: str | None) -> Evaluate:
-    """A material's ``evaluate``, in plane stress with the strains out of the plane found, beginning with those given."""
-    return partial(in_plane_stress, evaluate) if plane == "stress" else evaluate
+def law(evaluate: Evaluate, plane: str | None) -> Callable[[Array, Array], Strained]:
+    """A material's ``evaluate`` with the strains, in plane stress with those out of the plane found, beginning with those
+    given."""
+    if plane == "stress":
+        return partial(in_plane_stress, evaluate)
+    return lambda strain, history: (strain, evaluate(strain, history))
 
 
-def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Evaluated:
+def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Strained:
     """As ``Material.evaluate``, but strains zz yz zx are found from zero stresses there by Newton's method; the tangent is
     that of the components in the plane, with zeros elsewhere.
 
@@ -33,7 +37,7 @@ def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Evalua
         block = tangent[:, OUT[:, None], OUT]
         scale = np.abs(tangent).max(axis=(1, 2), initial=0.0) * np.abs(strain).max(axis=1, initial=0.0)
         if (np.abs(stress[:, OUT]) <= STRESS_LEFT * scale[:, None]).all():
-            return _condensed(stress, tangent, block, after)
+            return strain, _condensed(stress, tangent, block, after)
         strain[:, OUT] -= np.linalg.solve(block, stress[:, OUT, None])[..., 0]
     raise ConvergenceError(
         f"plane stress: no strain out of the plane without stress there was found in {LIMIT} iterations; smaller load "

@@ -12,9 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import at_rest
-from abut.materials.material import Material
+from abut.materials.material import Material, linear
 from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 
@@ -26,8 +24,8 @@ def contact_modulus(material: Material | None) -> float:
     which has no material."""
     if material is None:
         return np.inf
-    material = at_rest(material)
-    poisson = material.poisson if isinstance(material, LinearElastic) else TYPICAL
+    rest = linear(material)
+    poisson = TYPICAL if rest is None else rest.poisson
     return material.modulus / (1.0 - poisson**2)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,10 +10,8 @@ from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.clockwise import clockwise
 from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
+from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
-
-if TYPE_CHECKING:
-    from abut.mesh.mesh import Mesh
 
 DEGENERATE = 1e-10  # smallest Jacobian determinant over the largest extent to the power of the dimension
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-
-if TYPE_CHECKING:
-    from abut.mesh.mesh import Mesh
+from abut.mesh.mesh import Mesh
 
 
 def order(kind: str) -> NDArray[np.int64]:

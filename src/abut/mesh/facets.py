@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.mesh.mesh import Mesh
 from abut.types import Array
-
-if TYPE_CHECKING:
-    from abut.mesh.mesh import Mesh
 
 
 def row_codes(rows: Array) -> NDArray[np.int64]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
+from abut.brief import listed
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.errors import InputError, nearest
 from abut.mesh.cell_block import CellBlock
@@ -75,6 +76,24 @@ class Mesh:
         from abut.mesh.read import read_mesh
 
         return read_mesh(cls, Path(path))
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(dict.fromkeys(block.kind for block in self.blocks))
+        where = " (r, z)" if self.axisymmetric else ""
+        return "\n".join(
+            [
+                f"Mesh: {len(self.points)} points in {self.dim}D{where}, {self.n_cells} cells ({kinds})",
+                *(
+                    f"  {what}: {listed(names)}"
+                    for what, names in (
+                        ("bodies", self.bodies),
+                        ("surfaces", self.surfaces),
+                        ("node sets", self.node_sets),
+                    )
+                    if names
+                ),
+            ]
+        )
 
     @property
     def dim(self) -> int:

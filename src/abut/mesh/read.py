@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +23,7 @@ from abut.mesh.cell_block import CellBlock
 from abut.mesh.check import check_mesh, inside
 from abut.mesh.clockwise import turn_bodies
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
-
-if TYPE_CHECKING:
-    from abut.mesh.mesh import Mesh
+from abut.mesh.mesh import Mesh
 
 Parts = Mapping[str, NDArray[np.int64]]  # cells by type: (n, n_nodes) point numbers
 READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}

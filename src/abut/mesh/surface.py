@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.cells import CELLS
 from abut.types import Array
 
 
@@ -61,6 +62,10 @@ class Surface:
             kin=None if self.kin is None else self.kin[facets],
             bulge=None if self.bulge is None else self.bulge[facets],
         )
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(cell.name for cell in CELLS.values() if cell.code in self.kinds) or "nothing"
+        return f"Surface '{self.name}': {len(self)} facets ({kinds}) in {self.dim}D, {len(self.node_ids)} nodes"
 
     def __len__(self) -> int:
         return int(self.kinds.shape[0])

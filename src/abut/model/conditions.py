@@ -183,7 +183,7 @@ def check_motion(body: Any, where: str) -> None:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations, or any with ``kinematics="finite"``: translation x, y, z of the
+    """A body that moves as a whole, by small rotations, or any but with ``kinematics="small"``: translation x, y, z of the
     ``reference`` point (length) and rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric:
     only y), times ``amplitude``, or those named in ``amplitudes`` times their own; components left out are free.
     Reference: the mean of the body's points, where left out. The body needs no material, and in contact it is the target.
@@ -221,7 +221,7 @@ class Pressure:
     """Pressure on a surface, force per area, positive into the body; a number, an expression ("0.01*(50 - y)") or a
     function of position in the undeformed mesh, points (n, dim) -> (n,).
 
-    ``follows``: with kinematics "finite" it acts along the normal of the deformed surface, on its deformed area; False: a
+    ``follows``: but with kinematics "small" it acts along the normal of the deformed surface, on its deformed area; False: a
     dead load, along the normal and on the area of the undeformed one. Without effect with kinematics "small".
 
     >>> import abut

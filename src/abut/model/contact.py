@@ -9,7 +9,7 @@ from abut.contact.laws import Law
 from abut.contact.sides import Names, code, label, normalised
 from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
-from abut.model.friction import ROUGH, Friction, checked
+from abut.model.given_friction import ROUGH, Friction, checked
 
 KINDS = ("contact", "tied", "bilateral")
 TWO_WAY = KINDS[1:]  # which carry tension as they carry pressure

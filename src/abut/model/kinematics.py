@@ -1,4 +1,4 @@
-"""Small and finite deformation: which materials go with which."""
+"""Small and finite deformation, and small strains of bodies that slide far: which materials go with which."""
 
 from __future__ import annotations
 
@@ -6,28 +6,29 @@ from collections.abc import Mapping, Sequence
 
 from abut import checks
 from abut.errors import InputError
-from abut.materials.hyperelastic import NeoHooke, law
+from abut.materials.material import is_finite, is_small
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import Equation, Support
 from abut.model.contact import METHODS, Contact
 from abut.model.solid import Solid
 
-KINEMATICS = ("small", "finite")
+KINEMATICS = ("small", "finite", "small-strain")
 
 
 def check_kinematics(kinematics: str, solids: Sequence[Solid]) -> None:
     """Raise InputError for other names than those of ``KINEMATICS``, and for materials that do not know such strains."""
     checks.choice(kinematics, "model.kinematics", KINEMATICS)
     for i, solid in enumerate(solids):
-        if kinematics == "finite" and law(solid.material) is None:
+        name = type(solid.material).__name__
+        if kinematics == "finite" and not is_finite(solid.material):
             raise InputError(
-                f"solids[{i}].material: {type(solid.material).__name__} of body '{solid.body}' is a law for small strains; "
-                'kinematics "finite" takes LinearElastic and NeoHooke'
+                f"solids[{i}].material: {name} of body '{solid.body}' is a law for small strains; give it evaluate_finite "
+                '(abut.materials.material.FiniteMaterial), or take kinematics = "small" or "small-strain"'
             )
-        if kinematics == "small" and isinstance(solid.material, NeoHooke):
+        if kinematics != "finite" and not is_small(solid.material):
             raise InputError(
-                f"solids[{i}].material: the neo-Hookean material of body '{solid.body}' is for finite strains; use "
-                'kinematics = "finite", or a linear elastic material'
+                f"solids[{i}].material: {name} of body '{solid.body}' is for finite strains; use kinematics = \"finite\", "
+                "or a linear elastic material"
             )
 
 

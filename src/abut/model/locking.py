@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from abut.cells import CELLS
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import at_rest
+from abut.materials.material import linear
 from abut.mesh.quadrature import BBAR, REDUCED
 from abut.model.model import Model
 
@@ -35,8 +34,8 @@ def locking(model: Model) -> list[Locking]:
     does not lock."""
     found = []
     for solid in model.solids if model.plane != "stress" else ():
-        material = at_rest(solid.material)
-        if solid.integration != "full" or not isinstance(material, LinearElastic):
+        material = linear(solid.material)
+        if model.integration(solid) != "full" or material is None:
             continue
         nu = material.poisson
         ratio = 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))

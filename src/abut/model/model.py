@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.bodies.integration import check_integration
+from abut.bodies.integration import check_integration, resolved
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
@@ -26,7 +26,7 @@ from abut.contact.sides import (
     words,
 )
 from abut.errors import InputError
-from abut.materials.material import Material
+from abut.materials.material import Material, volume_preserving
 from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Load
@@ -55,7 +55,8 @@ class Model:
     one of ``solids`` or ``rigid``.
 
     ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
-    forces and pressures in the deformed configuration; theory (D1)).
+    forces and pressures in the deformed configuration; theory (D1)), or "small-strain" (bodies as with "small"; contact,
+    loads and rigid bodies as with "finite", where bodies have moved to; theory (D17)).
 
     >>> import abut
     >>> from abut.mesh import make
@@ -125,13 +126,23 @@ class Model:
     @cached_property
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
-        integration = {solid.body: solid.integration for solid in self.solids}
-        return Solids(self.mesh, self.materials, self.plane, integration, self.kinematics)
+        integration = {solid.body: self.integration(solid) for solid in self.solids}
+        return Solids(self.mesh, self.materials, self.plane, integration, "small" if self.small_strains else "finite")
+
+    def integration(self, solid: Solid) -> str:
+        """Of one of the solids, "auto" resolved."""
+        flows = volume_preserving(solid.material)
+        return resolved(solid.integration, self._kinds(solid.body), self.plane, flows)
 
     @property
     def finite(self) -> bool:
-        """Whether deformations may be finite."""
-        return self.kinematics == "finite"
+        """Whether displacements may be: contact, loads and rigid bodies are where bodies have moved to."""
+        return self.kinematics != "small"
+
+    @property
+    def small_strains(self) -> bool:
+        """Whether strains and turns of deforming bodies are taken for small, theory (D17) if they slide far."""
+        return self.kinematics != "finite"
 
     @property
     def dim(self) -> int:

@@ -16,7 +16,7 @@ from abut.model.conditions import Amplitude, History, Support
 
 @dataclass(frozen=True)
 class Rotation:
-    """All points of a surface, node set or body turn about an axis, exactly on their arcs; for kinematics "finite".
+    """All points of a surface, node set or body turn about an axis, exactly on their arcs; not for kinematics "small".
 
     angle: radians, times ``amplitude``, counterclockwise seen against ``axis``; centre: a point of the axis (length); axis:
     its direction in 3D, of any length; left out in 2D.
@@ -70,7 +70,7 @@ def check_rotations(
         checks.known(
             rotation.on, [*mesh.surfaces, *mesh.node_sets, *mesh.bodies], f"{where}.on", "surface, node set or body"
         )
-        if kinematics != "finite":
+        if kinematics == "small":
             raise InputError(f'{where}: rotations are finite; use kinematics = "finite", or a rigid body')
         if mesh.axisymmetric:
             raise InputError(f"{where}: an axisymmetric model cannot turn; take the rotation out")

@@ -14,15 +14,17 @@ from abut.materials.material import Material
 class Solid:
     """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
 
-    ``integration`` of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
+    ``integration`` of its cells: "auto" (full, but of plastic bodies "b-bar" or "reduced" where their cells would lock);
+    "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
     wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under
     finite deformation, theory (D7)).
-    ``material``: ``LinearElastic``, ``NeoHooke``, or one of your own (``abut.materials.material.OwnMaterial``)."""
+    ``material``: ``LinearElastic``, ``Plastic``, ``NeoHooke``, ``Hencky``, or one of your own
+    (``abut.materials.material.OwnMaterial``)."""
 
     body: str
     material: Material
     temperature: float = 0.0
-    integration: str = "full"
+    integration: str = "auto"
 
     def __post_init__(self) -> None:
         checks.choice(self.integration, f"solid '{self.body}': integration", INTEGRATIONS)

@@ -15,6 +15,7 @@ from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.stabilised import led_on, stabilised
+from abut.nonlinear.unsettled import gives_way
 from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.solution.state import State
@@ -85,9 +86,9 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     where = hanging(setting.problem, before, failed.cycling)
     away = lifted(setting.problem.ahead(before, time), before)
     more = "" if away or goal is None else overcome(setting.problem.ahead(before, goal))
-    return [
-        replace(failed, reason="; ".join(filter(None, (failed.reason, where, away, more, led.attempts[-1].reason))))
-    ]
+    law = gives_way(setting.problem, failed.reason)
+    told = (failed.reason, law, where, away, more, led.attempts[-1].reason)
+    return [replace(failed, reason="; ".join(filter(None, told)))]
 
 
 def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:

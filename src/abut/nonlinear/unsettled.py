@@ -1,4 +1,5 @@
-"""Where an iteration leaves most open, at large displacements, and whether iterations go round in a circle."""
+"""Where an iteration leaves most open, at large displacements, whether iterations go round in a circle, and whether a
+material has given way."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.materials.elastic import LinearElastic
 from abut.nonlinear.hanging import cured, place
 from abut.problem.finite import FiniteProblem
 
@@ -38,3 +40,19 @@ def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
         return f"most in contact '{name}'"
     cure = cured(pair, np.array([node]))
     return f"most in contact '{name}' at {place(problem, node)} in the undeformed mesh{cure}"
+
+
+def gives_way(problem: FiniteProblem, reason: str) -> str:
+    """What to say where cells of a linear elastic body have turned inside out, as the ``reason`` of a failed step says;
+    empty elsewhere. Its law is Saint Venant-Kirchhoff's, whose stiffness in compression falls to none: under uniaxial
+    strain at a stretch of 1 / sqrt(3)."""
+    if "turns inside out" not in reason:
+        return ""
+    for solid in problem.model.solids:
+        if f"of body '{solid.body}'" in reason and isinstance(solid.material, LinearElastic):
+            return (
+                f"body '{solid.body}' is linear elastic, by Saint Venant-Kirchhoff's law at large strains, which gives "
+                'way where it is pressed to about half its length: NeoHooke (kind = "neo-hooke") with the same constants '
+                "does not"
+            )
+    return ""

@@ -20,9 +20,10 @@ ARRAYS = {  # what a file may hold of the bodies, by its key
     "principal-stress": "principal_stress",
     "stress-error": "stress_error",
 }
+MATERIAL = "material"  # what materials remember, such as plastic strains
 CONTACT = "contact"  # the files of contact surfaces
-FIELDS = (*ARRAYS, CONTACT)
-USUAL = ("displacement", "stress", "von-mises", "stress-error", CONTACT)
+FIELDS = (*ARRAYS, MATERIAL, CONTACT)
+USUAL = ("displacement", "stress", "von-mises", "stress-error", MATERIAL, CONTACT)
 STEPS = ("all", "last")
 
 
@@ -68,7 +69,7 @@ class Output:
     @property
     def bodies(self) -> bool:
         """Whether the fields of bodies are written."""
-        return any(name in self.fields for name in ARRAYS)
+        return any(name in self.fields for name in (*ARRAYS, MATERIAL))
 
     @property
     def contacts(self) -> bool:
@@ -81,6 +82,8 @@ class Output:
         if "principal-stress" in self.fields:
             known = {**known, "principal_stress": principal(known["stress"])}
         left_out = {array for name, array in ARRAYS.items() if name not in self.fields}
+        if MATERIAL not in self.fields:
+            left_out |= known.keys() - set(ARRAYS.values())
         return single(
             replace(
                 grid,

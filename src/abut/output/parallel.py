@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
@@ -42,7 +42,7 @@ class Pieces:
         arguments = [
             (
                 folder.absolute() / piece_name(step.number, process), step.displacement[p.points], step.stress[p.points],
-                None if error is None else error[p.cells], output,
+                None if error is None else error[p.cells], {k: v[p.points] for k, v in step.remembered.items()}, output,
             )
             for process, p in enumerate(dealt)
         ]  # fmt: skip
@@ -62,6 +62,7 @@ def write_piece(
     displacement: NDArray[np.float64],
     stress: NDArray[np.float64],
     error: NDArray[np.float64] | None,
+    remembered: Mapping[str, NDArray[np.float64]],
     output: Output,
 ) -> dict[str, list[tuple[str, str, int]]] | InputError | None:
     """Write this process's part of the mesh with displacement (n_points, dim) and stress (n_points, 6) at its points and the
@@ -72,7 +73,7 @@ def write_piece(
     mesh: Mesh = store["part"].mesh
     if mesh.n_cells == 0:
         return None
-    grid = output.of_bodies(field_grid(mesh, displacement, stress, error))
+    grid = output.of_bodies(field_grid(mesh, displacement, stress, error, remembered))
     try:
         write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
     except InputError as error:

@@ -21,6 +21,7 @@ from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
 from abut.solution.state import CLOSED, OPEN, SLIPPING
 
 FOLDER = "restart"
+SCHEMA = 3  # of the files
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY = "history."  # what the names of the other ones begin with
 COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
@@ -64,7 +65,7 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
     folder = directory / FOLDER
     make_directory(folder)
     head = {
-        "schema": 3,
+        "schema": SCHEMA,
         "abut": abut.__version__,
         "number": saved.number,
         "linear": saved.linear,
@@ -100,7 +101,9 @@ def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[Stat
     sound = all(values.dtype == float and np.isfinite(values).all() for values in (unknowns, multipliers, largest))
     if not (sound and status.dtype == np.int8 and np.isin(status, (OPEN, CLOSED, SLIPPING)).all()):
         raise ValueError("not the arrays of a state")
-    if not (unknowns.ndim == 1 and multipliers.shape == status.shape and inside.dtype == bool and 0.0 < time <= 1.0):
+    if not (unknowns.ndim == 1 and multipliers.shape == status.shape == inside.shape == (len(status),)):
+        raise ValueError("not the arrays of a state")
+    if not (inside.dtype == bool and 0.0 < time <= 1.0):
         raise ValueError("not the arrays of a state")
     state = State(time, **arrays, history=History(history), largest=Largest(*map(float, largest)))
     return state, inside
@@ -154,6 +157,8 @@ def _read(path: Path) -> tuple[Saved, str, dict[str, str]]:
         parts = [(*_state(data, data.files, f"part{i}."), count) for i, count in enumerate(head["parts"])]
     rows = tuple(Iteration(**row) for row in head["iterations"])
     texts = [head["abut"], head["linear"], *head["model"].keys(), *head["model"].values()]
+    if type(head["schema"]) is not int or head["schema"] != SCHEMA:
+        raise ValueError("not a file of this form")
     counts = [head["number"], *head["parts"], *(getattr(row, name) for row in rows for name in COUNTS)]
     sizes = [getattr(row, name) for row in rows for name in SIZES]
     if not (rows and all(type(text) is str for text in texts) and all(type(n) is int and n >= 0 for n in counts)):

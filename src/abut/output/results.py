@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
-from abut.io.atomic import make_directory, write_text
+from abut.io.atomic import write_text
 from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
@@ -32,6 +32,7 @@ from abut.output.contact_rows import (
 )
 from abut.output.earlier import INDEX, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
+from abut.output.lock import Lock
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
 from abut.solution import Solution, Step
@@ -53,7 +54,7 @@ def write(
     likewise for each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the
     report; steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields of
     a step; output: which steps and fields have VTU files.
-    Raises InputError where the directory cannot be written.
+    Raises InputError where the directory cannot be written, or a run writes there.
 
     >>> from tempfile import TemporaryDirectory
     >>> import abut
@@ -70,7 +71,22 @@ def write(
     ['fields.pvd', 'fields_0001.vtu', 'forces.csv', 'history.csv', 'report.html', 'run.jsonl', 'summary.json']
     """
     folder = Path(directory)
-    make_directory(folder)
+    lock = Lock(folder)
+    try:
+        return write_held(solution, folder, origin, steps, fields, output)
+    finally:
+        lock.release(empty=True)
+
+
+def write_held(
+    solution: Solution,
+    folder: Path,
+    origin: Origin | None,
+    steps: Sequence[Step] | None,
+    fields: WriteFields,
+    output: Output,
+) -> Path:
+    """``write`` to a directory that the caller holds the lock of."""
     write_steps(folder, solution, solution.steps if steps is None else steps, fields, output)
     write_index(folder, solution, output)
     shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
@@ -197,6 +213,7 @@ def _step_summary(step: Step) -> Json:
         ],
         **energy_summary(step),
         **_stress_error(step),
+        **_flow(step),
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
@@ -212,6 +229,13 @@ def _step_summary(step: Step) -> Json:
             for place in unsettled(step)
         ],
     }
+
+
+def _flow(step: Step) -> Json:
+    flow = step.flow
+    if flow is None:
+        return {}
+    return {"flow": {"largest": flow.largest, "body": flow.body, "place": flow.place.tolist(), "work": flow.work}}
 
 
 def _stress_error(step: Step) -> Json:

@@ -15,7 +15,7 @@ from abut.output.fields import WriteFields, write_fields
 from abut.output.lock import Lock
 from abut.output.options import EVERYTHING, Output
 from abut.output.restart import clear, load_steps, save_step
-from abut.output.results import is_written, write, write_index, write_steps
+from abut.output.results import is_written, write_held, write_index, write_steps
 from abut.report import Origin
 from abut.solution import Iteration, Phase, Saved, Solution, Step
 
@@ -104,7 +104,7 @@ class Stream:
         """Write what is still to be written, and the report, which says where the job comes from (``origin``); restart data
         stay only where there is something left to do."""
         self._make_room()
-        write(solution, self.directory, origin, self._missing(solution), self._fields, self._output)
+        write_held(solution, self.directory, origin, self._missing(solution), self._fields, self._output)
         self._written.add(len(solution.steps))
         if solution.converged and solution.complete:
             clear(self.directory)

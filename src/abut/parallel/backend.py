@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeGuard
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import PointStress
 from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
 from abut.contact.moving_normals import MovingNormals
-from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
@@ -47,7 +47,8 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        arguments = [(replace(self.model.deformable, mesh=piece.mesh),) for piece in self.pieces]
+        again = self.model.finite  # iterations ask for it anew
+        arguments = [(replace(self.model.deformable, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)
         return self
 
@@ -85,7 +86,8 @@ class DistributedBodies:
         return self.reduced("stiffness", constraints)
 
     def reduced(self, tangent: str | int, constraints: Constraints) -> Distributed:
-        """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose."""
+        """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose, but for the
+        stiffness of a model whose iterations need it again."""
         places, kept = self._laid_out(constraints), self.team.keep()
         self.team.each(reduce, tangent, kept.number, places.starts, places.block)
         return Distributed(self.team, places, kept)
@@ -109,9 +111,11 @@ class DistributedBodies:
         self.told[:] = [(constraints, places)]
         return places
 
-    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
+    def stress(
+        self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
+    ) -> PointStress:
         """As in ``Backend``, gathered from all processes."""
-        answers = self.team.each(part.stresses, change.bodies, per_rank=self._moved(displacement, change))
+        answers = self.team.each(part.stresses, change.bodies, per_rank=self._moved(displacement, change, history))
         self._require_sound(answers)
         groups = self.model.deformable.groups()
         result = [np.empty((len(group.cells), len(group.rule[1]), 6)) for group in groups]
@@ -125,32 +129,69 @@ class DistributedBodies:
                     result[one][rows[number == one]] = values[number == one]
         return tuple(result)
 
-    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
+    def deform(
+        self,
+        displacement: NDArray[np.float64],
+        change: TemperatureChange,
+        history: History | None = None,
+        tangent: bool = True,
+    ) -> Deformed:
         """As in ``Backend``."""
         kept = self.team.keep() if tangent else None
         answers = self.team.each(
             part.deform,
             None if kept is None else kept.number,
             change.bodies,
-            per_rank=self._moved(displacement, change),
+            per_rank=self._moved(displacement, change, history),
         )
         self._require_sound(answers)
-        force = self.summed([force for force, _ in answers], displacement.ravel())
+        force = self.summed([force for force, _, _ in answers], displacement.ravel())
         slope = None if kept is None else TangentOfParts(self, kept)
-        return Deformed(force, slope, sum(energy for _, energy in answers))
+        after = self._gathered([history for _, _, history in answers])
+        return Deformed(force, slope, sum(energy for _, energy, _ in answers), after)
 
     def _moved(
-        self, displacement: NDArray[np.float64], change: TemperatureChange
-    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64] | None]]:
-        heated = change.nodes
-        return [(displacement[p.points], None if heated is None else heated[p.points]) for p in self.pieces]
+        self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64] | None, History]]:
+        heated, rows = change.nodes, self.history_rows
+        parts = [{body: values[r[body]] for body, values in (history or {}).items() if body in r} for r in rows]
+        return [
+            (displacement[p.points], None if heated is None else heated[p.points], own)
+            for p, own in zip(self.pieces, parts)
+        ]
+
+    @cached_property
+    def history_rows(self) -> list[dict[str, NDArray[np.int64]]]:
+        """For each process its rows of the histories of all bodies that have one, in its own order."""
+        start = np.zeros(self.model.mesh.n_cells, dtype=np.int64)
+        for group in self.model.deformable.groups():
+            start[group.cells] = group.first + np.arange(len(group.cells)) * len(group.rule[1])
+        result = []
+        for piece in self.pieces:
+            rows: dict[str, list[NDArray[np.int64]]] = {}
+            for group in replace(self.model.deformable, mesh=piece.mesh).groups() if len(piece.cells) else ():
+                first = start[piece.cells[group.cells]]
+                rows.setdefault(group.body, []).append((first[:, None] + np.arange(len(group.rule[1]))).ravel())
+            result.append({body: np.concatenate(parts) for body, parts in rows.items() if body})
+        return result
+
+    def _gathered(self, parts: Sequence[History]) -> History:
+        """The histories of all bodies from those of each process."""
+        result: dict[str, NDArray[np.float64]] = {}
+        for rows, history in zip(self.history_rows, parts):
+            for body, values in history.items():
+                if body not in result:
+                    n = sum(len(r[body]) for r in self.history_rows if body in r)
+                    result[body] = np.empty((n, values.shape[1]))
+                result[body][rows[body]] = values
+        return result
 
     def _require_sound(self, answers: Sequence[object]) -> None:
         """Raises Inverted for the first cell in the whole mesh that is inside out, as one process would."""
         unsound = [
-            (int(piece.cells[answer[0]]), *answer[1:])
+            (int(piece.cells[answer.cell]), answer.body, answer.determinant)
             for piece, answer in zip(self.pieces, answers)
-            if _inside_out(answer)
+            if isinstance(answer, part.InsideOut)
         ]
         if unsound:
             raise Inverted(*min(unsound))
@@ -174,17 +215,8 @@ class TangentOfParts:
         return self.bodies.reduced(self.kept.number, constraints)
 
 
-def _inside_out(answer: object) -> TypeGuard[part.InsideOut]:
-    return isinstance(answer, tuple) and len(answer) == 3
-
-
 def deal_out(model: Model, team: Team) -> DistributedBodies:
-    """Divide the cells of a model among the processes of a team. Raises InputError for materials that they do not know."""
-    if not (model.deformable.constant or model.finite):
-        raise InputError(
-            'solve.linear "petsc" and several processes know, of materials under small strains, linear elastic ones only; '
-            'run without mpiexec, with linear = "auto"'
-        )
+    """Divide the cells of a model among the processes of a team."""
     owner = owners(model.mesh, team)
     points = point_owners(model.mesh, owner)
     dealt = pieces(model.mesh, owner, team.size, points)

@@ -18,13 +18,16 @@ LAUNCHERS = (  # what each tells its processes: how many there are, and which on
 )
 DEBIAN = Path("/usr/lib/petscdir")  # petsc4py of Debian and Ubuntu is in here, for PETSC_DIR to choose
 PYTHON = Path("lib/python3/dist-packages")
-RECIPE = """it takes petsc4py and mpi4py, which belong to an MPI and are not on PyPI ready to use:
+BUNDLE = "dolfinx_solver"  # of PyPI's dolfinx-solver-real: PETSc, petsc4py and MPICH in wheels, in that order
+RECIPE = """it takes petsc4py and mpi4py, which belong to an MPI:
+  Linux on x86-64, Python 3.12 or newer, in an environment of its own:
+                  pip install ".[mpi]"      (in abut's folder)
   Debian, Ubuntu: apt-get install python3-petsc4py python3-mpi4py python3-venv
                   export PETSC_DIR=$(echo /usr/lib/petscdir/petsc3*/*-real)
                   /usr/bin/python3 -m venv --system-site-packages mpi
-                  mpi/bin/pip install ".[mpi]" "numpy<2"      (in abut's folder)
+                  mpi/bin/pip install . "numpy<2"      (in abut's folder)
   conda:          conda install -c conda-forge petsc4py mpi4py
-                  pip install ".[mpi]"
+                  pip install .
 (docs/mpi.md says more)"""
 
 
@@ -49,6 +52,7 @@ def _told() -> tuple[int, int]:
 def require() -> None:
     """Raise InputError, with what to install, where petsc4py or mpi4py are missing, do not fit, or know of other processes
     than were started. Starts MPI."""
+    _bundle()
     try:
         library = importlib.import_module("petsc4py.lib").ImportPETSc()  # unlike petsc4py.PETSc, does not start PETSc
     except (ImportError, AttributeError, ValueError) as error:  # the latter two: compiled for another NumPy
@@ -67,6 +71,18 @@ def require() -> None:
             f"{processes()} processes were started, but mpi4py knows of {world.size}: mpiexec belongs to another MPI than "
             "mpi4py; use the mpiexec that was installed with it"
         )
+
+
+def _bundle() -> None:
+    """Import the package that brings PETSc in wheels, where there is one: it loads its MPI before what is bound to it.
+    Raises InputError with its own words where another petsc4py or MPI is in its way."""
+    try:
+        importlib.import_module(BUNDLE)
+    except ModuleNotFoundError as error:
+        if error.name != BUNDLE:
+            raise InputError(f"{_missing('dolfinx-solver-real', error)}: install it anew") from None
+    except ImportError as error:
+        raise InputError(f"dolfinx-solver-real cannot be used: {' '.join(str(error).split())}") from None
 
 
 def unused(options: Sequence[str]) -> list[str]:

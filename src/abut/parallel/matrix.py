@@ -96,14 +96,15 @@ def tell(store: Store, slot: NDArray[np.int64], free: Sparse) -> None:
 def reduce(store: Store, tangent: str | int, into: int, starts: NDArray[np.int64], block: int) -> None:
     """Build PETSc's matrix of a tangent stiffness on the free displacements and keep it under the number ``into``.
 
-    tangent: where the part's own is; it goes, to make room. starts, block: as in ``Layout``. Rows at the border between
-    parts get what the others have of them."""
+    tangent: where the part's own is; it goes, to make room, unless it is to be reduced again. starts, block: as in
+    ``Layout``. Rows at the border between parts get what the others have of them."""
     from petsc4py import PETSc
 
     comm = PETSc.COMM_WORLD
     slot, free = store["variables"]
     first, last = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1]))
-    rows = _own_rows(store.pop(tangent), slot, free, block, starts // block, comm.tompi4py()).tocsr()
+    own = store[tangent] if tangent == "stiffness" and store["again"] else store.pop(tangent)
+    rows = _own_rows(own, slot, free, block, starts // block, comm.tompi4py()).tocsr()
     if block == 1:
         rows = _with_diagonal(rows, first)
     matrix = matrix_of(rows, comm)

@@ -4,24 +4,32 @@ Cells that turn inside out are returned, not raised: the others would wait for a
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import internal_force, stiffness
-from abut.bodies.finite import respond_finite
+from abut.bodies.assemble import internal_force, respond, stiffness
+from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.parallel.team import Store
 
-InsideOut = tuple[int, str, float]  # number of a cell of the part, body, determinant of the deformation gradient
+
+class InsideOut(NamedTuple):
+    """Number of a cell of the part, body, determinant of the deformation gradient."""
+
+    cell: int
+    body: str
+    determinant: float
 
 
-def assemble(store: Store, part: Solids) -> None:
-    """Keep the part and the stiffness of its cells over its points."""
+def assemble(store: Store, part: Solids, again: bool = False) -> None:
+    """Keep the part and the stiffness of its cells over its points; again: also when it has been reduced."""
     n = part.mesh.points.size
-    store["part"] = part
+    store["part"], store["again"] = part, again
     store["stiffness"] = stiffness(part) if part.mesh.n_cells else sp.csr_matrix((n, n))
 
 
@@ -43,13 +51,14 @@ def stresses(
     temperatures: dict[str, float],
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64] | None,
+    history: History,
 ) -> tuple[PointStress, list[NDArray[np.int64]]] | InsideOut:
     """Stresses at the integration points of this part's groups of cells, and the numbers of these cells in the part."""
     part: Solids = store["part"]
     try:
-        stress = point_stress(part, displacement, TemperatureChange(temperatures, nodal))
+        stress = point_stress(part, displacement, TemperatureChange(temperatures, nodal), history)
     except Inverted as error:
-        return error.cell, error.body, error.determinant
+        return InsideOut(error.cell, error.body, error.determinant)
     return stress, [group.cells for group in part.groups()]
 
 
@@ -59,22 +68,24 @@ def deform(
     temperatures: dict[str, float],
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], float] | InsideOut:
-    """Nodal forces (dim n_points,) and elastic energy of this part under finite strains; its tangent is kept under
-    ``number``, None for none."""
+    history: History,
+) -> tuple[NDArray[np.float64], float, History] | InsideOut:
+    """Nodal forces (dim n_points,), elastic energy and new history of this part; its tangent is kept under ``number``, None
+    for none."""
     part: Solids = store["part"]
     n = part.mesh.points.size
     if not part.mesh.n_cells:
         if number is not None:
             store[number] = sp.csr_matrix((n, n))
-        return np.zeros(n), 0.0
+        return np.zeros(n), 0.0, {}
     try:
-        response = respond_finite(part, displacement, TemperatureChange(temperatures, nodal), number is not None)
+        change = TemperatureChange(temperatures, nodal)
+        response = respond(part, displacement, change, history, number is not None)
     except Inverted as error:
-        return error.cell, error.body, error.determinant
+        return InsideOut(error.cell, error.body, error.determinant)
     if number is not None:
         store[number] = response.tangent
-    return response.force, float(response.energy.sum())
+    return response.force, float(response.energy.sum()), response.history
 
 
 def product(store: Store, number: int, values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,11 +16,11 @@ from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import Pair, pairs
 from abut.problem.finite import finite_problem
-from abut.problem.finite_bodies import FiniteBodies
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
+from abut.problem.neutral_motions import neutral_motions
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
@@ -59,7 +59,10 @@ def assemble(
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
     restrained = restraint(model.mesh, constraints, every)
-    springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model))
+    neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, every)
+    springs = free_mode_springs(
+        restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral
+    )
     for text in springs.notes:
         note(text)
     restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)
@@ -71,11 +74,10 @@ def assemble(
     n_free = reduced.shape[0]
     constant = model.deformable.constant
     bodies: Bodies
-    if model.finite:
-        bodies = FiniteBodies(model, loaded, backend)
+    if constant:
+        bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
-        linear = LinearBodies(backend, loaded, model.histories, model.temperatures)
-        bodies = linear if constant else SolidBodies(model, loaded)
+        bodies = SolidBodies(model, loaded, backend)
     problem = ContactProblem(
         model=model,
         terms=(
@@ -93,6 +95,9 @@ def assemble(
         unit=unit_of(reduced) if constant else 0.0,
     )
     problem = finite_problem(problem, backend.differentiate) if model.finite else problem
+    for solid in model.solids:
+        if solid.integration == "auto" and (how := model.integration(solid)) != "full":
+            note(f"body '{solid.body}': integration = \"{how}\", as plastic flow would lock its cells otherwise")
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import stiffness
-from abut.bodies.finite import respond_finite
+from abut.bodies.assemble import respond, stiffness
+from abut.bodies.evaluation import History
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
@@ -36,12 +36,14 @@ class Tangent(Protocol):
 
 @dataclass(frozen=True)
 class Deformed:
-    """Bodies under finite strains. force: (dim n_points,) of the stresses; tangent: its derivative, where it was asked for;
-    energy: elastic, of all bodies (per unit thickness in 2D)."""
+    """Bodies at a displacement. force: (dim n_points,) of the stresses; tangent: its derivative, where it was asked for;
+    energy: elastic, of all bodies (per unit thickness in 2D), as in ``abut.bodies.assemble.Response``; history: the new
+    one."""
 
     force: NDArray[np.float64]
     tangent: Tangent | None
     energy: float
+    history: History
 
 
 class Backend(Tangent, Protocol):
@@ -58,12 +60,20 @@ class Backend(Tangent, Protocol):
         """The same at current positions with its derivatives, as ``abut.contact.coupling_tangent.differentiated``."""
         ...
 
-    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
+    def stress(
+        self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
+    ) -> PointStress:
         """At the integration points under displacements (n_points, dim), as ``abut.bodies.stress.point_stress``."""
         ...
 
-    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
-        """Under finite strains, at displacements (n_points, dim). Raises ``abut.bodies.finite.Inverted``."""
+    def deform(
+        self,
+        displacement: NDArray[np.float64],
+        change: TemperatureChange,
+        history: History | None = None,
+        tangent: bool = True,
+    ) -> Deformed:
+        """At displacements (n_points, dim), after a history. Raises ``abut.bodies.inverted.Inverted``."""
         ...
 
 
@@ -93,15 +103,23 @@ class Serial:
         """As in ``Backend``, CSR."""
         return constraints.reduce(self.matrix)
 
-    def stress(self, displacement: NDArray[np.float64], change: TemperatureChange) -> PointStress:
+    def stress(
+        self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
+    ) -> PointStress:
         """As in ``Backend``."""
-        return point_stress(self.model.deformable, displacement, change)
+        return point_stress(self.model.deformable, displacement, change, history)
 
-    def deform(self, displacement: NDArray[np.float64], change: TemperatureChange, tangent: bool = True) -> Deformed:
+    def deform(
+        self,
+        displacement: NDArray[np.float64],
+        change: TemperatureChange,
+        history: History | None = None,
+        tangent: bool = True,
+    ) -> Deformed:
         """As in ``Backend``."""
-        response = respond_finite(self.model.deformable, displacement, change, tangent)
+        response = respond(self.model.deformable, displacement, change, history, tangent)
         slope = Serial(self.model, response.tangent) if tangent else None
-        return Deformed(response.force, slope, float(response.energy.sum()))
+        return Deformed(response.force, slope, float(response.energy.sum()), response.history)
 
 
 def serial(model: Model) -> Serial:

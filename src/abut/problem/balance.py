@@ -22,7 +22,7 @@ class Balance:
 
     factors: (n_histories,) of the histories; pairs: as they lie; gap: (n,) weighted gaps and slips; diagonal: (n_free,) of
     the stiffness; forces: by term, (dim n_points,) as in ``Share``, empty where the problem is constant; energy: elastic,
-    of all terms.
+    of all terms, None where none knows it.
     """
 
     factors: Vector
@@ -30,13 +30,14 @@ class Balance:
     gap: Vector
     diagonal: Vector
     forces: Mapping[str, Vector]
-    energy: float
+    energy: float | None
 
     @classmethod
     def of(cls, system: Linearised, state: State) -> Balance:
         """Of the problem near ``state``, nothing condensed."""
         forces = {name: share.force for name, share in system.shares.items()}
-        energy = sum(share.energy for share in system.shares.values())
+        known = [share.energy for share in system.shares.values() if share.energy is not None]
+        energy = sum(known) if known else None
         return cls(system.factors, system.pairs, system.gap(state), system.stiffness.diagonal(), forces, energy)
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:

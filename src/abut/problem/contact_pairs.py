@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.cells import CELLS
 from abut.contact.coupling import Couple, Coupling, couple, default_reach
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
@@ -19,10 +20,12 @@ from abut.contact.pressure_space import (
     with_plain_facets,
 )
 from abut.contact.rim import Rim, ends_on_target, goes_on, rim, rim_of_sides
+from abut.contact.self_contact import lies_deep, with_kin
 from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
+from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS, Contact, Model
 from abut.model.contact import TWO_WAY
@@ -46,6 +49,7 @@ SHARPNESS = (  # theory (L8)
     30.0  # c h / E of the constraint function: with 1 the pressure rings at the edge of contact, above 100 Newton does
 )
 STILL = 1e-9  # of the largest displacement prescribed: a plane that is moved or bent does not mirror
+TRIANGLES = [CELLS[kind].code for kind in ("tri3", "tri6")]
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 
 
@@ -228,8 +232,11 @@ def pair(
     tied = contact.kind == "tied"
     reach = reach_of(constraints, contactor, target)
     both = scales(model, contactor, target)
-    normals = contact_normals(contactor, target, both.share, reach, couple, constraints) if contact.frictional else None
+    seen = not tied and contact.method == METHODS[0]
+    normals = contact_normals(model, contactor, target, both.share, reach, couple) if seen else None
     contactor, coupling, space = coupled(contact, contactor, target, reach, couple, normals)
+    if contactor.kin is None and not (tied or model.finite) and lies_deep(contactor, target, coupling.gap_samples):
+        return pair(model, contact, constraints, couple, with_kin(model.mesh, *(sides or model.sides(contact)), True))
     sizes = facet_sizes(contactor)
     size, stiffness = float(np.median(sizes)), both.young / float(np.median(sizes))
     if tied:
@@ -258,7 +265,7 @@ def pair(
         components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=planes_of(contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
+        planes=planes_of(model.mesh, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
@@ -303,7 +310,9 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
     return np.asarray((np.abs(share - 1.0) < WHOLE) & ~edge)
 
 
-def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints) -> Planes:
+def planes_of(
+    mesh: Mesh, contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints
+) -> Planes:
     """Where a contactor's smooth sides end at planes of symmetry: supports hold what is square to their rim, where it is,
     but not their normal, and the target ends there too. A body's whole outside goes on there, round an edge. border: of the
     sides; beyond: (m,) where the target goes on."""
@@ -314,7 +323,9 @@ def planes_of(contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constr
         mirrored &= constraints.held_share(end, border.normal) < HELD
         moved = constraints.prescribed.reshape(-1, contactor.dim, constraints.prescribed.shape[1])[end]
         mirrored &= np.abs(np.einsum("md,mdh->mh", out, moved)).max(axis=1, initial=0.0) <= STILL * constraints.largest
-    return planes(contactor, border, mirrored)
+    corners = np.concatenate([np.full(len(block.nodes), CELLS[block.kind].corners) for block in mesh.blocks])
+    uneven = corners[contactor.cells] == 3 if contactor.dim == 2 else np.isin(contactor.kinds, TRIANGLES)
+    return planes(contactor, border, mirrored, uneven)
 
 
 def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, active: NDArray[np.bool_]) -> Pair:

@@ -21,7 +21,8 @@ def coupled(
     contact: Contact, contactor: Surface, target: Surface, reach: float, couple: Couple, normals: Array | None
 ) -> tuple[Surface, Coupling, PressureSpace]:
     """The contactor in parts by what they face, the coupling by the contact's method, and its pressure space. reach: a
-    length; normals: of friction, as ``contact_normals``. Raises InputError where the surfaces do not face each other."""
+    length; normals: as ``contact_normals``, the contactor's own where left out. Raises InputError where the surfaces do not
+    face each other."""
     space: PressureSpace | None
     if contact.method != "segment-to-segment":
         coupling, space = node_to_segment(contactor, target, reach, contact.adjust)
@@ -43,7 +44,7 @@ def coupled(
         )  # fmt: skip
         closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
         without = partial(couple, contactor, target, degree, options)
-        coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without)
+        coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without, normals)
         coupling = of_corners(contactor, coupling) if of_dual else coupling
         contactor = contactor if tied else by_target(contactor, target, coupling)
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None

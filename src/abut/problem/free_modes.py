@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut.errors import SingularModelError
 from abut.problem.constraints import Constraints
+from abut.problem.neutral_motions import Neutral
 from abut.problem.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.types import Array, Sparse
 
@@ -26,7 +27,8 @@ class FreeModeSprings:
     """Springs to the ground on as many free displacements as there are motions: by equilibrium they carry nothing.
 
     motions: (dim n_points, m) orthonormal; columns: (m,) free displacements with a spring, stiffness: (m,) of the springs;
-    gram: (n_modes, n_modes) their resistance; notes: what is held, in words.
+    gram: (n_modes, n_modes) their resistance; notes: what is held, in words; noise: share of the forces that facets put on
+    motions which nothing else resists, 0 where there are none: these are not among ``motions``.
     """
 
     motions: NDArray[np.float64]
@@ -34,6 +36,7 @@ class FreeModeSprings:
     stiffness: NDArray[np.float64]
     gram: NDArray[np.float64]
     notes: tuple[str, ...] = ()
+    noise: float = 0.0
 
     def __len__(self) -> int:
         return len(self.columns)
@@ -52,7 +55,7 @@ class FreeModeSprings:
     def forces(self, free: NDArray[np.float64]) -> NDArray[np.float64]:
         """Of the springs on the free displacements, (n_free,)."""
         result = np.zeros_like(free)
-        result[self.columns] = self.stiffness * free[self.columns]
+        np.add.at(result, self.columns, self.stiffness * free[self.columns])
         return result
 
     def without_motions(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -66,11 +69,13 @@ def free_mode_springs(
     constraints: Constraints,
     stiffness: Sparse,
     loads: Sequence[NDArray[np.float64]],
+    neutral: Neutral | None = None,
 ) -> FreeModeSprings:
-    """Hold the rigid motions that nothing resists, where that takes no force.
+    """Hold the rigid motions that nothing resists, where that takes no force, or none but what facets put on them.
 
     resistances: Gram matrices of supports and all contact, closed; constraints: the change of variables;
-    stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step.
+    stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step; neutral: motions that
+    contact resists by its facets alone.
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
     motions = free_motions(resistances)
@@ -92,7 +97,38 @@ def free_mode_springs(
             "arises"
             for text, _ in each_motion(rigid, modes)
         ]
-    return _springs(rigid, motions, constraints, stiffness, tuple(notes))
+    if neutral is None or not neutral.motions.shape[1]:
+        return _springs(rigid, motions, constraints, stiffness, tuple(notes))
+    _require_faint(rigid, neutral, loads)
+    faint = neutral.beside(motions)
+    notes += [
+        f"{text}: contact resists it by its facets alone; it is held in the mean, and the certificate has the force"
+        for text, _ in each_motion(rigid, faint)
+    ]
+    tight, soft = (_springs(rigid, axes, constraints, stiffness, ()) for axes in (motions, faint))
+    noise = float(neutral.noise.max(initial=0.0)) if faint.shape[1] else 0.0
+    return replace(
+        tight,
+        columns=np.concatenate([tight.columns, soft.columns]),
+        stiffness=np.concatenate([tight.stiffness, (noise**2 or 1.0) * soft.stiffness]),
+        gram=tight.gram + soft.gram,
+        notes=tuple(notes),
+        noise=noise,
+    )
+
+
+def _require_faint(rigid: RigidModes, neutral: Neutral, loads: Sequence[Array]) -> None:
+    """Raises SingularModelError where loads do more work on a neutral motion than facets may."""
+    for load in loads:
+        work = neutral.motions.T @ (rigid.modes.T @ load)
+        driven = np.abs(work) > np.maximum(neutral.noise, NO_WORK) * float(np.abs(load).sum())
+        if driven.any():
+            worst = int(np.where(driven, np.abs(work), 0.0).argmax())
+            motion = np.sign(work[worst]) * neutral.motions[:, worst]
+            raise SingularModelError(
+                f"{describe(rigid, motion[:, None], one_way=True)}: contact without friction glides that way, and the loads "
+                f"act in that direction; {CURE}, or friction"
+            )
 
 
 def _springs(

@@ -46,6 +46,14 @@ class Restraint:
         """Resistance of supports and of every pair, closed."""
         return [self.supports, *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs)]
 
+    @property
+    def steady(self) -> list[NDArray[np.float64]]:
+        """Resistance of supports, and of ties and friction."""
+        return [
+            self.supports,
+            *(resistance_of_rows(self.rigid, p.rows) for p in self.pairs if p.two_way or p.frictional),
+        ]
+
     def helped_by(self, gram: NDArray[np.float64]) -> Restraint:
         """The same with something else that resists."""
         return (

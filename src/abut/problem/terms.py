@@ -9,13 +9,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import respond
+from abut.bodies.assemble import is_symmetric
 from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import PointStress, point_stress
+from abut.bodies.stress import PointStress
 from abut.model import History as Amplitude
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.backend import Backend, Serial, Tangent
+from abut.problem.backend import Backend, Tangent
 from abut.problem.loads import Loads
 
 Vector = NDArray[np.float64]
@@ -35,13 +35,13 @@ class Motion:
 class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
     tangent: what reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
-    the tangent; energy: elastic, of a term under finite strains."""
+    the tangent; energy: elastic, of a term that knows it, not a number where a material does not tell it."""
 
     force: Vector
     tangent: Tangent | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
     symmetric: bool = True
-    energy: float = 0.0
+    energy: float | None = None
 
 
 class Term(Protocol):
@@ -92,23 +92,24 @@ class LinearBodies:
 
 @dataclass(frozen=True)
 class SolidBodies:
-    """Bodies of any material under small strains, those of users' own among them."""
+    """Bodies of any material, those of users' own among them, under small or finite strains, theory (D2). ``evaluate`` and
+    ``stress`` raise ``abut.bodies.inverted.Inverted`` at displacements that turn a cell inside out under finite ones."""
 
     model: Model
     loads: Loads
+    backend: Backend
     name: str = "bodies"
     constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
-        nodal, change, history = self._at(now, before.history)
-        response = respond(self.model.deformable, nodal, change, history)
-        return Share(response.force, Serial(self.model, response.tangent), response.history)
+        deformed = self.backend.deform(*self._at(now, before.history))
+        symmetric = is_symmetric(self.model.deformable)
+        return Share(deformed.force, deformed.tangent, deformed.history, symmetric, deformed.energy)
 
     def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``."""
-        nodal, change, history = self._at(motion, motion.history)
-        return point_stress(self.model.deformable, nodal, change, history)
+        """As in ``Bodies``: Cauchy stresses under finite strains."""
+        return self.backend.stress(*self._at(motion, motion.history))
 
     def _at(
         self, motion: Motion, history: Mapping[str, Vector]

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.materials.invariants import principal, von_mises
+from abut.materials.plastic import EQUIVALENT
 from abut.mesh.mesh import Mesh
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import cell_error, largest_pressure
 
 Values = NDArray[np.float64]
 OF_STRESS = ("von Mises", "largest principal stress", "smallest principal stress")
-SIZE, ERROR = "displacement", "stress error"
+SIZE, ERROR, PLASTIC = "displacement", "stress error", "plastic strain"
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,12 @@ def node_error(mesh: Mesh, step: Step) -> Values | None:
     return result
 
 
+def of_nodes(mesh: Mesh, step: Step) -> dict[str, Values]:
+    """What is known at the points of a mesh beside displacement and stress, (n_points,), by its name in the picture."""
+    error, flow = node_error(mesh, step), step.remembered.get(EQUIVALENT)
+    return {name: values for name, values in ((ERROR, error), (PLASTIC, flow)) if values is not None}
+
+
 def extremes(solution: Solution) -> dict[str, Extremes]:
     """Smallest and largest values of every quantity of bodies at their nodes. Stresses only of bodies that give way."""
     mesh = solution.model.mesh
@@ -63,9 +70,7 @@ def extremes(solution: Solution) -> dict[str, Extremes]:
     found: dict[str, list[list[tuple[float, float, int, int]]]] = {}
     for step in solution.steps:
         fields = {SIZE: np.linalg.norm(step.displacement, axis=1), **of_stress(step.stress)}
-        error = node_error(mesh, step)
-        if error is not None:
-            fields[ERROR] = error
+        fields |= of_nodes(mesh, step)
         for name, values in fields.items():
             found.setdefault(name, []).append([_ends(values, own) for own in (nodes if name == SIZE else solid)])
     return {name: _extremes(rows) for name, rows in found.items()}

@@ -16,7 +16,7 @@ from abut.report.arrays import rounded
 from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction_fields
 from abut.report.inside import tetrahedra
 from abut.report.mirror import mirrors
-from abut.report.quantities import ERROR, Extremes, contact_ranges, extremes, node_error, of_stress, peak_steps
+from abut.report.quantities import Extremes, contact_ranges, extremes, of_nodes, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import vectors
@@ -142,8 +142,7 @@ def _side(mesh: Mesh, contact: ContactResult, role: str, grid: Patch) -> Json:
 
 def _fields(model: Model, step: Step, skins: list[Skin], sides: list[tuple[int, str]], patches: list[Patch]) -> Json:
     """Values at the points of bodies and contact surfaces."""
-    moved, error = vectors(step.displacement), node_error(model.mesh, step)
-    known = {} if error is None else {ERROR: error}
+    moved, known = vectors(step.displacement), of_nodes(model.mesh, step)
     strained = {solid.body for solid in model.solids}
     bodies: list[Json] = []
     for name, own in zip(model.mesh.bodies, skins):

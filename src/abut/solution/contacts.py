@@ -9,7 +9,8 @@ from math import inf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.sides import Names
+from abut.brief import brief, listed, vector
+from abut.contact.sides import Names, words
 from abut.mesh.surface import Surface
 
 
@@ -133,6 +134,8 @@ class FrictionResult:
     force_limit: float
     largest_share: float
 
+    __repr__ = brief
+
     @property
     def max_traction(self) -> float:
         """Size of the largest tangential traction at a node, force per area."""
@@ -200,6 +203,47 @@ class ContactResult:
     target_forces: NDArray[np.float64]
     body_forces: Mapping[str, NDArray[np.float64]]
     friction: FrictionResult | None = None
+
+    def __repr__(self) -> str:
+        """The main numbers, in some lines."""
+        s = self.statistics
+        lines = [
+            f"Contact '{self.name}' of {words(self.named[0])} and {words(self.named[1])}: "
+            f"{self.active} of {self.multipliers} multipliers closed",
+            f"  force {vector(self.force)} on the first, {self.force_by_area:.6g} over the area {self.area:.6g}",
+            f"  largest pressure {self.max_pressure:.6g} at {vector(s.place)}, mean {s.mean:.6g}",
+            f"  deepest penetration {self.max_penetration:.3g}, {self.covered_share:.0%} of the contactor covered",
+        ]
+        if self.friction is not None:
+            lines.append(
+                f"  friction {vector(self.friction.force)}, slips on {self.friction.slipping_area:.6g}, sticks on "
+                f"{self.friction.sticking_area:.6g}"
+            )
+        failed = [check.name for check in self.checks if not check.passed]
+        return "\n".join([*lines, *([f"  fails: {listed(failed)}"] if failed else [])])
+
+    @property
+    def nodes(self) -> NDArray[np.int64]:
+        """(n,) point numbers of the mesh on the contactor, sorted."""
+        return self.contactor.node_ids
+
+    @property
+    def nodal_pressure(self) -> NDArray[np.float64]:
+        """(n,) force per area at ``nodes``: ``pressure`` there, where facets differ (as at a crease) the mean of theirs;
+        NaN where there is none."""
+        return self._at_nodes(self.pressure)
+
+    @property
+    def nodal_gap(self) -> NDArray[np.float64]:
+        """(n,) length at ``nodes``, as ``nodal_pressure``; negative where sides overlap."""
+        return self._at_nodes(self.gap)
+
+    def _at_nodes(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The mean over the facets of each node."""
+        there = (self.contactor.nodes >= 0) & np.isfinite(values)
+        number = np.searchsorted(self.nodes, self.contactor.nodes[there])
+        count, total = (np.bincount(number, w, len(self.nodes)) for w in (None, values[there]))
+        return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
     @property
     def force_by_area(self) -> float:

@@ -1,4 +1,4 @@
-"""Energy over a load step of a model with friction or finite kinematics."""
+"""Energy over a load step of a model with friction, plastic flow or finite kinematics."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 @dataclass(frozen=True)
 class Energy:
     """Where the energy of one load step comes from and where it goes, theory (R10), (G13): loads + supports + contact =
-    stored + friction + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric models of
-    the whole turn.
+    stored + friction + plastic + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric
+    models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
     the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;
-    stored: change of the strain energy;
+    stored: change of the strain energy, of materials that do not tell it the work of their stresses;
     friction: that friction takes with the traction at the end of the step, as ``FrictionResult.work``; stepping: what the
     work of a traction that grows in proportion over the step differs from that, of second order in the step; with finite
     kinematics also what the mean stresses of the step do beyond what is stored.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
     displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
-    with finite kinematics only; earlier: with them, the largest size of the steps before;
-    stabilisation: what a drag takes on the way of a step that it leads, theory (G24).
+    with finite kinematics only; earlier: the largest size of the steps before;
+    stabilisation: what a drag takes on the way of a step that it leads, theory (G24); plastic: what plastic flow
+    takes, with what hardening keeps of it, theory (Y11).
     """
 
     loads: float
@@ -37,12 +38,13 @@ class Energy:
     elastic: float | None = None
     earlier: float = 0.0
     stabilisation: float = 0.0
+    plastic: float = 0.0
 
     @property
     def error(self) -> float:
         """What is missing in the balance, over the size."""
         missing = self.loads + self.supports + self.contact - self.stored - self.friction - self.stepping
-        missing -= self.stabilisation
+        missing -= self.stabilisation + self.plastic
         return abs(missing) / self.size
 
     @property
@@ -55,4 +57,4 @@ class Energy:
     def limit_beside(self, most: float) -> float:
         """The same where other steps of the run, before or after, have a size of up to ``most``: before the first touch
         what equilibrium leaves open is much beside the work of a step, but nothing beside the run."""
-        return self.limit if self.elastic is None else replace(self, earlier=max(self.earlier, most)).limit
+        return replace(self, earlier=max(self.earlier, most)).limit

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,16 +33,21 @@ class Grid:
 
 
 def field_grid(
-    mesh: Mesh, displacement: NDArray[np.float64], stress: NDArray[np.float64], error: NDArray[np.float64] | None = None
+    mesh: Mesh,
+    displacement: NDArray[np.float64],
+    stress: NDArray[np.float64],
+    error: NDArray[np.float64] | None = None,
+    remembered: Mapping[str, NDArray[np.float64]] | None = None,
 ) -> Grid:
     """The whole mesh with displacement, stress, von_mises at points, and the body's number and stress_error at cells (error:
-    (n_cells,) as in ``StressError``, zero where it is not known)."""
+    (n_cells,) as in ``StressError``, zero where it is not known); remembered: what materials do, at points."""
     body = np.zeros(mesh.n_cells, dtype=np.int32)
     for number, cells in enumerate(mesh.bodies.values()):
         body[cells] = number
     of_cells = np.zeros(mesh.n_cells) if error is None else error
     blocks = tuple((block.kind, block.nodes) for block in mesh.blocks)
-    return Grid(mesh.points, blocks, _at_points(displacement, stress), {"body": body, "stress_error": of_cells})
+    at_points = {**(remembered or {}), **_at_points(displacement, stress)}
+    return Grid(mesh.points, blocks, at_points, {"body": body, "stress_error": of_cells})
 
 
 def cell_error(step: Step) -> NDArray[np.float64] | None:
@@ -51,8 +56,9 @@ def cell_error(step: Step) -> NDArray[np.float64] | None:
 
 
 def point_fields(step: Step) -> dict[str, NDArray[np.float64]]:
-    """What is known at every point of the mesh: displacement (n, 3), stress (n, 6), von_mises (n,)."""
-    return _at_points(step.displacement, step.stress)
+    """What is known at every point of the mesh: displacement (n, 3), stress (n, 6), von_mises (n,), and what materials
+    remember."""
+    return {**step.remembered, **_at_points(step.displacement, step.stress)}
 
 
 def _at_points(displacement: NDArray[np.float64], stress: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from abut.model import Model
 from abut.model.contact import TWO_WAY
 from abut.model.offset import smallest_offset
-from abut.solution.contacts import Check
-
-if TYPE_CHECKING:
-    from abut.solution.records import Step
+from abut.solution.contacts import Check, ContactResult
 
 NOTHING = 1e-6  # pressure over the largest of the model that is taken for none
 AMONG_OTHERS, ALONE, THOUGH_FIT = (
@@ -24,12 +20,13 @@ AMONG_OTHERS, ALONE, THOUGH_FIT = (
 WORTH_KNOWING, WRONG = 0.4, 0.75
 
 
-def idle_contacts(model: Model, steps: Sequence[Step]) -> Iterator[Check]:
+def idle_contacts(model: Model, steps: Sequence[Sequence[ContactResult]]) -> Iterator[Check]:
     """A line for each contact that carried nothing in any step. It passes beside contacts that carried, is a warning
-    where none did, and
-    fails where an interference is larger than what the sides stand off each other in the end."""
-    pairs = [(k, contact) for k, contact in enumerate(steps[-1].contacts) if not _holds(model, contact.name)]
-    most = {contact.name: max(abs(step.contacts[k].max_pressure) for step in steps) for k, contact in pairs}
+    where none did, and fails where an interference is larger than what the sides stand off each other in the end.
+
+    steps: the contacts of each."""
+    pairs = [(k, contact) for k, contact in enumerate(steps[-1]) if not _holds(model, contact.name)]
+    most = {contact.name: max(abs(step[k].max_pressure) for step in steps) for k, contact in pairs}
     largest = max(most.values(), default=0.0)
     for _, result in pairs:
         if most[result.name] > NOTHING * largest:

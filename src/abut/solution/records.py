@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.brief import NAMED, brief, listed, vector
+from abut.materials.invariants import von_mises
 from abut.model import Model
 from abut.model.conditions import drives
 from abut.model.locking import LOCKED, STIFF, locking
@@ -17,6 +19,7 @@ from abut.model.offset import smallest_offset
 from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
+from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
 from abut.solution.progress import Iteration
 from abut.solution.state import State
@@ -61,6 +64,8 @@ class ProbeResult:
     nodes: NDArray[np.int64] | None
     values: Mapping[str, NDArray[np.float64]]
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True)
 class Flips:
@@ -97,6 +102,7 @@ class Step:
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     flips: Mapping[str, Flips] = field(default_factory=dict)  # contact name -> nodes that do, with friction
     spring: float | None = None  # largest force that constrains free rigid-body modes; None where there are none
+    neutral: float = 0.0  # share of the forces that facets put on those that contact resists by its facets alone
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
     strain: float = (
@@ -108,10 +114,33 @@ class Step:
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
     reason: str = ""  # why it did not converge, where more can be said
-    turn: float = 0.0  # largest of a body as a whole, radians, with small kinematics
+    turn: float = 0.0  # largest of a body as a whole, radians, where they are taken for small
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
+    remembered: Mapping[str, NDArray[np.float64]] = field(
+        default_factory=dict
+    )  # by materials, at points: (n_points, ...)
+    flow: Flow | None = None  # None where no material yields
+
+    def __repr__(self) -> str:
+        """The main numbers, in some lines."""
+        state = "converged" if self.converged else f"NOT CONVERGED {self.reason}".rstrip()
+        far, largest = (
+            float(np.abs(values).max(initial=0.0)) for values in (self.displacement, von_mises(self.stress))
+        )
+        lines = [
+            f"Step {self.number} at time {self.factor:.6g}: {state} in {len(self.iterations)} iterations",
+            f"  largest displacement {far:.6g}, largest von Mises stress {largest:.6g}",
+            f"  loads {vector(self.load)}, reactions {vector(self.reaction)}",
+        ]
+        lines += [
+            f"  contact '{c.name}': force {vector(c.force)}, largest pressure {c.max_pressure:.6g}"
+            for c in self.contacts[:NAMED]
+        ]
+        return "\n".join(
+            [*lines, *([f"  and {len(self.contacts) - NAMED} more contacts"] if self.contacts[NAMED:] else [])]
+        )
 
     @property
     def balance_error(self) -> float:
@@ -137,7 +166,7 @@ class Step:
         """Of ``regularisation``: the resultant of what the solver leaves of the balance of forces at all points together, at
         least and at most fixed shares of the reference force."""
         left = self.iterations[-1].residual * float(np.sqrt(self.displacement.size)) if self.iterations else 0.0
-        return min(max(REGULARISATION, left), ROUNDED)
+        return max(min(max(REGULARISATION, left), ROUNDED), self.neutral)
 
     @property
     def reference_force(self) -> float:
@@ -196,6 +225,23 @@ class Solution:
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
     processes: int = 1
 
+    def __repr__(self) -> str:
+        """The state of the run, the last step and the certificate, in at most ten lines."""
+        done = "" if self.complete else ", incomplete"
+        certificate = self.certificate
+        warned = [f"{check.contact} {check.name}".strip() for check in certificate if check.warns]
+        failed = [f"{check.contact} {check.name}".strip() for check in certificate if not check.passed]
+        verdict = f"{len(failed)} of {len(certificate)} checks FAIL: {listed(failed)}" if failed else (
+            f"all {len(certificate)} checks pass" + (f", with warnings of {listed(warned)}" if warned else ""))  # fmt: skip
+        return "\n".join(
+            [
+                f"Solution: {'converged' if self.converged else 'not converged'}{done}, {len(self.steps)} steps, "
+                f"{self.dofs} unknowns, {self.solver}",
+                repr(self.steps[-1]) if self.steps else "no step",
+                f"certificate: {verdict}",
+            ]
+        )
+
     @property
     def converged(self) -> bool:
         """Whether every step met its tolerances."""
@@ -228,16 +274,18 @@ class Solution:
             )
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             turn = Check("", "rotation", step.turn, TURN,
-                         "largest turn of a body, radians, which small kinematics takes for small",
+                         "largest turn of a body, radians, which this kinematics takes for small",
                          notice=TURN_NOTICED)  # fmt: skip
-            model = [balance, response] if self.model.finite else [balance, response, strain, turn]
+            model = [balance, response, *((strain, turn) if self.model.small_strains else ())]
             if step.regularisation is not None:
                 model.append(Check("", "free rigid-body modes", step.regularisation, step.regularisation_limit,
                                    "force that constrains free rigid-body modes, over the size of the forces"))  # fmt: skip
             if step.energy is not None:
                 model.append(Check("", "energy balance", step.energy.error, step.energy.limit_beside(most),
-                                   "work of loads and supports less what is stored and what friction takes, over the "
-                                   "work of all nodal forces by size"))  # fmt: skip
+                                   "work of loads and supports less what is stored and what friction and flow take, over "
+                                   "the work of all nodal forces by size"))  # fmt: skip
+            if step.flow is not None:
+                model.append(step.flow.check(self.model.finite))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
                                    "estimated error of the elements' stresses in the energy norm, of the whole model "
@@ -248,7 +296,13 @@ class Solution:
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
         whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
-        return (*checks, *self._locking, *idle_contacts(self.model, self.steps), *self._apart, *whole)
+        return (
+            *checks,
+            *self._locking,
+            *idle_contacts(self.model, [s.contacts for s in self.steps]),
+            *self._apart,
+            *whole,
+        )
 
     @property
     def _locking(self) -> tuple[Check, ...]:

@@ -12,6 +12,7 @@ from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
 from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.plastic_cards import hardening
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
     CyclicSymmetry,
@@ -27,6 +28,9 @@ from abut.io.deck.record import (
 EMPTY = np.empty(0, np.int64)
 
 
+PROPERTIES = ("ELASTIC", "HYPERELASTIC", "PLASTIC", "CYCLICHARDENING", "DENSITY", "EXPANSION")  # of a material
+
+
 def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
     """Materials by name in capitals; ``reasons`` gets what is not isotropic with one row of numbers."""
     result: dict[str, Material] = {}
@@ -40,15 +44,14 @@ def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
 
 def _material(card: Card, following: Sequence[Card]) -> Material:
     options = {
-        option.key: option
-        for option in takewhile(
-            lambda following_card: following_card.key in ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"), following
-        )
+        option.key: option for option in takewhile(lambda following_card: following_card.key in PROPERTIES, following)
     }
     name = card.need("NAME")
     if "ELASTIC" in options and "HYPERELASTIC" in options:
         raise options["HYPERELASTIC"].error(f"material '{name}' has *ELASTIC as well; give one of them")
     rubber = "HYPERELASTIC" in options
+    if rubber and "PLASTIC" in options:
+        raise options["PLASTIC"].error(f"material '{name}' has *HYPERELASTIC as well; give one of them")
     if rubber:
         constants = _neo_hooke(options["HYPERELASTIC"])
     elif "ELASTIC" in options:
@@ -60,7 +63,7 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     expansion = 0.0
     if "EXPANSION" in options:
         expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
-    return Material(name, constants, density, expansion, card.place, rubber)
+    return Material(name, constants, density, expansion, card.place, rubber, hardening(options))
 
 
 def _neo_hooke(card: Card) -> tuple[float, float]:

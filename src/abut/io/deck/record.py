@@ -41,6 +41,14 @@ class Faces:
 
 
 @dataclass(frozen=True)
+class Hardening:
+    """Of metal that yields. table: (plastic strain, yield stress); backstresses: (modulus, recall)."""
+
+    table: tuple[tuple[float, float], ...]
+    backstresses: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
 class Material:
     """constants: Young's modulus and Poisson's ratio, or C10 and D1 of a neo-Hookean material where ``rubber``."""
 
@@ -50,6 +58,7 @@ class Material:
     expansion: float
     place: Place
     rubber: bool = False
+    hardening: Hardening | None = None
 
 
 @dataclass(frozen=True)

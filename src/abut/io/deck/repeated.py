@@ -8,7 +8,7 @@ from abut.io.deck.cards import Card
 
 # Of these the first counts, with the cards that follow it and belong to it
 FIRST = {
-    "MATERIAL": ("ELASTIC", "HYPERELASTIC", "DENSITY", "EXPANSION"),
+    "MATERIAL": ("ELASTIC", "HYPERELASTIC", "PLASTIC", "CYCLICHARDENING", "DENSITY", "EXPANSION"),
     "AMPLITUDE": (),
     "SURFACEINTERACTION": ("SURFACEBEHAVIOR", "FRICTION"),
 }

@@ -20,6 +20,8 @@ READ: dict[str, tuple[str, ...]] = {
     "MATERIAL": ("NAME",),
     "ELASTIC": ("TYPE",),
     "HYPERELASTIC": ("NEO HOOKE",),
+    "PLASTIC": ("HARDENING",),
+    "CYCLIC HARDENING": (),
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS"),
@@ -95,7 +97,7 @@ PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
     "VISCO": "creep and viscosity",
 }
 
-_MATERIAL = "; abut's solids are linear elastic or, with NLGEOM, neo-Hookean"
+_MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Hookean"
 _RUBBER = "of rubber elasticity only *HYPERELASTIC, NEO HOOKE is supported; fit its two constants"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
@@ -109,10 +111,9 @@ REFUSED: dict[str, str] = {
     "CONSTRAINT": "constraint functions belong to optimisation",
     "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",
     "CREEP": f"creep is not supported{_MATERIAL}",
-    "CYCLIC HARDENING": f"plasticity is not supported{_MATERIAL}",
     "DAMPING MODEL": "damping belongs to dynamics",
     "DASHPOT": "dashpots are not supported; take them out",
-    "DEFORMATION PLASTICITY": f"plasticity is not supported{_MATERIAL}",
+    "DEFORMATION PLASTICITY": "deformation theory is not supported; give *PLASTIC",
     "DFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "DISTRIBUTION": "distributions are not read; give numbers",
     "ELGEN": f"generated elements are not read{_WRITE}",
@@ -130,7 +131,6 @@ REFUSED: dict[str, str] = {
     "NGEN": f"generated nodes are not read{_WRITE}",
     "NODAL THICKNESS": "a thickness for each node is not supported; give the section one thickness",
     "NORMAL": "normals given by hand are not read; abut takes them from the mesh",
-    "PLASTIC": f"plasticity is not supported{_MATERIAL}",
     "RADIATE": "radiation belongs to heat transfer, which abut does not solve",
     "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
     "REFINE MESH": "refinement is not supported; refine the mesh in the preprocessor",

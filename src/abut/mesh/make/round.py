@@ -43,8 +43,8 @@ def cylinder(
 ) -> Mesh:
     """A cylinder along z. Surfaces round (the outside), bottom, top.
 
-    Solid: ``cells`` = (across the diameter, along the axis). With ``inner``, the radius of a bore, which is the surface
-    inner: ``cells`` = (through the wall, around, along the axis).
+    Solid: ``cells`` = (across the diameter, along the axis). With ``inner``, the radius of a bore (surface inner):
+    ``cells`` = (through the wall, around, along the axis).
     """
     radius = checks.positive(radius, "radius")
     if inner is not None:

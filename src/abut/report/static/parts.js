@@ -12,13 +12,14 @@ const MAPS = {
   "von Mises": ["30123b", "4145ab", "4675ed", "39a2fc", "1bcfd4", "24eca6", "61fc6c", "a4fc3b", "d1e834", "f3c63a", "fe9b2d", "f36315", "d93806", "b11901", "7a0402"],
   "largest principal stress": ["313695", "4575b4", "74add1", "abd9e9", "f7f7f7", "fdae61", "f46d43", "d73027", "a50026"],
   "smallest principal stress": ["313695", "4575b4", "74add1", "abd9e9", "f7f7f7", "fdae61", "f46d43", "d73027", "a50026"],
+  "plastic strain": ["fffff0", "fff2ae", "fec44f", "fe9929", "ec7014", "cc4c02", "8c2d04"],
   "stress error": ["fcfbfd", "dadaeb", "9e9ac8", "756bb1", "54278f", "3f007d"],
   "displacement": ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"],
 };
 
 const STATUS = [["open", "b8bec6"], ["slipping", "e8a33d"], ["sticking", "2a6fb5"]]; // by its value as drawn
 const FROM_ZERO = ["pressure", "traction", "slip", "slip in the step", "friction work"];
-const ON_BODIES = ["von Mises", "largest principal stress", "smallest principal stress", "stress error", "displacement"];
+const ON_BODIES = ["von Mises", "largest principal stress", "smallest principal stress", "plastic strain", "stress error", "displacement"];
 
 // An array of the page, from its place in the text that has all of them, byte by byte of its numbers.
 function unpack(array) {

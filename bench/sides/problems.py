@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
-from abut.cells import BY_CODE
-from abut.mesh.make import half_disc, join, rectangle, ring
-from abut.mesh.make.block import grid
+from abut.mesh.make import box, half_disc, join, rectangle, ring
+from abut.mesh.make.block import SOLID_CELLS, grid
 from abut.solution import ContactResult
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
@@ -28,14 +27,14 @@ PUNCHED = 0.8  # of a flat punch's half width: at its edge the pressure has no l
 @dataclass(frozen=True)
 class Case:
     """kind: of the problem; cells: of both sides; ratio: of moduli, first side over second; sizes: facets of both sides over
-    the same length; model: without roles; error: of a solution, over the largest pressure, at corners or at all nodes."""
+    the same length; model: without roles; error: of a solution's pressures at all nodes that count, over the largest."""
 
     kind: str
     cells: tuple[str, str]
     ratio: float
     sizes: tuple[int, int]
     model: Callable[[], abut.Model]
-    error: Callable[[abut.Solution, bool], float]
+    error: Callable[[abut.Solution], float]
 
     def forced(self, contactor: int) -> abut.Model:
         """The model with the side ``contactor`` (0 or 1 of those named) for the contactor."""
@@ -50,17 +49,14 @@ def young(ratio: float) -> tuple[float, float]:
     return SOFT * max(ratio, 1.0), SOFT * max(1.0 / ratio, 1.0)
 
 
-def _solids(ratio: float, bodies: tuple[str, str]) -> list[abut.Solid]:
-    return [abut.Solid(body, abut.LinearElastic(e, NU)) for body, e in zip(bodies, young(ratio))]
+def _solids(ratio: float, bodies: tuple[str, str], nu: float = NU) -> list[abut.Solid]:
+    return [abut.Solid(body, abut.LinearElastic(e, nu)) for body, e in zip(bodies, young(ratio))]
 
 
-def _reported(contact: ContactResult, corners: bool) -> tuple[Array, Array]:
-    """Points of the contactor (n, dim) that face the target and the reported pressure there."""
-    surface = contact.contactor
-    used = (surface.nodes >= 0) & contact.covered[:, None]
-    if corners:
-        used &= np.arange(9) < np.array([BY_CODE[code].corners for code in surface.kinds])[:, None]
-    return surface.points[surface.nodes[used]], contact.pressure[used]
+def _reported(contact: ContactResult) -> tuple[Array, Array]:
+    """Points of the contactor (n, dim) that face the target, mid-nodes included, and the reported pressure there."""
+    used = (contact.contactor.nodes >= 0) & contact.covered[:, None]
+    return contact.contactor.points[contact.contactor.nodes[used]], contact.pressure[used]
 
 
 def _modulus(ratio: float) -> float:
@@ -87,8 +83,8 @@ def line(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
             plane="strain",
         )
 
-    def error(solution: abut.Solution, corners: bool) -> float:
-        x, p = _reported(solution.contacts[0], corners)
+    def error(solution: abut.Solution) -> float:
+        x, p = _reported(solution.contacts[0])
         peak = 2.0 * load / (np.pi * HALF)
         exact = peak * np.sqrt(np.maximum(1.0 - (x[:, 0] / HALF) ** 2, 0.0))
         return float(np.abs(p - exact)[np.abs(x[:, 0]) < INSIDE * HALF].max() / peak)
@@ -96,13 +92,22 @@ def line(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
     return Case("line", cells, ratio, sizes, model, error)
 
 
+OUTSIDE, GROWTH = 6, 1.25  # cells across outside of the fine part; growth of those away from the surface
+
+
+def _away(first: float, depth: float) -> Array:
+    """Grid lines from 0 to ``depth``, the first cell about as high as given."""
+    n = max(round(np.log1p(depth / first * (GROWTH - 1.0)) / np.log(GROWTH)), 2)
+    steps = GROWTH ** np.arange(n)
+    return np.concatenate([[0.0], np.cumsum(steps) * (depth / steps.sum())])
+
+
 def ball(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
     """A quarter of a ball of radius 1 on a block; contact to a radius of about .05; facets over .08."""
     width, fine = hertz.WIDTH, hertz.FINE
 
-    def part(cell: str, n: int, shape: Callable[[Array], Array] | None, depth: float) -> abut.Mesh:
-        outside = round(0.75 * n)
-        across, up = hertz._lines(n, fine, outside), hertz._lines(max(round(depth * n), 1), depth * fine, outside)
+    def part(cell: str, n: int, shape: Callable[[Array], Array] | None) -> abut.Mesh:
+        across, up = hertz._lines(n, fine, OUTSIDE), _away(fine / n, width)
         return grid([across, across, up if shape else -up[::-1]], cell, shape)
 
     def round_off(x: Array) -> Array:
@@ -110,7 +115,7 @@ def ball(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
         return np.column_stack([x[:, :2], rise + x[:, 2] * (width - rise) / width])
 
     def model() -> abut.Model:
-        parts = {"ball": part(cells[0], sizes[0], round_off, 0.6), "block": part(cells[1], sizes[1], None, 0.75)}
+        parts = {"ball": part(cells[0], sizes[0], round_off), "block": part(cells[1], sizes[1], None)}
         held = [abut.Support(f"{body}.{side}", **{axis: 0.0})
                 for body in parts for side, axis in (("left", "x"), ("front", "y"))]  # fmt: skip
         return abut.Model(
@@ -120,8 +125,8 @@ def ball(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
             contacts=[abut.Contact("ball.bottom", "block.top")],
         )
 
-    def error(solution: abut.Solution, corners: bool) -> float:
-        x, p = _reported(solution.contacts[0], corners)
+    def error(solution: abut.Solution) -> float:
+        x, p = _reported(solution.contacts[0])
         force = 4.0 * abs(float(solution.contacts[0].force[2]))
         radius = float(np.cbrt(0.75 * force / _modulus(ratio)))
         peak, r = 1.5 * force / (np.pi * radius**2), np.linalg.norm(x[:, :2], axis=1)
@@ -149,8 +154,8 @@ def rings(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
             plane="strain",
         )
 
-    def error(solution: abut.Solution, corners: bool) -> float:
-        _, p = _reported(solution.contacts[0], corners)
+    def error(solution: abut.Solution) -> float:
+        _, p = _reported(solution.contacts[0])
         a, b, c = radii
         give = 0.0
         for e, sign, (low, high) in ((young(ratio)[0], -1.0, (a, b)), (young(ratio)[1], 1.0, (b, c))):
@@ -177,8 +182,8 @@ def punch(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
             plane="strain",
         )
 
-    def error(solution: abut.Solution, corners: bool) -> float:
-        x, p = _reported(solution.contacts[0], corners)
+    def error(solution: abut.Solution) -> float:
+        x, p = _reported(solution.contacts[0])
         near = np.abs(x[:, 0]) < PUNCHED
         exact = 1.0 / (np.pi * np.sqrt(1.0 - x[near, 0] ** 2))
         return float((np.abs(p[near] - exact) / exact).max())
@@ -186,12 +191,37 @@ def punch(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
     return Case("punch", cells, 1e4, sizes, model, error)
 
 
-KINDS = {"line": line, "ball": ball, "rings": rings, "punch": punch}
+def column(cells: tuple[str, str], ratio: float, sizes: tuple[int, int]) -> Case:
+    """Two blocks of width 1, one on the other, bent and pressed: a linear pressure of .2 to 1.8, whatever the moduli
+    (Poisson's ratio 0). Plane, or in 3D four facets deep for each ten across."""
+    solid = cells[0] in SOLID_CELLS
+
+    def part(n: int, cell: str, low: float) -> abut.Mesh:
+        if solid:
+            return box((0, 1), (0, 0.4), (low, low + 0.5), (n, max(2 * n // 5, 1), max(n // 2, 2)), cell)
+        return rectangle((0, 1), (low, low + 0.5), (n, max(n // 2, 2)), cell)
+
+    def exact(x: Array) -> Array:
+        return 0.2 + 1.6 * x[:, 0]
+
+    def model() -> abut.Model:
+        mesh = join({"upper": part(sizes[0], cells[0], 0.5), "lower": part(sizes[1], cells[1], 0.0)})
+        along = {"x": 0.0, "y": 0.0} if solid else {"x": 0.0}
+        solids = _solids(ratio, ("upper", "lower"), 0.0)
+        return abut.Model(
+            mesh,
+            solids,
+            [abut.Support("lower.bottom", **along, **{"z" if solid else "y": 0.0}), abut.Support("upper.top", **along)],
+            [abut.Pressure("upper.top", "0.2 + 1.6*x")],
+            [abut.Contact("upper.bottom", "lower.top")],
+            plane=None if solid else "strain",
+        )
+
+    def error(solution: abut.Solution) -> float:
+        x, p = _reported(solution.contacts[0])
+        return float(np.abs(p - exact(x))[np.abs(2.0 * x[:, 0] - 1.0) < INSIDE].max() / 1.8)
+
+    return Case("column", cells, ratio, sizes, model, error)
 
 
-def cases(kind: str, cells: list[tuple[str, str]], ratios: list[float], sizes: list[tuple[int, int]]) -> Iterator[Case]:
-    """All combinations."""
-    for pair in cells:
-        for ratio in ratios if kind != "punch" else [1e4]:
-            for both in sizes:
-                yield KINDS[kind](pair, ratio, both)
+KINDS = {"line": line, "ball": ball, "rings": rings, "punch": punch, "column": column}

@@ -1,0 +1,115 @@
+// Laws at points for Python: objects that evaluate strains, and integrate cells.
+#include "cell_arrays.hpp"
+#include "point_material.hpp"
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+namespace abut {
+
+using Answer =
+    std::tuple<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>>;
+using Failure = std::optional<std::tuple<std::size_t, double>>;
+
+// A law under small strains, or in the space of logarithmic ones.
+class PointLaw {
+public:
+  virtual ~PointLaw() = default;
+  virtual std::size_t history() const = 0;
+  virtual Answer evaluate(Matrix<double> strain, Matrix<double> before, bool logarithmic) const = 0;
+  virtual Failure integrate(const CellArrays &cells, bool finite, bool plane_stress,
+                            std::optional<Matrix<double>> displacement, std::optional<Matrix<double>> thermal,
+                            std::optional<Matrix<double>> before, std::optional<Output<2>> force,
+                            std::optional<Tangent> tangent, std::optional<Output<2>> stress,
+                            std::optional<Output<1>> energy, std::optional<Output<2>> after) const = 0;
+};
+
+template <class Law> class Held final : public PointLaw {
+public:
+  explicit Held(Law law) : law(std::move(law)) {}
+
+  std::size_t history() const override { return law.history; }
+
+  Answer evaluate(Matrix<double> strain, Matrix<double> before, bool logarithmic) const override {
+    const std::size_t n = strain.shape(0), h = law.history;
+    if (strain.shape(1) != STRAINS || before.shape(0) != n || before.shape(1) != h)
+      throw nb::value_error("strains and histories disagree");
+    std::vector<double> stress(n * STRAINS), tangent(n * STRAINS * STRAINS), after(n * h);
+    {
+      nb::gil_scoped_release release;
+      const std::size_t parts = n < FEW_POINTS ? 1 : thread_count();
+      run_parts(parts, [&](std::size_t part) {
+        for (std::size_t i = n * part / parts; i < n * (part + 1) / parts; ++i) {
+          double own[STRAINS];
+          std::copy_n(strain.data() + i * STRAINS, STRAINS, own);
+          const double *old = before.data() + i * h;
+          double *now = after.data() + i * h, *here = &stress[i * STRAINS];
+          const Dense told = logarithmic ? PointMaterial<Law, true>{law, false}.respond(own, old, now, here)
+                                         : PointMaterial<Law, false>{law, false}.respond(own, old, now, here);
+          std::copy_n(told.c, STRAINS * STRAINS, &tangent[i * STRAINS * STRAINS]);
+        }
+      });
+    }
+    return {to_numpy(std::move(stress), {n, STRAINS}), to_numpy(std::move(tangent), {n, STRAINS, STRAINS}),
+            to_numpy(std::move(after), {n, h})};
+  }
+
+  Failure integrate(const CellArrays &cells, bool finite, bool plane_stress, std::optional<Matrix<double>> displacement,
+                    std::optional<Matrix<double>> thermal, std::optional<Matrix<double>> before,
+                    std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
+                    std::optional<Output<1>> energy, std::optional<Output<2>> after) const override {
+    const std::size_t points = cells.integration_points(), h = law.history;
+    if ((before && (before->shape(0) != points || before->shape(1) != h)) ||
+        (after && (after->shape(0) != points || after->shape(1) != h)) || (energy && energy->shape(0) != cells.count()))
+      throw nb::value_error("integration points and histories or energies disagree");
+    if (!displacement)
+      throw nb::value_error("laws at points need displacements");
+    Results results = cells.results(force, tangent, stress);
+    results.energy = energy ? energy->data() : nullptr;
+    const State state = cells.state(displacement, thermal);
+    const double *old = before && h ? before->data() : nullptr;
+    double *now = after && h ? after->data() : nullptr;
+    const Unsound unsound =
+        finite ? cells.integrate<FiniteStrain>(state, PointMaterial<Law, true>{law, plane_stress, old, now}, results)
+               : cells.integrate<SmallStrain>(state, PointMaterial<Law, false>{law, plane_stress, old, now}, results);
+    return told(unsound);
+  }
+
+private:
+  static constexpr std::size_t FEW_POINTS = 1000;
+  Law law;
+};
+
+static std::unique_ptr<PointLaw> hooke(double bulk, double shear) {
+  return std::make_unique<Held<Hooke>>(Hooke{bulk, shear});
+}
+
+static std::unique_ptr<PointLaw> j2(double bulk, double shear, std::vector<double> table, double slope,
+                                    double saturation, double rate, std::vector<double> back) {
+  if (table.size() < 2 || table.size() % 2 || back.size() % 2)
+    throw nb::value_error("tables have two columns, that of yield stresses a row at least");
+  return std::make_unique<Held<J2>>(J2(bulk, shear, {std::move(table), slope, saturation, rate, std::move(back)}));
+}
+
+void bind_laws(nb::module_ &m) {
+  nb::class_<PointLaw>(m, "PointLaw", "A law at a point, under small strains or in the space of logarithmic ones.")
+      .def_prop_ro("history", &PointLaw::history, "Numbers in the history of a point.")
+      .def("evaluate", &PointLaw::evaluate, nb::arg("strain").noconvert(), nb::arg("before").noconvert(),
+           nb::arg("logarithmic"),
+           "Stress (n, 6), tangent (n, 6, 6) and new history at strains (n, 6) after histories (n, h). logarithmic: "
+           "strains "
+           "are those of Green and Lagrange, stresses the second ones of Piola and Kirchhoff.")
+      .def("integrate", &PointLaw::integrate, nb::arg("cells"), nb::arg("finite"), nb::arg("plane_stress"),
+           nb::arg("displacement").noconvert(), nb::arg("thermal").noconvert() = nb::none(),
+           nb::arg("before").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
+           nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
+           nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
+           "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
+  m.def("hooke", &hooke, nb::arg("bulk"), nb::arg("shear"), "Isotropic linear elasticity.");
+  m.def("j2", &j2, nb::arg("bulk"), nb::arg("shear"), nb::arg("table"), nb::arg("slope"), nb::arg("saturation"),
+        nb::arg("rate"), nb::arg("back"),
+        "Von Mises plasticity: table (n, 2) of equivalent plastic strains and yield stresses, to which slope x + "
+        "saturation "
+        "(1 - exp(-rate x)) is added; back (m, 2): modulus and recall of back stresses; both flat.");
+}
+
+} // namespace abut

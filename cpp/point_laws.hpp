@@ -1,0 +1,265 @@
+// Laws at a point with a history, docs/theory/plasticity.md: respond(strain, before, after, stress, result) writes
+// stress, tangent, energy and the history that follows ``before`` (null: the initial one); ``after`` may be null.
+// Strains are small or logarithmic, shear strains doubled.
+#pragma once
+#include "hyperelastic.hpp"
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace abut {
+
+// Double contraction of two symmetric tensors of six components.
+inline double contracted(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
+// Isotropic linear elasticity by bulk and shear modulus.
+struct Hooke {
+  static constexpr std::size_t history = 0;
+  double bulk, shear;
+
+  static constexpr bool symmetric() { return true; }
+
+  void respond(const double *strain, const double *, double *, double *stress, Dense &result) const {
+    const double trace = strain[0] + strain[1] + strain[2], lambda = bulk - 2 * shear / 3;
+    std::fill_n(result.c, STRAINS * STRAINS, 0.0);
+    result.energy = 0;
+    for (int a = 0; a < 3; ++a) {
+      stress[a] = 2 * shear * strain[a] + lambda * trace, stress[3 + a] = shear * strain[3 + a];
+      for (int b = 0; b < 3; ++b)
+        result.c[a * STRAINS + b] = lambda + 2 * shear * (a == b);
+      result.c[(3 + a) * STRAINS + 3 + a] = shear;
+    }
+    for (int s = 0; s < STRAINS; ++s)
+      result.energy += stress[s] * strain[s] / 2;
+  }
+
+  // Strain out of the plane without stress there, as a first guess.
+  double across(const double *strain, const double *) const {
+    return -(bulk - 2 * shear / 3) / (bulk + 4 * shear / 3) * (strain[0] + strain[1]);
+  }
+};
+
+// Von Mises plasticity with associated flow: isotropic hardening by a table of plastic strains and yield stresses,
+// linear and saturating terms, and back stresses of Armstrong and Frederick. History: plastic strain (shear doubled),
+// equivalent plastic strain, plastic work, back stresses.
+class J2 {
+public:
+  static constexpr int EQUIVALENT = STRAINS, WORK = STRAINS + 1, BACK = STRAINS + 2;
+  struct Hardening {
+    std::vector<double> table;      // (n, 2) equivalent plastic strain and yield stress, beyond which it is constant
+    double slope, saturation, rate; // adds slope x + saturation (1 - exp(-rate x))
+    std::vector<double> back;       // (n, 2) modulus and recall of each back stress
+  };
+
+  J2(double bulk, double shear, Hardening hardening)
+      : history(BACK + hardening.back.size() / 2 * STRAINS), elastic{bulk, shear}, hardening(std::move(hardening)) {}
+
+  const std::size_t history;
+
+  // Back stresses that fade make the tangent unsymmetric.
+  bool symmetric() const {
+    for (std::size_t k = 1; k < hardening.back.size(); k += 2)
+      if (hardening.back[k] != 0)
+        return false;
+    return true;
+  }
+
+  void respond(const double *strain, const double *before, double *after, double *stress, Dense &result) const {
+    double trial[STRAINS], deviator[STRAINS];
+    for (int s = 0; s < STRAINS; ++s)
+      trial[s] = strain[s] - (before ? before[s] : 0);
+    elastic.respond(trial, nullptr, nullptr, stress, result);
+    const double mean = (stress[0] + stress[1] + stress[2]) / 3;
+    for (int s = 0; s < STRAINS; ++s)
+      deviator[s] = stress[s] - (s < 3) * mean;
+    const double start = before ? before[EQUIVALENT] : 0;
+    Flow flow(*this, deviator, before, start);
+    const double yield = yield_stress(start).first;
+    if (flow.excess <= ROUNDING * yield) {
+      if (after)
+        keep(before, after);
+      return;
+    }
+    flow.solve();
+    const double way = ROOT * flow.amount;
+    for (int s = 0; s < STRAINS; ++s)
+      stress[s] = deviator[s] - 2 * elastic.shear * way * flow.normal[s] + (s < 3) * mean;
+    flow.linearise(result.c);
+    double square = 0;
+    for (int s = 0; s < STRAINS; ++s) {
+      const double left = stress[s] - (s < 3) * mean;
+      square += (s < 3 ? 1 : 2) * left * left;
+    }
+    result.energy = mean * mean / (2 * elastic.bulk) + square / (4 * elastic.shear);
+    if (after)
+      flow.write(before, after, yield);
+  }
+
+  double across(const double *strain, const double *before) const {
+    if (!before)
+      return elastic.across(strain, nullptr);
+    const double trial[2] = {strain[0] - before[0], strain[1] - before[1]};
+    return before[2] + elastic.across(trial, nullptr);
+  }
+
+private:
+  static constexpr double ROOT = 1.224744871391589049; // of 3/2
+  static constexpr double ROUNDING = 1e-12;            // excess over the yield stress that is none
+  static constexpr int LIMIT = 200;                    // iterations; about five are needed
+
+  // Yield stress at an equivalent plastic strain, and its slope.
+  std::pair<double, double> yield_stress(double x) const {
+    const auto &t = hardening.table;
+    double value = t[t.size() - 1], slope = 0;
+    for (std::size_t i = 0; i + 3 < t.size(); i += 2)
+      if (x < t[i + 2]) {
+        slope = (t[i + 3] - t[i + 1]) / (t[i + 2] - t[i]);
+        value = t[i + 1] + slope * (x - t[i]);
+        break;
+      }
+    const double fading = hardening.saturation * std::exp(-hardening.rate * x);
+    return {value + hardening.slope * x + hardening.saturation - fading,
+            slope + hardening.slope + hardening.rate * fading};
+  }
+
+  void keep(const double *before, double *after) const {
+    if (before)
+      std::copy_n(before, history, after);
+    else
+      std::fill_n(after, history, 0.0);
+  }
+
+  // The return to the yield surface by implicit Euler: one equation for the growth ``amount`` of the equivalent plastic
+  // strain.
+  struct Flow {
+    const J2 &law;
+    const double *deviator, *before; // of the trial stress; the history
+    double start, amount = 0;
+    double normal[STRAINS], turning[STRAINS]; // unit normal; derivative of the shifted trial stress by the amount
+    double size, excess, slope;               // of the shifted trial stress; the equation and minus its derivative
+
+    Flow(const J2 &law, const double *deviator, const double *before, double start)
+        : law(law), deviator(deviator), before(before), start(start) {
+      evaluate();
+    }
+
+    void evaluate() {
+      const auto &back = law.hardening.back;
+      double kinematic = 0, stiffening = 0;
+      std::copy_n(deviator, STRAINS, normal);
+      std::fill_n(turning, STRAINS, 0.0);
+      for (std::size_t k = 0; 2 * k < back.size(); ++k) {
+        const double share = 1 / (1 + back[2 * k + 1] * amount);
+        kinematic += share * back[2 * k], stiffening += share * share * back[2 * k];
+        for (int s = 0; before && s < STRAINS; ++s) {
+          const double old = before[BACK + k * STRAINS + s];
+          normal[s] -= share * old, turning[s] += back[2 * k + 1] * share * share * old;
+        }
+      }
+      size = std::sqrt(contracted(normal, normal));
+      for (double &value : normal)
+        value /= size > 0 ? size : 1;
+      const auto [yield, hardening] = law.yield_stress(start + amount);
+      excess = ROOT * size - (3 * law.elastic.shear + kinematic) * amount - yield;
+      slope = 3 * law.elastic.shear + hardening + stiffening - ROOT * contracted(normal, turning);
+    }
+
+    // Newton's method within the bounds where the excess changes its sign.
+    void solve() {
+      double low = 0, high = ROOT * std::sqrt(contracted(deviator, deviator));
+      for (std::size_t k = 0; before && 2 * k < law.hardening.back.size(); ++k) {
+        const double *old = before + BACK + k * STRAINS;
+        high += ROOT * std::sqrt(contracted(old, old));
+      }
+      high /= 3 * law.elastic.shear;
+      const double rounding = 4 * std::numeric_limits<double>::epsilon() * ROOT * size;
+      for (int i = 0; i < LIMIT && std::abs(excess) > rounding; ++i) {
+        (excess > 0 ? low : high) = amount;
+        double next = amount + excess / slope;
+        if (!(next > low && next < high))
+          next = (low + high) / 2;
+        if (next == amount)
+          break;
+        amount = next;
+        evaluate();
+      }
+    }
+
+    // The consistent tangent, theory (Y7).
+    void linearise(double *c) const {
+      const double shear = law.elastic.shear, lambda = law.elastic.bulk;
+      const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);
+      double by[STRAINS]; // amount by strain
+      for (int s = 0; s < STRAINS; ++s)
+        by[s] = ROOT * 2 * shear * normal[s] / slope;
+      const double left = 2 * shear * (1 - bent);
+      for (int s = 0; s < STRAINS; ++s)
+        for (int t = 0; t < STRAINS; ++t) {
+          const double pair = s == t ? (s < 3 ? 1 : 0.5) : 0, both = s < 3 && t < 3;
+          c[s * STRAINS + t] = both * lambda + left * (pair - both / 3) - 2 * shear * ROOT * normal[s] * by[t] +
+                               bent * (normal[s] * (2 * shear * normal[t] + along * by[t]) - turning[s] * by[t]);
+        }
+    }
+
+    // The new history; work is the mean of what flow takes at the beginning and at the end.
+    void write(const double *before, double *after, double yield) const {
+      const auto &back = law.hardening.back;
+      const double way = ROOT * amount;
+      double taken = (yield + law.yield_stress(start + amount).first) / 2 * amount;
+      for (int s = 0; s < STRAINS; ++s)
+        after[s] = (before ? before[s] : 0) + (s < 3 ? 1 : 2) * way * normal[s];
+      for (std::size_t k = 0; 2 * k < back.size(); ++k) {
+        const double share = 1 / (1 + back[2 * k + 1] * amount), step = 2.0 / 3 * back[2 * k] * way;
+        for (int s = 0; s < STRAINS; ++s) {
+          const double old = before ? before[BACK + k * STRAINS + s] : 0, now = share * (old + step * normal[s]);
+          taken += (s < 3 ? 1 : 2) * (old + now) / 2 * way * normal[s];
+          after[BACK + k * STRAINS + s] = now;
+        }
+      }
+      after[EQUIVALENT] = start + amount;
+      after[WORK] = (before ? before[WORK] : 0) + taken;
+    }
+  };
+
+  Hooke elastic;
+  Hardening hardening;
+};
+
+// The strain out of the plane that leaves no stress there, by Newton's method within bounds; the tangent is that of the
+// components in the plane. False where there is none.
+template <class Law>
+bool respond_in_plane(const Law &law, double *strain, const double *before, double *after, double *stress,
+                      Dense &result) {
+  constexpr int Z = 2, LIMIT = 100;
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  strain[Z] = law.across(strain, before);
+  for (int i = 0; i < LIMIT; ++i) {
+    law.respond(strain, before, after, stress, result);
+    const double own = result.c[Z * STRAINS + Z];
+    double largest = 0;
+    for (int s = 0; s < STRAINS; ++s)
+      largest = std::max(largest, std::abs(strain[s]));
+    const bool close = std::abs(stress[Z]) <= 1e-11 * own * largest;
+    double next = strain[Z] - stress[Z] / own;
+    (stress[Z] > 0 ? high : low) = strain[Z];
+    if (std::abs(stress[Z]) <= 1e-15 * own * largest || (close && (i > 12 || next == strain[Z]))) {
+      double column[STRAINS], row[STRAINS];
+      for (int s = 0; s < STRAINS; ++s)
+        column[s] = result.c[s * STRAINS + Z], row[s] = result.c[Z * STRAINS + s];
+      for (int s = 0; s < STRAINS; ++s)
+        for (int t = 0; t < STRAINS; ++t)
+          result.c[s * STRAINS + t] = s == Z || t == Z ? 0 : result.c[s * STRAINS + t] - column[s] * row[t] / own;
+      stress[Z] = 0;
+      return own > 0;
+    }
+    if (!(next > low && next < high))
+      next = (low + high) / 2;
+    strain[Z] = next;
+  }
+  return false;
+}
+
+} // namespace abut

@@ -1,0 +1,78 @@
+"""Forces, stiffness, stresses and histories of a group of cells, whoever knows its material: the compiled core or Python."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from abut._core import integrate_given, integrate_given_finite
+from abut.bodies.evaluation import History, evaluate
+from abut.bodies.inverted import require_sound
+from abut.bodies.solids import Array, Group, Solids, TemperatureChange
+from abut.materials.kernel import At, Kernel, Wanted
+from abut.materials.material import compiled
+from abut.mesh.quadrature import Rule
+
+
+def integrate(
+    solids: Solids,
+    group: Group,
+    rule: Rule,
+    displacement: Array | None,
+    temperature: TemperatureChange,
+    history: History | None,
+    wanted: Wanted,
+) -> list[Array]:
+    """Adds and writes what is wanted of a group, in place; returns its new history, in parts, empty for bodies that go
+    together. wanted.after is made here. displacement (n_points, dim), None under small strains: none; history None: the
+    initial one.
+
+    Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
+    if group.kernel is not None:
+        return _compiled(solids, group, group.kernel, rule, displacement, temperature, history, wanted)
+    after, done = [], 0
+    for part, strain, (stress, slope, new) in evaluate(solids, group, rule, displacement, temperature, history):
+        rows = slice(done, done := done + len(stress))
+        if solids.kinematics == "finite":
+            assert displacement is not None
+            at_points = None if wanted.stress is None else wanted.stress[rows]
+            integrate_given_finite(
+                part.cells, displacement, part.thermal, strain, stress, slope, solids.plane == "stress", wanted.force,
+                wanted.tangent, at_points,
+            )  # fmt: skip
+        else:
+            integrate_given(part.cells, stress, None if wanted.tangent is None else slope, wanted.force, wanted.tangent)
+            if wanted.stress is not None:
+                wanted.stress[rows] = stress
+        after.append(new)
+    return after
+
+
+def _compiled(
+    solids: Solids,
+    group: Group,
+    kernel: Kernel,
+    rule: Rule,
+    displacement: Array | None,
+    temperature: TemperatureChange,
+    history: History | None,
+    wanted: Wanted,
+) -> list[Array]:
+    cells, thermal = group.arrays(solids, rule), temperature.strain(solids, group)
+    constants = {}
+    for body, material in solids.materials.items():
+        known = compiled(material, solids.kinematics == "finite")
+        constants[body] = (0.0, 0.0) if known is None or known.kernel != kernel else known.constants
+    at = At(cells, solids.by_cell(group, constants), solids.plane == "stress", displacement, thermal)
+    if not group.body:
+        require_sound(solids, group, kernel.integrate(at, wanted))
+        return []
+    if displacement is None:
+        at = replace(at, displacement=np.zeros(solids.points.shape))
+    n = len(group.cells) * len(rule[1])
+    before = history[group.body][group.first : group.first + n] if history else solids.materials[group.body].initial(n)
+    after = np.array(before)
+    found = kernel.integrate(replace(at, before=np.ascontiguousarray(before)), replace(wanted, after=after))
+    require_sound(solids, group, found)
+    return [after]

@@ -1,0 +1,90 @@
+"""Materials in the space of logarithmic strains, theory (Y8) to (Y10): E = ln U, and the stress conjugate to it.
+
+Any law for small strains, with a history or none, becomes one for finite strains so; Hencky's is linear elasticity there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from abut._core import PointLaw, hooke
+from abut.materials.elastic import LinearElastic
+from abut.materials.kernel import Compiled, PointKernel
+from abut.materials.material import Array, Evaluated
+
+
+@dataclass(frozen=True)
+class Hencky:
+    """Logarithmic (Hencky's) elasticity: the stress conjugate to ln U is linear in it; for kinematics "finite", and linear
+    elastic under small strains.
+
+    young, poisson, density, expansion: as of ``LinearElastic``, density per undeformed volume.
+
+    >>> import abut
+    >>> abut.Hencky(young=210e3, poisson=0.3).linear.young
+    210000.0
+    """
+
+    young: float
+    poisson: float
+    density: float = 0.0
+    expansion: float = 0.0
+
+    def __post_init__(self) -> None:
+        LinearElastic(self.young, self.poisson, self.density, self.expansion)
+
+    @cached_property
+    def linear(self) -> LinearElastic:
+        """The material that it is under small strains."""
+        return LinearElastic(self.young, self.poisson, self.density, self.expansion)
+
+    @property
+    def constant(self) -> bool:
+        """False, as in ``Material``."""
+        return False
+
+    @property
+    def small(self) -> bool:
+        """False, as in ``OwnMaterial``: that is what linear elasticity is for."""
+        return False
+
+    @property
+    def modulus(self) -> float:
+        """Young's modulus."""
+        return self.young
+
+    def initial(self, n: int) -> Array:
+        """It has no history: (n, 0)."""
+        return np.zeros((n, 0))
+
+    def evaluate(self, strain: Array, history: Array) -> Evaluated:
+        """As in ``Material``."""
+        return self.linear.evaluate(strain, history)
+
+    def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
+        """As in ``FiniteMaterial``."""
+        return evaluated(_hooke(self.linear), strain, history, finite=True)
+
+    def compiled(self, finite: bool) -> Compiled | None:
+        """As in ``OwnMaterial``."""
+        return Compiled(PointKernel(_hooke(self.linear), True)) if finite else self.linear.compiled(False)
+
+
+def _hooke(material: LinearElastic) -> PointLaw:
+    return hooke(*bulk_and_shear(material.young, material.poisson))
+
+
+def bulk_and_shear(young: float, poisson: float) -> tuple[float, float]:
+    """Moduli, force per area."""
+    return young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+
+
+def evaluated(law: PointLaw, strain: Array, history: Array, finite: bool) -> Evaluated:
+    """Of a law of the compiled core at points."""
+    result: Evaluated = law.evaluate(
+        np.ascontiguousarray(strain, dtype=float), np.ascontiguousarray(history, dtype=float), finite
+    )
+    return result

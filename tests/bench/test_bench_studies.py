@@ -1,0 +1,56 @@
+"""The study of sides: its problems have the pressures that it compares with, and it tells the wrong side."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import pytest
+
+import abut
+from abut.cells import CELLS
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "sides"))
+
+import problems  # noqa: E402
+import study  # noqa: E402
+
+
+@pytest.mark.parametrize("cell", ["quad8", "tri6", "hex20"])
+def test_a_linear_pressure_is_exact_in_cells_of_second_order(cell: str) -> None:
+    """With either side, whatever the ratio of moduli and the sizes; abut takes the softer one."""
+    row = study.run(problems.column((cell, cell), 1e3, (4, 6)), 0.04, both=True)
+    assert max(row.errors) < 1e-8
+    assert row.chosen == 1
+    assert row.why.startswith("softer")
+
+
+def test_the_wrong_side_is_told() -> None:
+    """A stiff cylinder three times as fine as its soft block, on few facets: twice the pressure that is right, and said."""
+    row = study.run(problems.line(("quad4", "quad4"), 1e3, (12, 4)), 0.04, both=True)
+    assert (row.chosen, row.said, row.silent) == (1, True, False)
+    assert row.errors[0] > 0.5 > 5.0 * row.errors[1]
+
+
+def test_every_facet_type_is_in_the_study() -> None:
+    """On both sides alike, and all problems of a part can be built."""
+    cells = {cell for part in study.PARTS.values() for pair in part.cells for cell in pair}
+    assert cells == {name for name, cell in CELLS.items() if cell.facets and name not in ("pyramid5",)}
+    for part in study.PARTS.values():
+        case = next(part.cases())
+        assert isinstance(case, problems.Case)
+        assert min(case.sizes) >= 8
+
+
+def test_the_summary() -> None:
+    """Of the chosen side, the better and the worse one; nothing of what was not solved."""
+    case = problems.column(("quad4", "quad4"), 1.0, (10, 10))
+    rows = [
+        study.Row(case, (0.01, 0.2), 0, "", True, 0.04), study.Row(case, (0.03, 0.5), 1, "", False, 0.04),
+        study.Row(case, (math.nan, 0.02), 1, "", False, 0.04),
+    ]  # fmt: skip
+    ((part, cells, count, taken, limit, *_, wrong),) = study.summary("column", rows)
+    assert (part, cells, count, taken, limit, wrong) == ("column", "quad4", "3", "50.0", "4.0", "1 of 1")
+    assert [row.silent for row in rows] == [False, False, False]
+    assert isinstance(case.model(), abut.Model)
