@@ -90,6 +90,13 @@ static std::unique_ptr<PointLaw> j2(double bulk, double shear, std::vector<doubl
   return std::make_unique<Held<J2>>(J2(bulk, shear, {std::move(table), slope, saturation, rate, std::move(back)}));
 }
 
+static std::unique_ptr<PointLaw> stretches(std::vector<double> terms, std::vector<double> powers,
+                                           std::vector<double> volume) {
+  if (terms.size() % 2 || volume.empty())
+    throw nb::value_error("terms have two columns, and the volume needs a modulus");
+  return std::make_unique<Held<Stretches>>(Stretches{std::move(terms), std::move(powers), std::move(volume)});
+}
+
 void bind_laws(nb::module_ &m) {
   nb::class_<PointLaw>(m, "PointLaw", "A law at a point, under small strains or in the space of logarithmic ones.")
       .def_prop_ro("history", &PointLaw::history, "Numbers in the history of a point.")
@@ -105,6 +112,10 @@ void bind_laws(nb::module_ &m) {
            nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
            "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
   m.def("hooke", &hooke, nb::arg("bulk"), nb::arg("shear"), "Isotropic linear elasticity.");
+  m.def("stretches", &stretches, nb::arg("terms"), nb::arg("powers"), nb::arg("volume"),
+        "Hyperelasticity, of finite strains only: Ogden's terms (n, 2) mu and alpha, flat; factors of powers of I - 3, "
+        "and of "
+        "even powers of J - 1.");
   m.def("j2", &j2, nb::arg("bulk"), nb::arg("shear"), nb::arg("table"), nb::arg("slope"), nb::arg("saturation"),
         nb::arg("rate"), nb::arg("back"),
         "Von Mises plasticity: table (n, 2) of equivalent plastic strains and yield stresses, to which slope x + "

@@ -98,7 +98,8 @@ public:
     }
   }
 
-  // Adds the stiffness (n, n, dim, dim) of any tangent at point q; symmetric: it is, and only nodes i <= k are added up.
+  // Adds the stiffness (n, n, dim, dim) of any tangent at point q; symmetric: it is, and only nodes i <= k are added
+  // up.
   void add_stiffness(std::size_t q, const double *c, bool symmetric, double *block) {
     for (std::size_t k = 0; k < n; ++k)
       respond(q, k, c, &response[k * (STRAINS + 1) * dim]);
@@ -117,7 +118,8 @@ public:
           if constexpr (dim == 3) {
             out[d] += g[2] * r[5 * dim + d];
             out[dim + d] += g[2] * r[4 * dim + d];
-            out[2 * dim + d] += g[2] * r[2 * dim + d] + g[1] * r[4 * dim + d] + g[0] * r[5 * dim + d] + more[2] * normal;
+            out[2 * dim + d] +=
+                g[2] * r[2 * dim + d] + g[1] * r[4 * dim + d] + g[0] * r[5 * dim + d] + more[2] * normal;
           }
           if constexpr (axisymmetric)
             out[d] += hoop[q * n + i] * r[2 * dim + d];

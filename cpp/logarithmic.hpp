@@ -24,6 +24,12 @@ public:
 
   bool sound = true; // squares of all stretches are positive
 
+  // The logarithmic strain along the principal axes, without shear.
+  void principal(double *result) const {
+    for (int a = 0; a < 3; ++a)
+      result[a] = std::log1p(2 * matrix[a][a]) / 2, result[3 + a] = 0;
+  }
+
   // The logarithmic strain, shear doubled.
   void strain(double *result) const {
     std::fill_n(result, STRAINS, 0.0);
@@ -39,9 +45,10 @@ public:
   }
   double across() const { return matrix[2][2]; }
 
-  // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange.
+  // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
+  // theory (Y9), (Y10).
   void back(double *stress, double *c) const {
-    double turned[STRAINS] = {0}, half[STRAINS][STRAINS] = {{0}}, own[STRAINS][STRAINS] = {{0}};
+    double turned[STRAINS] = {0}, half[STRAINS][STRAINS] = {{0}};
     for (int s = 0; s < STRAINS; ++s)
       for (int t = 0; t < STRAINS; ++t) {
         turned[s] += of_stress[s][t] * stress[t];
@@ -50,10 +57,21 @@ public:
       }
     for (int s = 0; s < STRAINS; ++s)
       for (int t = 0; t < STRAINS; ++t) {
+        c[s * STRAINS + t] = 0;
         for (int m = 0; m < STRAINS; ++m)
-          own[s][t] += half[s][m] * of_stress[t][m];
-        own[s][t] *= first[s] * first[t];
+          c[s * STRAINS + t] += half[s][m] * of_stress[t][m];
       }
+    std::copy_n(turned, STRAINS, stress);
+    back_from_principal(stress, c);
+  }
+
+  // The same of stress and tangent along the principal axes.
+  void back_from_principal(double *stress, double *c) const {
+    double turned[STRAINS], own[STRAINS][STRAINS];
+    std::copy_n(stress, STRAINS, turned);
+    for (int s = 0; s < STRAINS; ++s)
+      for (int t = 0; t < STRAINS; ++t)
+        own[s][t] = c[s * STRAINS + t] * first[s] * first[t];
     add_bending(turned, own);
     for (int s = 0; s < STRAINS; ++s)
       turned[s] *= first[s];

@@ -42,9 +42,9 @@ struct Hooke {
   }
 };
 
-// Von Mises plasticity with associated flow: isotropic hardening by a table of plastic strains and yield stresses,
-// linear and saturating terms, and back stresses of Armstrong and Frederick. History: plastic strain (shear doubled),
-// equivalent plastic strain, plastic work, back stresses.
+// Von Mises plasticity with associated flow, theory (Y2), (Y3): isotropic hardening by a table of plastic strains and
+// yield stresses, linear and saturating terms, and back stresses of Armstrong and Frederick. History: plastic strain
+// (shear doubled), equivalent plastic strain, plastic work, back stresses.
 class J2 {
 public:
   static constexpr int EQUIVALENT = STRAINS, WORK = STRAINS + 1, BACK = STRAINS + 2;
@@ -132,8 +132,8 @@ private:
       std::fill_n(after, history, 0.0);
   }
 
-  // The return to the yield surface by implicit Euler: one equation for the growth ``amount`` of the equivalent plastic
-  // strain.
+  // The return to the yield surface by implicit Euler, theory (Y4), (Y5): one equation for the growth ``amount`` of the
+  // equivalent plastic strain.
   struct Flow {
     const J2 &law;
     const double *deviator, *before; // of the trial stress; the history
@@ -188,7 +188,7 @@ private:
       }
     }
 
-    // The consistent tangent, theory (Y7).
+    // The consistent tangent, theory (Y6), (Y7).
     void linearise(double *c) const {
       const double shear = law.elastic.shear, lambda = law.elastic.bulk;
       const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);

@@ -2,6 +2,7 @@
 #pragma once
 #include "logarithmic.hpp"
 #include "point_laws.hpp"
+#include "principal_laws.hpp"
 
 namespace abut {
 
@@ -35,18 +36,26 @@ template <class Law, bool logarithmic> struct PointMaterial {
       if (!logarithm.sound)
         return result;
       double own[STRAINS];
-      logarithm.strain(own);
+      if constexpr (principal)
+        logarithm.principal(own);
+      else
+        logarithm.strain(own);
       result.sound = find(own, old, now, stress, result);
       if (plane_stress) {
         logarithm.thicken(own[2]);
         strain[2] = logarithm.across();
       }
-      logarithm.back(stress, result.c);
+      if constexpr (principal)
+        logarithm.back_from_principal(stress, result.c);
+      else
+        logarithm.back(stress, result.c);
     }
     return result;
   }
 
 private:
+  static constexpr bool principal = requires { Law::principal; }; // it takes principal strains
+
   bool find(double *strain, const double *old, double *now, double *stress, Dense &result) const {
     if (plane_stress)
       return respond_in_plane(law, strain, old, now, stress, result);

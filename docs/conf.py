@@ -14,7 +14,7 @@ author = "The abut developers"
 project_copyright = "The abut developers, BSD-3-Clause"
 version = release = abut.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "equations", "reference"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "equations", "reference"]
 exclude_patterns = ["make", "site"]
 source_suffix = {".md": "markdown"}
 suppress_warnings = [
@@ -29,6 +29,8 @@ myst_links_external_new_tab = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # signatures are written by reference.py, as they stand in the code
 add_module_names = False
+napoleon_google_docstring = False
+napoleon_use_rtype = False  # what is returned in one paragraph
 maximum_signature_line_length = 88
 
 highlight_language = "text"

@@ -1,7 +1,7 @@
 """What the certificate says of contacts with known pressures, beside their true errors.
 
-``python bench/certificate/run.py`` takes 858 cases of all 1 716 (ten minutes on one core), in shares that may run at once with
-``--share K N --out FILE`` (then ``--sum FILES``). The summary asks of a certificate that runs with a
+``python bench/certificate/run.py`` takes 858 cases of all 1 716 (ten minutes on one core), in shares that may run at
+once with ``--share K N --out FILE`` (then ``--sum FILES``). The summary asks of a certificate that runs with a
 true error above 20 % are not green, that those below 3 % neither fail (1 %) nor warn (5 %), and that the
 estimate "pressure error" is the true error in the median.
 """

@@ -1,6 +1,6 @@
 """Models that no test holds, with defaults: the true local error of the pressure beside what the certificate says.
 
-python bench/certificate/unseen.py [NAME ...]; needs gmsh, which a `bench` install brings. The parts: a wavy surface pressed flat
+python bench/certificate/unseen.py [NAME ...]; needs gmsh, which a `bench` install brings. A wavy surface pressed flat
 (Westergaard; metres and pascals), a roller of unstructured triangles on another metal (inches and psi), a heated shaft of
 unstructured triangles in a hub of bricks' sections, crossed cylinders, a ball of unstructured tetrahedra on a finer and much
 stiffer block, a cone (Sneddon).
@@ -205,7 +205,8 @@ def tetrahedra() -> Case:
 
 
 def cone() -> Case:
-    """A steel cone, 3 degrees, on a polymer, axisymmetric, quad4 on coarser quad4: between a tenth and nine tenths of the radius, which is 1."""
+    """A steel cone, 3 degrees, on a coarser polymer, axisymmetric, contact to a radius of 1; judged from a tenth of it on,
+    since at its tip the pressure has no limit."""
     steel, soft, slope = abut.LinearElastic(210e3, 0.3), abut.LinearElastic(2e3, 0.4), np.tan(np.radians(3.0))
     e = star(steel, soft)
     force = 0.5 * np.pi * e * slope

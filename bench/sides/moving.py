@@ -3,7 +3,6 @@ that touch, and a snap joint. No closed forms: how far the way is gone, and how 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -22,13 +21,13 @@ PRESS = abut.Amplitude(((0.0, 0.0), (0.2, 1.0), (1.0, 1.0)))
 GO = abut.Amplitude(((0.0, 0.0), (0.2, 0.0), (1.0, 1.0)))
 
 
-def over_edge(cell: str, sides: tuple[str, str] | None, named: bool) -> abut.Model:
+def over_edge(cell: str, sides: tuple[str, str], named: bool) -> abut.Model:
     """A block pressed .06 into another one and drawn beyond its edge; sides: two names, without roles unless ``named``."""
     parts = {
         "ground": rectangle((0, 1.6), (0, 0.6), (12, 4), cell),
         "block": rectangle((0.6, 1.0), (0.6, 0.9), (4, 3), cell),
     }
-    first, second = sides or ("block.bottom", "ground.top")
+    first, second = sides
     contact = abut.Contact(contactor=first, target=second) if named else abut.Contact(first, second)
     return abut.Model(
         join(parts), [abut.Solid(body, SOFT) for body in parts],
@@ -36,23 +35,19 @@ def over_edge(cell: str, sides: tuple[str, str] | None, named: bool) -> abut.Mod
             abut.Support("ground.bottom", x=0, y=0), abut.Support("block.top", y=-0.06, amplitude=PRESS),
             abut.Support("block.top", x=0.8, amplitude=GO),
         ],
-        contacts=[contact], plane="strain", kinematics="finite", solve=abut.SolveOptions(seconds=60.0),
+        contacts=[contact], plane="strain", kinematics="finite",
     )  # fmt: skip
 
 
-def edge() -> Table:
-    """Who gets to the end of the way, and in how many iterations."""
+def edge(cell: str = "quad4") -> Table:
+    """Who gets to the end of the way, and in how many iterations: whole bodies, and the faces that touch."""
     rows = []
-    for cell in ("quad4", "tri3"):
-        for named, sides in (
-            (False, ("block", "ground")), (True, ("block", "ground")), (True, ("ground", "block")),
-            (False, ("block.bottom", "ground.top")), (True, ("block.bottom", "ground.top")),
-            (True, ("ground.top", "block.bottom")),
-        ):  # fmt: skip
-            model = over_edge(cell, sides, named)
-            end, count = reached(model)
-            rows.append([cell, ", ".join(sides), model.contacts[0].contactor if named else "abut's choice", end, count])
-    return ["cells", "sides", "contactor", "reached", "iterations"], rows
+    for sides in (("block", "ground"), ("block.bottom", "ground.top")):
+        for named in (None, sides, sides[::-1]):
+            model = over_edge(cell, named or sides, named is not None)
+            contactor = str(model.contacts[0].contactor) + ("" if named else " (abut's choice)")
+            rows.append([", ".join(sides), contactor, *reached(model)])
+    return ["sides", "contactor", "reached", "iterations"], rows
 
 
 def reached(model: abut.Model) -> tuple[str, str]:
@@ -92,4 +87,3 @@ def roughness(values: NDArray[np.float64]) -> float:
 
 
 MOVING: dict[str, Callable[[], Table]] = {"edge": edge, "snap": snap}
-sys.path.insert(0, str(ROOT / "tests"))

@@ -14,8 +14,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from problems import KINDS, Case
 from moving import MOVING
+from problems import KINDS, Case
 
 import abut
 from abut.diagnosis.cures import cures
@@ -30,8 +30,8 @@ MIXED_SOLID = (("hex8", "tet10"), ("tet4", "hex20"))
 
 @dataclass(frozen=True)
 class Part:
-    """kind: of problem; cells: of both sides; at: pairs of a ratio of moduli and numbers of facets; limit: of errors, of each
-    cell type by how its name begins, largest of both sides."""
+    """kind: of problem; cells: of both sides; at: pairs of a ratio of moduli and numbers of facets; limit: of errors,
+    of each cell type by how its name begins, largest of both sides."""
 
     kind: str
     cells: tuple[tuple[str, str], ...]
@@ -79,15 +79,20 @@ PARTS = {
     "ball-fine": Part("ball", _alike(*SOLID), _diagonal(8, 40), HERTZ),
     "ball-2": Part("ball", _alike(*SOLID_2), _diagonal(8, 16), HERTZ),
     "ball-mixed": Part("ball", MIXED_SOLID, _diagonal(8, 12), HERTZ),
-    "column-3d": Part("column", _alike(*SOLID, *SOLID_2), _corners(10, 20), HERTZ),
+    "column-3d": Part("column", _alike(*SOLID, *SOLID_2), _diagonal(10, 14), HERTZ),
 }
-LONG = ("ball-fine", "ball-2", "ball-mixed")  # whose models docs/make/studies.py solves with abut's choice only
+LONG = (
+    "ball-fine",
+    "ball-2",
+    "ball-mixed",
+    "column-3d",
+)  # whose models docs/make/studies.py solves with abut's choice only
 
 
 @dataclass(frozen=True)
 class Row:
     """errors: with the first side, and with the second, as contactor, NaN where not solved; chosen: by abut, 0 or 1; why: in
-    its words; said: whether with the other side a line fails ("sides", "oscillation") that says to swap them; limit: of errors."""
+    its words; said: whether with the other side a line fails ("sides", "oscillation") that says "swap"."""
 
     case: Case
     errors: tuple[float, float]

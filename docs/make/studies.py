@@ -1,7 +1,7 @@
 """The tables of docs/verification/pressure.md that two studies make: sides, and what the certificate says.
 
-python docs/make/studies.py [PART ...]: parts of bench/sides/study.py, and "certificate"; all by default (an hour on one core).
-Rows of parts that are not asked for stay.
+python docs/make/studies.py [PART ...]: parts of bench/sides/study.py, and "certificate"; all by default (an hour on a
+core). Rows of parts that are not asked for stay.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class Exports(SphinxDirective):
             what = "autoexception" if inspect.isclass(item) and issubclass(item, Exception) else (
                 "autoclass" if inspect.isclass(item) else "autofunction")  # fmt: skip
             lines += ["```{eval-rst}", f".. {what}:: abut.{name}"]
-            lines += ["   :members:", "```", ""] if what == "autoclass" else ["```", ""]
+            lines += ["   :members:", "   :inherited-members:", "```", ""] if what == "autoclass" else ["```", ""]
         return self.parse_text_to_nodes("\n".join(lines))
 
 

@@ -26,7 +26,9 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 import abut
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bulge import with_bulge
-from abut.contact.coupling import couple
+from abut.contact.common_normals import common_normals
+from abut.contact.coupling import CouplingOptions, couple, default_reach
+from abut.contact.geometry import nodal_normals
 from abut.contact.laws import Complementarity, LawState
 from abut.contact.pressure_space import pressure_space, resolve
 from abut.mesh.make import join
@@ -84,7 +86,10 @@ def solve() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # abut's gaps are those of the smooth surfaces that flat facets stand for
     contactor, target = (with_bulge(side) for side in (surface(punch, "bottom"), surface(block, "top")))
     name, degree = resolve("auto", contactor)
-    coupling = couple(contactor, target, degree)
+    # pressures act along the normals between both sides: half way, as both bodies yield alike
+    sides, reach = (nodal_normals(contactor), nodal_normals(target)), default_reach(contactor, target)
+    normals = common_normals(contactor, target, *sides, share=0.5, reach=reach, couple=couple)
+    coupling = couple(contactor, target, degree, CouplingOptions(normals=normals))
     space = pressure_space(name, contactor, coupling)
     operator = (space.transfer.T @ coupling.operator).tocsr()  # B
     opening = space.transfer.T @ coupling.gap  # g

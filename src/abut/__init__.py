@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from abut.materials.hyperelastic import NeoHooke
     from abut.materials.logarithmic import Hencky
     from abut.materials.plastic import Plastic
+    from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -55,15 +56,17 @@ _HOME = {  # of public names that do not come from abut.model
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
     "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
+    **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
     "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force",
-    "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment",
-    "NeoHooke", "NodalForce", "Output", "Plastic", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Support", "Temperature", "Term", "Traction",
-    "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "ArrudaBoyce", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling",
+    "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh",
+    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Pressure",
+    "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
+    "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve",
+    "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

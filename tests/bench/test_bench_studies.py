@@ -13,8 +13,8 @@ from abut.cells import CELLS
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "sides"))
 
-import problems  # noqa: E402
-import study  # noqa: E402
+import problems
+import study
 
 
 @pytest.mark.parametrize("cell", ["quad8", "tri6", "hex20"])

@@ -37,6 +37,11 @@ SAME = 2e-6
 # gaps are known to rounding of the coordinates: the loads under which that does not count
 ROUNDED = {"pin-lug/job": 1e-5, "two-rings/job": 1e-3, "twisted-hub/job": 1e-5}
 
+# Small displacements have the normals between both sides, (R2), large ones those of the contactor, which under a load are
+# the same, but not on the facet or two of round bodies that a tiny one presses together: by this angle over one of them, share
+# of (R2) * size / radius. Pressures differ by half of its square (4.9e-6, 1.1e-6 with 4, 8 cells; 2.5e-4, 8.9e-5
+# with 3, 5).
+LEANS = {"hertz-line/quad8": 0.25 * 2.0 / 50.0, "hertz-sphere/job": 0.5 * 1.1 / 3.0 / 8.0}
 
 # without multipliers: rounding shakes those of the pin three times as much; nodes without a target follow others or have
 # none
@@ -101,7 +106,7 @@ CASES = [
 def test_same_pressures(name: str, pressure: str, contact: dict[str, Any], tmp_path: Path) -> None:
     model = example(name, tmp_path)
     small, large = (with_pressure(model, pressure, k, **contact) for k in ("small", "finite"))
-    assert differences(small, large, reported=name in REPORTED) < SAME
+    assert differences(small, large, reported=name in REPORTED) < SAME + LEANS.get(name, 0.0) ** 2 / 2.0
 
 
 @pytest.mark.long

@@ -98,3 +98,33 @@ def test_what_is_refused(lines: list[str], message: str, tmp_path: Path) -> None
 def test_shrink_stands_in_the_first_step(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="SHRINK: stands in the first step"):
         load(tmp_path, DECK + step() + step(*interference("SLAVE, MASTER", more=", SHRINK")))
+
+
+def change(way: str) -> list[str]:
+    return [f"*MODEL CHANGE, TYPE=CONTACT PAIR, {way}", "SLAVE, MASTER"]
+
+
+@pytest.mark.parametrize("nlgeom", ["", ", NLGEOM"])
+def test_pairs_that_come_and_go(nlgeom: str, tmp_path: Path) -> None:
+    """All of the overlap is carried, nothing while the pair is removed, and all again."""
+    text = "".join(
+        step(*lines).replace("*STEP", f"*STEP{nlgeom}") for lines in ([], change("REMOVE"), [], change("ADD"), [])
+    )
+    solution = solve(tmp_path, DECK + text)
+    assert solution.converged
+    ends = [next(s for s in solution.steps if abs(s.factor - t) < 1e-9) for t in (0.2, 0.4, 0.6, 0.8, 1.0)]
+    full = 1000.0 * (0.05 - 0.05**2 / 2.0) * 0.95 if nlgeom else 50.0
+    assert [abs(s.contacts[0].force[2]) for s in ends] == pytest.approx([full, 0.0, 0.0, full, full], rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("card", "message"),
+    [
+        ("*MODEL CHANGE, REMOVE\nALL", "elements that come or go"),
+        ("*MODEL CHANGE, TYPE=CONTACT PAIR\nSLAVE, MASTER", "either ADD or REMOVE"),
+        ("*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSLAVE, SLAVE", "no .CONTACT PAIR"),
+    ],
+)
+def test_changes_that_are_refused(card: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
+        load(tmp_path, DECK + step(*card.split("\n")))

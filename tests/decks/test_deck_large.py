@@ -108,6 +108,23 @@ def test_ends_of_steps_are_met(tmp_path: Path) -> None:
     assert straight.solve.times == pytest.approx(np.arange(1, 21) / 20.0)  # tenths of both steps
 
 
+@pytest.mark.parametrize(
+    ("card", "material"),
+    [
+        ("MOONEY-RIVLIN\n3., 1., 0.01", abut.MooneyRivlin(200.0, 2.0, 1e-3, c10=3.0, c01=1.0)),
+        ("POLYNOMIAL, N=1\n3., 1., 0.01", abut.MooneyRivlin(200.0, 2.0, 1e-3, c10=3.0, c01=1.0)),
+        ("YEOH\n3., -.1, .2, 0.01", abut.Yeoh([100.0, 0.0, 0.0], 2.0, 1e-3, c10=3.0, c20=-0.1, c30=0.2)),
+        ("REDUCED POLYNOMIAL, N=2\n3., -.1, 0.01, .02", abut.Yeoh([100.0, 50.0], 2.0, 1e-3, c10=3.0, c20=-0.1)),
+        ("OGDEN, N=2\n3., 2., -1., -2., 0.01", abut.Ogden([100.0, 0.0], 2.0, 1e-3, terms=[(3.0, 2.0), (1.0, -2.0)])),
+        ("ARRUDA-BOYCE\n3., 2.8, 0.01", abut.ArrudaBoyce(200.0, 2.0, 1e-3, shear=3.0, locking=2.8)),
+    ],
+)
+def test_kinds_of_rubber(tmp_path: Path, card: str, material: object) -> None:
+    """K = 2 / D1; Ogden's mu of decks is half of mu alpha in abut's form."""
+    text = LARGE.replace("*ELASTIC\n1000., 0.", f"*HYPERELASTIC, {card}")
+    assert load(tmp_path, text).model.solids[0].material == material
+
+
 def test_notes_say_what_is_otherwise(tmp_path: Path) -> None:
     notes = load(tmp_path, DECK + step(card="*STATIC").replace("*STEP", "*STEP, NLGEOM")).notes
     assert any("NLGEOM holds for the whole deck, though *STEP 1 is without it" in note for note in notes)
@@ -123,7 +140,8 @@ def test_rubber(tmp_path: Path) -> None:
     assert material == abut.NeoHooke(shear=6.0, bulk=200.0, volumetric="isochoric", density=2.0, expansion=1e-3)
     refused = {
         "needs large strains; write \\*STEP, NLGEOM": text.replace(", NLGEOM", ""),
-        "of rubber elasticity only \\*HYPERELASTIC, NEO HOOKE": text.replace("NEO HOOKE", "MOONEY-RIVLIN"),
+        "this kind of rubber elasticity is not supported": text.replace("NEO HOOKE", "VAN DER WAALS"),
+        "POLYNOMIAL is supported with N=1 only": text.replace("NEO HOOKE", "POLYNOMIAL, N=2"),
         "the kind is missing": text.replace(", NEO HOOKE", ""),
         "D1: expected a number > 0": text.replace("3., 0.01", "3."),
         "C10: expected a number > 0": text.replace("3., 0.01", "-3., 0.01"),

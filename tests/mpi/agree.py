@@ -13,11 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent)]
+EXAMPLES = Path(__file__).parents[2] / "examples"
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent), str(EXAMPLES / "own-material")]
 
 from abut.parallel.team import Team, lead  # noqa: E402
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 Cells = tuple[tuple[int, ...], tuple[int, ...]]
 
 
@@ -139,6 +139,39 @@ def finite(name: str) -> Any:
     return MODELS[name]()
 
 
+def metal(kinematics: str = "small") -> Any:
+    """A block of metal that yields under a punch, which is then let go in part."""
+    import abut
+    from abut.mesh.make import box, join
+
+    mesh = join(
+        {
+            "block": box([0, 2], [0, 1], [0, 1], cells=[4, 3, 3], cell="hex8"),
+            "punch": box([0.5, 1.2], [0, 1], [1, 1.5], cells=[3, 2, 1], cell="hex8"),
+        }
+    )
+    law = abut.Plastic(1.0, 0.3, 0.005, 0.05, backstresses=[(0.02, 0.0)])
+    course = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.95)))
+    return abut.Model(
+        mesh,
+        [abut.Solid("block", law), abut.Solid("punch", abut.LinearElastic(10.0, 0.2))],
+        [
+            abut.Support("block.bottom", x=0.0, y=0.0, z=0.0),
+            abut.Support("punch.top", x=0.0, y=0.0, z=-0.02, amplitude=course),
+        ],
+        contacts=[abut.Contact(contactor="punch.bottom", target="block.top")],
+        solve=abut.SolveOptions(steps=4),
+        kinematics=kinematics,
+    )
+
+
+def softening() -> Any:
+    """The example of a user's own material with a history under finite strains."""
+    import softening_rubber
+
+    return softening_rubber.model(softening_rubber.SofteningRubber(1.0, 20.0))
+
+
 CASES: dict[str, Callable[[], Any]] = {
     "hex8": lambda: patch("hex8", "hex8"),
     "tet10-hex20": lambda: patch("tet10", "hex20"),
@@ -168,6 +201,9 @@ CASES: dict[str, Callable[[], Any]] = {
     "ball": ball,
     "lifted": lifted,
     "loose": loose,
+    "metal": metal,
+    "metal-finite": lambda: metal("finite"),
+    "softening": softening,
     "pin-lug": lambda: example("pin-lug/job.toml"),
     **{
         name: partial(finite, name)

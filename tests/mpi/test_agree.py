@@ -56,6 +56,13 @@ def test_friction(mpirun: Run, n: int, option: str) -> None:
     assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
 
 
+@pytest.mark.parametrize("case", ["metal", "metal-finite", "softening"])
+def test_materials_with_a_history(mpirun: Run, case: str) -> None:
+    """Metal that yields under small and finite strains, and a user's own law: histories over loading and unloading."""
+    for row in compared(mpirun, 2, [case]).values():
+        assert "direct" in row["solver"]
+
+
 @pytest.mark.parametrize("n", [1, 2])
 def test_the_constraint_function_by_multigrid(mpirun: Run, n: int) -> None:
     """Its rows look at points: where it is all closed, and where contact ends within a facet."""

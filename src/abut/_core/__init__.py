@@ -30,6 +30,7 @@ from abut._core._core import (
     smallest_determinants,
     strains,
     stress_errors,
+    stretches,
     strong_part,
     values_in,
 )
@@ -62,6 +63,7 @@ __all__ = [
     "smallest_determinants",
     "strains",
     "stress_errors",
+    "stretches",
     "strong_part",
     "values_in",
 ]

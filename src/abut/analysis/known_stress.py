@@ -10,7 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.analysis.strain_gauges import gauges
 from abut.bodies.recovery import Equations
+from abut.bodies.stress import PointStress
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, full_moments, split_at_creases
 from abut.contact.nodal_recovery import carry_to_target
@@ -68,10 +70,15 @@ class _Skin:
 
 
 def known_stress(
-    model: Model, points: Vector, time: float, pairs: Sequence[Pair], contacts: Sequence[ContactResult]
+    model: Model,
+    points: Vector,
+    time: float,
+    pairs: Sequence[Pair],
+    contacts: Sequence[ContactResult],
+    sampled: PointStress,
 ) -> Equations:
     """Equations for the stress at the end of a step. points: (n_points, dim) where they are now; contacts: results of the
-    pairs."""
+    pairs; sampled: the stresses of the cells."""
     skin = _Skin.of(model, points)
     factors = dict(zip(model.histories, weights(model.histories, time)))
     for load in model.loads:
@@ -79,7 +86,7 @@ def known_stress(
     for pair, contact in zip(pairs, contacts):
         _add_contact(skin, pair, contact)
     _add_supports(model, skin)
-    return _equations(model, skin)
+    return _with_gauges(model, skin, _equations(model, skin), sampled)
 
 
 def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
@@ -217,6 +224,23 @@ def _equations(model: Model, skin: _Skin) -> Equations:
         np.concatenate([x[rows] for rows, _ in parts]), np.concatenate(coefficients),
         np.concatenate([t[rows, a] for rows, a in parts]), sp.hstack([around[:, rows] for rows, _ in parts]).tocsr(),
         planes, np.eye(dim), bare,
+    )  # fmt: skip
+
+
+def _with_gauges(model: Model, skin: _Skin, known: Equations, sampled: PointStress) -> Equations:
+    """What strains along the surface tell beside, where the whole traction is known."""
+    used = skin.surface.nodes >= 0
+    area = area_vectors(skin.surface)
+    normal = area / np.maximum(np.linalg.norm(area, axis=2, keepdims=True), 1e-300)
+    nodal = np.where(used[..., None], skin.traction - skin.pressure[..., None] * normal, 0.0)
+    traction = nodal.sum(axis=1) / used.sum(axis=1, keepdims=True)
+    whole = np.asarray(~(skin.unknown | skin.mirrored).any(axis=1))
+    found = gauges(model.deformable, skin.surface, sampled, whole, traction)
+    of = model.deformable.patches
+    return replace(
+        known, x=np.concatenate([known.x, found.x]), coefficients=np.concatenate([known.coefficients, found.coefficients]),
+        value=np.concatenate([known.value, found.value]),
+        of=sp.hstack([known.of, of.skin[:, np.flatnonzero(of.free)[found.facet]]]).tocsr(),
     )  # fmt: skip
 
 

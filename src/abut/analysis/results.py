@@ -92,7 +92,7 @@ def step_result(
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
-    known = known_stress(model, points, state.time, balance.pairs, contacts)
+    known = known_stress(model, points, state.time, balance.pairs, contacts, sampled)
     values = recovered(solids, points, sampled, known)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy

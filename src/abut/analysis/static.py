@@ -27,15 +27,39 @@ def solve(
 ) -> Solution:
     """Solve a model step by step.
 
-    ``observer`` is called with every iteration (``abut.solution.Iteration``), with stages that begin
-    (``abut.solution.Phase``) and with notes as text while it runs; what it raises ends the run. ``on_step`` gets the
-    solution so far after each converged step, and what it takes to go on from there; ``resume``: such records of all steps
-    done before, in order, of the same model: the run goes on after the last of them. ``team``: processes that share the
-    work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there is none.
-    A run that does not converge is returned with its last state (``solution.converged`` is False).
-    After ``solve.seconds`` the steps done so far are returned (``solution.complete`` is False). Raises OutOfTime where there
-    are none, InputError for a model that cannot be used, SingularModelError for one without a unique solution.
+    Parameters
+    ----------
+    model : Model
+        What is solved; ``model.solve`` says how.
+    observer : callable, optional
+        Called with every iteration (``abut.solution.Iteration``), with stages that begin (``abut.solution.Phase``) and
+        with notes as text while it runs; what it raises ends the run.
+    on_step : callable, optional
+        Gets the solution so far after each converged step, and what it takes to go on from there
+        (``abut.solution.Saved``).
+    resume : sequence of Saved, optional
+        Such records of all steps done before, in order, of the same model: the run goes on after the last of them.
+    team : abut.parallel.Team, optional
+        Processes that share the work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there
+        is none.
 
+    Returns
+    -------
+    Solution
+        All steps. A run that does not converge has its last state (``solution.converged`` is False); after
+        ``solve.seconds`` there are the steps done so far (``solution.complete`` is False).
+
+    Raises
+    ------
+    InputError
+        For a model that cannot be used.
+    SingularModelError
+        For one without a unique solution.
+    OutOfTime
+        Where ``solve.seconds`` were over before the first step was done.
+
+    Examples
+    --------
     Two stacked blocks with meshes that do not match, pressed together:
 
     >>> import abut

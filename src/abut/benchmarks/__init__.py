@@ -10,8 +10,10 @@ from abut.benchmarks import (
     finite_capstan,
     finite_contact,
     finite_contact_3d,
+    finite_edges,
     finite_gears,
     finite_rubber,
+    finite_stacks,
     finite_uniform,
     finite_wires,
     fits,
@@ -51,5 +53,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_wires.BENCHMARKS,
         *finite_capstan.BENCHMARKS,
         *plastic.BENCHMARKS,
+        *finite_edges.BENCHMARKS,
+        *finite_stacks.BENCHMARKS,
     )
 }

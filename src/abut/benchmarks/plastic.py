@@ -148,7 +148,10 @@ def _press_fit(interference: float, pressure: float) -> Benchmark:
 
 RADIUS, BALL_YIELD = 10.0, 500.0
 FIRST_FORCE, FIRST_WIDTH, FIRST_DEPTH = 5.0885, 0.054890, 3.0129e-4  # where it begins to yield, by Hertz and 1.6128
-INDENTED = "half space under a rigid smooth ball, perfect plasticity, E / Y = 420: own axisymmetric elements against a parabola"
+INDENTED = (
+    "half space under a rigid smooth ball, perfect plasticity, E / Y = 420: own axisymmetric elements against a "
+    "parabola"
+)
 AGREED = (
     "cells of a quarter of the first contact radius; Kogut and Etsion (2002) and those elements agree within 3 %; the "
     "domain ends at 900 of these radii"

@@ -13,11 +13,21 @@ from abut.errors import InputError
 
 @dataclass(frozen=True)
 class PressureOverclosure:
-    """Pressure over the overclosure (minus the gap), theory (L14): ``points`` are pairs of the two, linear between; no
-    pressure before the first, whose pressure is 0, and the last slope goes on after the last. [length, force per area]
+    """Pressure over the overclosure, which is minus the gap, theory (L14).
 
-    Raises InputError for points that do not increase.
+    Parameters
+    ----------
+    points : sequence of (float, float)
+        Pairs of overclosure [length] and pressure [force per area], linear between; no pressure before the first, whose
+        pressure is 0, and the last slope goes on after the last.
 
+    Raises
+    ------
+    InputError
+        For points that do not increase.
+
+    Examples
+    --------
     >>> import abut
     >>> gasket = abut.PressureOverclosure([(0.0, 0.0), (0.01, 5.0), (0.02, 50.0)])
     >>> round(gasket.overclosure(5.0), 6)

@@ -19,6 +19,7 @@ from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps,
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
+from abut.decks.rubber import of_rubber
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -32,7 +33,6 @@ from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
 from abut.mesh.check import check_mesh
@@ -221,8 +221,8 @@ def _solid(name: str, piece: Piece) -> Solid:
     (a, b), rest = material.constants, (material.density, material.expansion)
     law: Material
     try:
-        if material.rubber:  # C10 and D1
-            law = NeoHooke(None, None, 2.0 * a, 2.0 / b, None, "isochoric", *rest)
+        if material.rubber is not None:
+            law = of_rubber(material.rubber, rest)
         elif (metal := material.hardening) is not None:
             law = Plastic(a, b, metal.table, backstresses=metal.backstresses, density=rest[0], expansion=rest[1])
         else:

@@ -28,9 +28,18 @@ BEND = np.cos(np.deg2rad(45.0))  # facets beyond a sharper edge are not added ar
 class FoundContact:
     """Two surfaces that face each other.
 
-    contactor, target: names for the surfaces ("auto:lug-pin" belongs to body 'lug' and faces 'pin'); bodies: the
-    contactor's, the target's; contactor_facets, target_facets: rows (n, 2) = (cell, local facet); gap: the smallest and
-    the largest distance found, negative where they overlap; reason: why this side is the contactor.
+    Parameters
+    ----------
+    contactor, target : str
+        Names for the surfaces: "auto:lug-pin" belongs to body 'lug' and faces 'pin'.
+    bodies : (str, str)
+        The contactor's and the target's.
+    contactor_facets, target_facets : (n, 2) array of int
+        Rows (cell, local facet).
+    gap : (float, float)
+        The smallest and the largest distance found [length], negative where they overlap.
+    reason : str
+        Why this side is the contactor.
     """
 
     contactor: str
@@ -69,13 +78,32 @@ def find_contacts(
 ) -> tuple[FoundContact, ...]:
     """Surfaces on the outside of different bodies that face each other: one pair for two bodies and each connected patch.
 
-    The contactor is chosen as in ``abut.contact.contactor_choice``. solids: the bodies' materials; a body without one counts
-    as rigid, and where there are no solids all count as alike. reach: the largest gap, length (default: half the sum of
-    two facets' sizes; overlaps count up to half of that). bodies: look at these only.
-    Each patch is widened by the facets around it, so that contact may move, and the target by what the contactor sees. A
-    facet may belong to several pairs.
-    Raises InputError for a reach that is not positive and for unknown bodies.
+    The contactor is chosen as in ``abut.contact.contactor_choice``. Each patch is widened by the facets around it, so
+    that contact may move, and the target by what the contactor sees. A facet may belong to several pairs.
 
+    Parameters
+    ----------
+    mesh : Mesh
+        Bodies are looked at from outside; their surfaces need no names.
+    solids : sequence of Solid, optional
+        The bodies' materials. A body without one counts as rigid; where there are no solids all count as alike.
+    reach : float, optional
+        The largest gap [length]. Left out: half the sum of two facets' sizes; overlaps count up to half of that.
+    bodies : sequence of str, optional
+        Look at these only.
+
+    Returns
+    -------
+    tuple of FoundContact
+        One for each pair of patches; empty where nothing is near.
+
+    Raises
+    ------
+    InputError
+        For a reach that is not positive, and for unknown bodies.
+
+    Examples
+    --------
     >>> import abut
     >>> from abut.mesh import make
     >>> blocks = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[4, 2])}
@@ -117,7 +145,25 @@ def find_contacts(
 
 
 def add_surfaces(mesh: Mesh, found: Sequence[FoundContact]) -> Mesh:
-    """The mesh with the surfaces of found contacts under their names. Raises InputError where it has such names."""
+    """The mesh with the surfaces of found contacts under their names.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh in which they were found.
+    found : sequence of FoundContact
+        From ``find_contacts``.
+
+    Returns
+    -------
+    Mesh
+        The same with more surfaces.
+
+    Raises
+    ------
+    InputError
+        Where it has such names already.
+    """
     surfaces = dict(mesh.surfaces)
     for contact in found:
         for name, rows in ((contact.contactor, contact.contactor_facets), (contact.target, contact.target_facets)):

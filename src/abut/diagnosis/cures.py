@@ -140,6 +140,8 @@ def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
 
 def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     loaded = np.nanmax(result.pressure, axis=1) > LOADED * result.max_pressure
+    if not loaded.any():  # not any more, at the end of the run
+        loaded = np.ones_like(loaded)
     size = float(np.median(facet_sizes(result.contactor)[loaded]))
     first = result.contactor.dim == 3 and bool((result.contactor.kinds == CELLS["tri3"].code).any())
     higher = ", and cells of second order take off more than that" if first else ""

@@ -26,7 +26,19 @@ from abut.problem.finite_pairs import finite_pair
 
 
 def check(model: Model) -> Report:
-    """Examine a model without solving it. What depends on something that is itself in error is left out."""
+    """Examine a model without solving it. What depends on something that is itself in error is left out.
+
+    Parameters
+    ----------
+    model : Model
+        The model as ``solve`` takes it.
+
+    Returns
+    -------
+    Report
+        ``findings``, the gravest first, each with severity, place, what it is and how to correct it; ``motions`` that
+        supports leave free; ``status``, the exit status of `abut check`: 0 without errors.
+    """
     findings, doubts = [*quality(model.mesh), *probes(model), *too_stiff(model)], units(model)
     shown: list[Motion] = []
     try:

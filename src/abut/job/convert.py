@@ -19,6 +19,7 @@ from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
+from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -53,6 +54,7 @@ KINDS: dict[type, str] = {
 
 MATERIALS: dict[type, str] = {
     LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
+    MooneyRivlin: "mooney-rivlin", Yeoh: "yeoh", Ogden: "ogden", ArrudaBoyce: "arruda-boyce",
 }  # fmt: skip
 
 

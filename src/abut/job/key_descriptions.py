@@ -70,6 +70,43 @@ MEANINGS: dict[str, dict[str, str]] = {
         "density": "mass per undeformed volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
+    "MooneyRivlinTable": {
+        "kind": "the material law, for finite kinematics: C10 (I1 - 3) + C01 (I2 - 3) of volume-preserving invariants",
+        "c10": "factor of I1 - 3 [force/length^2]",
+        "c01": "factor of I2 - 3 [force/length^2]",
+        "bulk": "bulk modulus K of the energy K/2 (J - 1)^2, or a list of factors of (J - 1)^2, (J - 1)^4, ... "
+        "[force/length^2]",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "YeohTable": {
+        "kind": "the material law, for finite kinematics: C10 (I1 - 3) + C20 (I1 - 3)^2 + C30 (I1 - 3)^3",
+        "c10": "factor of I1 - 3 [force/length^2]",
+        "c20": "factor of (I1 - 3)^2 [force/length^2]",
+        "c30": "factor of (I1 - 3)^3 [force/length^2]",
+        "bulk": "bulk modulus K of the energy K/2 (J - 1)^2, or a list of factors of (J - 1)^2, (J - 1)^4, ... "
+        "[force/length^2]",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "OgdenTable": {
+        "kind": "the material law, for finite kinematics: the sum of mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3)",
+        "terms": "[mu, alpha] of each term, Ogden's own form; mu of Abaqus and CalculiX is half of mu alpha here "
+        "[force/length^2, 1]",
+        "bulk": "bulk modulus K of the energy K/2 (J - 1)^2, or a list of factors of (J - 1)^2, (J - 1)^4, ... "
+        "[force/length^2]",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
+    "ArrudaBoyceTable": {
+        "kind": "the material law, for finite kinematics: chains that lock at a stretch",
+        "shear": "mu of the series, about the shear modulus at rest [force/length^2]",
+        "locking": "stretch at which chains lock",
+        "bulk": "bulk modulus K of the energy K/2 (J - 1)^2, or a list of factors of (J - 1)^2, (J - 1)^4, ... "
+        "[force/length^2]",
+        "density": "mass per undeformed volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, used by temperature changes [1/temperature]",
+    },
     "PlasticTable": {
         "kind": "the material law: metal that yields (von Mises)",
         "young": "Young's modulus, > 0 [force/length^2]",

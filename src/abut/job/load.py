@@ -14,14 +14,16 @@ from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
+from abut.job.material_tables import Materials
 from abut.job.other_names import key_called, kind_said
-from abut.job.schema import EquationTable, JobFile, Materials, MeshTable
+from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.values import values
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
+from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -61,6 +63,7 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 
 MATERIALS: Mapping[str, Callable[..., Material]] = {
     "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
+    "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
 }  # fmt: skip
 
 

@@ -18,12 +18,12 @@ KEYS: Mapping[str, str] = {
     "clearance": "offset", "interference": "offset", "increments": "steps",
 }  # fmt: skip
 YIELDS = "plastic is what it is called"
-RUBBER = "of the laws for rubber there is neo-Hooke"
+RUBBER = "of the laws for rubber there are neo-hooke, mooney-rivlin, yeoh, ogden and arruda-boyce"
 KINDS: Mapping[str, str] = {
     "elastic-plastic": YIELDS, "elastoplastic": YIELDS, "j2": YIELDS, "von-mises": YIELDS, "vmis": YIELDS, "mises": YIELDS,
     "vmis-isot-line": YIELDS, "vmis-isot-trac": YIELDS, "vmis-cine-line": YIELDS, "chaboche": YIELDS,
     "logarithmic": "hencky is what it is called", "elas-hyper-log": "hencky is what it is called",
-    "hyperelastic": RUBBER, "mooney-rivlin": RUBBER, "ogden": RUBBER, "yeoh": RUBBER, "arruda-boyce": RUBBER,
+    "hyperelastic": RUBBER, "mooney": RUBBER, "polynomial": RUBBER, "rubber": RUBBER, "signorini": RUBBER, "gent": RUBBER,
     "viscoelastic": "there are no materials that creep or relax",
     "orthotropic": "materials are the same in all directions", "anisotropic": "materials are the same in all directions",
     "elastic": "linear-elastic is what it is called", "isotropic": "linear-elastic is what it is called",

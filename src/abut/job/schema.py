@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
-from pydantic_core.core_schema import CoreSchema, literal_schema
 
 from abut.bodies.integration import INTEGRATIONS
 from abut.errors import InputError
 from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
-from abut.materials.hyperelastic import VOLUMETRIC
+from abut.job.material_tables import Materials
+from abut.job.table import Number, OneOf, Table
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -21,26 +20,6 @@ from abut.model.kinematics import KINEMATICS
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.output.options import FIELDS, STEPS, USUAL
 from abut.types import Json
-
-
-class Table(BaseModel):
-    """A table of the file: unknown keys are errors, numbers must be finite."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
-
-
-Number = Annotated[float, Field(strict=False)]
-
-
-@dataclass(frozen=True)
-class OneOf:
-    """Marks a text as one of those that the model's own record allows."""
-
-    choices: tuple[str, ...]
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        return literal_schema(list(self.choices))
-
 
 Points = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]],
@@ -99,55 +78,6 @@ class MeshTable(Table):
 class ModelTable(Table):
     plane: Literal["strain", "stress", "axisymmetric"] | None = None
     kinematics: Annotated[str, OneOf(KINEMATICS)] = KINEMATICS[0]
-
-
-class MaterialTable(Table):
-    kind: Literal["linear-elastic"]
-    young: Number
-    poisson: Number
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-class NeoHookeTable(Table):
-    """young and poisson, or shear and bulk, or shear and lame"""
-
-    kind: Literal["neo-hooke"]
-    young: Number | None = None
-    poisson: Number | None = None
-    shear: Number | None = None
-    bulk: Number | None = None
-    lame: Number | None = None
-    volumetric: Annotated[str, OneOf(VOLUMETRIC)] = VOLUMETRIC[0]
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-class HenckyTable(Table):
-    kind: Literal["hencky"]
-    young: Number
-    poisson: Number
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-Pairs = list[Annotated[list[Number], Field(min_length=2, max_length=2)]]
-
-
-class PlasticTable(Table):
-    kind: Literal["plastic"]
-    young: Number
-    poisson: Number
-    yield_stress: Number | Pairs
-    hardening: Number = 0.0
-    saturation: Number = 0.0
-    rate: Number = 0.0
-    backstresses: Pairs = []
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-Materials = MaterialTable | NeoHookeTable | HenckyTable | PlasticTable
 
 
 class SolidTable(Table):

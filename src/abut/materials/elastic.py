@@ -9,19 +9,32 @@ import numpy as np
 from abut import checks
 from abut._core import Hyperelastic
 from abut.errors import InputError
+from abut.materials.evaluated import Array, Evaluated
 from abut.materials.kernel import Compiled, HyperelasticKernel, Isotropic
-from abut.materials.material import Array, Evaluated
 
 
 @dataclass(frozen=True)
 class LinearElastic:
     """Isotropic linear elasticity.
 
-    young:     Young's modulus, force per area, > 0.
-    poisson:   Poisson's ratio, -1 < nu < 0.5.
-    density:   mass per volume, used by gravity.
-    expansion: thermal expansion per degree, used by temperature changes.
+    Parameters
+    ----------
+    young : float
+        Young's modulus [force per area], > 0.
+    poisson : float
+        Poisson's ratio, between -1 and 0.5.
+    density : float
+        Mass per volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
 
+    Raises
+    ------
+    InputError
+        For values out of these ranges.
+
+    Examples
+    --------
     >>> import abut
     >>> steel = abut.LinearElastic(young=210e3, poisson=0.3)  # N, mm
     >>> steel.expansion

@@ -23,15 +23,36 @@ LAWS = {
 class NeoHooke:
     """Compressible neo-Hookean material, for kinematics "finite".
 
-    young, poisson: as small strains see them; or in their place
-    shear:      shear modulus mu, > 0, and one of
-    bulk:       bulk modulus K = lambda + 2 mu / 3, > 0;
-    lame:       Lame's first constant lambda.
-    volumetric: the energy of volume changes, with J = det F. "square-log": lambda/2 ((J^2 - 1)/2 - ln J); "log-squared":
-                lambda/2 (ln J)^2; both beside mu/2 (tr C - 3) - mu ln J. "isochoric": K/2 (J - 1)^2, beside
-                mu/2 (J^(-2/3) tr C - 3), for materials that hardly change their volume.
-    density, expansion: as of ``LinearElastic``, per undeformed volume.
+    Given by ``young`` and ``poisson``, or by ``shear`` and one of ``bulk`` and ``lame``.
 
+    Parameters
+    ----------
+    young : float, optional
+        Young's modulus as small strains see it [force per area], > 0.
+    poisson : float, optional
+        Poisson's ratio as small strains see it.
+    shear : float, optional
+        Shear modulus mu [force per area], > 0.
+    bulk : float, optional
+        Bulk modulus K = lambda + 2 mu / 3 [force per area], > 0.
+    lame : float, optional
+        Lame's first constant lambda [force per area].
+    volumetric : str
+        The energy of volume changes, with J = det F. "square-log": lambda/2 ((J^2 - 1)/2 - ln J); "log-squared":
+        lambda/2 (ln J)^2; both beside mu/2 (tr C - 3) - mu ln J. "isochoric": K/2 (J - 1)^2, beside mu/2 (J^(-2/3) tr C
+        - 3), for materials that hardly change their volume.
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+
+    Raises
+    ------
+    InputError
+        For constants that are out of range or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> rubber = abut.NeoHooke(shear=0.8, bulk=400.0, volumetric="isochoric")
     >>> round(rubber.linear.poisson, 4)

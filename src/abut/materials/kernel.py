@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from abut._core import Cells, Hyperelastic, PointLaw, integrate_hyperelastic, integrate_isotropic
-from abut.materials.material import Array
+from abut.materials.evaluated import Array
 from abut.types import Array as AnyArray
 
 Pattern = tuple[AnyArray, AnyArray, AnyArray]  # indptr, indices and values of the stiffness, to which is added

@@ -1,4 +1,4 @@
-"""Materials in the space of logarithmic strains, theory (Y8) to (Y10): E = ln U, and the stress conjugate to it.
+"""Materials in the space of logarithmic strains, theory (Y8), (Y9), (Y10): E = ln U, and the stress conjugate to it.
 
 Any law for small strains, with a history or none, becomes one for finite strains so; Hencky's is linear elasticity there.
 """
@@ -18,11 +18,28 @@ from abut.materials.material import Array, Evaluated
 
 @dataclass(frozen=True)
 class Hencky:
-    """Logarithmic (Hencky's) elasticity: the stress conjugate to ln U is linear in it; for kinematics "finite", and linear
-    elastic under small strains.
+    """Logarithmic (Hencky's) elasticity: the stress conjugate to ln U is linear in it.
 
-    young, poisson, density, expansion: as of ``LinearElastic``, density per undeformed volume.
+    For kinematics "finite"; linear elastic under small strains.
 
+    Parameters
+    ----------
+    young : float
+        Young's modulus [force per area], > 0.
+    poisson : float
+        Poisson's ratio, between -1 and 0.5.
+    density : float
+        Mass per undeformed volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+
+    Raises
+    ------
+    InputError
+        For values out of these ranges.
+
+    Examples
+    --------
     >>> import abut
     >>> abut.Hencky(young=210e3, poisson=0.3).linear.young
     210000.0

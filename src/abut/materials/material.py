@@ -9,17 +9,14 @@ finds the strains out of the plane (``abut.materials.plane_stress``). Stress and
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from abut.materials.elastic import LinearElastic
-    from abut.materials.kernel import Compiled
-
-Array = NDArray[np.float64]
-Evaluated = tuple[Array, Array, Array]  # stress (n, 6), tangent d stress / d strain (n, 6, 6), new history (n, h)
+from abut.materials.elastic import LinearElastic
+from abut.materials.evaluated import Array as Array
+from abut.materials.evaluated import Evaluated as Evaluated
+from abut.materials.kernel import Compiled
 
 
 @runtime_checkable

@@ -24,17 +24,40 @@ FIELDS = MappingProxyType({"plastic_strain": slice(0, 6), EQUIVALENT: slice(6, 7
 
 @dataclass(frozen=True)
 class Plastic:
-    """Von Mises (J2) plasticity with associated flow, rate-independent, under small strains, and under finite ones in the
-    space of logarithmic strains.
+    """Von Mises (J2) plasticity with associated flow, rate-independent.
 
-    young, poisson, density, expansion: as of ``LinearElastic``.
-    yield_stress: in uniaxial tension, > 0; or a table of (equivalent plastic strain, yield stress), from 0 on and growing,
-                between which it is linear and beyond which it stays; true stresses and logarithmic strains.
-    hardening:  isotropic, yield stress over equivalent plastic strain, >= 0, added to the table.
-    saturation, rate: Voce's isotropic hardening, adds saturation (1 - exp(-rate x)) at an equivalent plastic strain x.
-    backstresses: kinematic hardening, (modulus, recall) of each back stress of Armstrong and Frederick: modulus is stress
-                over plastic strain in tension from rest, recall the rate at which it saturates, 0 for linear (Prager's).
+    Under small strains, and under finite ones in the space of logarithmic strains.
 
+    Parameters
+    ----------
+    young : float
+        Young's modulus [force per area], > 0.
+    poisson : float
+        Poisson's ratio, between -1 and 0.5.
+    yield_stress : float or sequence of (float, float)
+        In uniaxial tension [force per area], > 0; or a table of (equivalent plastic strain, yield stress), from 0 on and
+        growing, between which it is linear and beyond which it stays; true stresses and logarithmic strains.
+    hardening : float
+        Isotropic, yield stress over equivalent plastic strain [force per area], >= 0, added to the table.
+    saturation, rate : float
+        Voce's isotropic hardening: adds saturation (1 - exp(-rate x)) at an equivalent plastic strain x [force per area;
+        1].
+    backstresses : sequence of (float, float)
+        Kinematic hardening, (modulus, recall) of each back stress of Armstrong and Frederick: modulus is stress over
+        plastic strain in tension from rest [force per area], recall the rate at which it saturates, 0 for linear
+        (Prager's).
+    density : float
+        Mass per volume, used by gravity.
+    expansion : float
+        Thermal expansion [1/temperature], used by temperature changes.
+
+    Raises
+    ------
+    InputError
+        For values out of these ranges.
+
+    Examples
+    --------
     >>> import abut
     >>> steel = abut.Plastic(210e3, 0.3, yield_stress=300.0, hardening=1000.0)
     >>> steel.evaluate([[0.01, 0, 0, 0, 0, 0]], steel.initial(1))[2][0, 6] > 0  # it flows

@@ -10,13 +10,13 @@ from abut.cells import CELLS
 from abut.errors import InputError
 from abut.mesh.clockwise import clockwise
 from abut.mesh.facets import bodies_at, facet_keys, number_keys, row_codes, single
-from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
+from abut.mesh.record import MeshRecord
 
 DEGENERATE = 1e-10  # smallest Jacobian determinant over the largest extent to the power of the dimension
 
 
-def check_mesh(mesh: Mesh) -> None:
+def check_mesh(mesh: MeshRecord) -> None:
     """Raise InputError for points that are not numbers, cells with points that do not exist, inverted or flat cells,
     doubled cells, cells in no body or in two, surfaces that are empty, doubled or not on the boundary."""
     check_entries(mesh)
@@ -26,7 +26,7 @@ def check_mesh(mesh: Mesh) -> None:
     _check_surfaces(mesh)
 
 
-def check_entries(mesh: Mesh) -> None:
+def check_entries(mesh: MeshRecord) -> None:
     """Raise InputError for points that are not numbers, and cells with points that do not exist: what takes no time."""
     if not np.isfinite(mesh.points).all():
         bad = np.flatnonzero(~np.isfinite(mesh.points).all(axis=1))
@@ -34,7 +34,7 @@ def check_entries(mesh: Mesh) -> None:
     _check_indices(mesh)
 
 
-def _check_indices(mesh: Mesh) -> None:
+def _check_indices(mesh: MeshRecord) -> None:
     for block, first in zip(mesh.blocks, mesh.starts):
         want = CELLS[block.kind].nodes
         if block.nodes.ndim != 2 or block.nodes.shape[1] != want:
@@ -52,7 +52,7 @@ def _check_indices(mesh: Mesh) -> None:
             raise InputError(f"mesh: node set '{name}' has points that do not exist; there are {len(mesh.points)}")
 
 
-def _check_bodies(mesh: Mesh) -> None:
+def _check_bodies(mesh: MeshRecord) -> None:
     count = np.zeros(mesh.n_cells, dtype=np.int64)
     for name, cells in mesh.bodies.items():
         if len(cells) == 0:
@@ -71,7 +71,7 @@ def _check_bodies(mesh: Mesh) -> None:
         raise InputError(f"mesh: cells {_some(bad)} belong to no body; add them to one or take them out")
 
 
-def _check_surfaces(mesh: Mesh) -> None:
+def _check_surfaces(mesh: MeshRecord) -> None:
     starts = mesh.starts
     facets = np.repeat([len(CELLS[b.kind].facets) for b in mesh.blocks], np.diff(starts))
     for name, rows in mesh.surfaces.items():
@@ -117,7 +117,7 @@ def inside(name: str, count: int, sides: list[str]) -> str:
     )
 
 
-def _check_cells(mesh: Mesh) -> None:
+def _check_cells(mesh: MeshRecord) -> None:
     for block, first in zip(mesh.blocks, mesh.starts):
         if not len(block.nodes):
             continue
@@ -140,7 +140,7 @@ def _check_cells(mesh: Mesh) -> None:
             )
 
 
-def _check_doubles(mesh: Mesh) -> None:
+def _check_doubles(mesh: MeshRecord) -> None:
     starts = mesh.starts
     # Cells with the same points have the same sum of their marks: only those few, if any, need their points sorted.
     mark = np.random.default_rng(0).integers(np.iinfo(np.int64).max, size=len(mesh.points))

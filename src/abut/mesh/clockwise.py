@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.mesh.mesh import Mesh
+from abut.mesh.record import MeshRecord
+
+Kind = TypeVar("Kind", bound=MeshRecord)
 
 
 def order(kind: str) -> NDArray[np.int64]:
@@ -20,7 +23,7 @@ def order(kind: str) -> NDArray[np.int64]:
     return np.array([*corners, *middles, *range(len(corners) + len(middles), n)])
 
 
-def clockwise(mesh: Mesh) -> NDArray[np.bool_]:
+def clockwise(mesh: MeshRecord) -> NDArray[np.bool_]:
     """Of each cell of a plane mesh, whether its corners run clockwise. Cells without area do not."""
     result = np.zeros(mesh.n_cells, dtype=bool)
     for block, first in zip(mesh.blocks, mesh.starts):
@@ -31,7 +34,7 @@ def clockwise(mesh: Mesh) -> NDArray[np.bool_]:
     return result
 
 
-def turn_bodies(mesh: Mesh) -> Mesh:
+def turn_bodies(mesh: Kind) -> Kind:
     """A plane mesh with the cells of those bodies turned round that have clockwise cells only, and a note of each; facet
     numbers of surfaces follow. Bodies of which some cells run clockwise are left for ``check_mesh`` to refuse."""
     if mesh.dim != 2:

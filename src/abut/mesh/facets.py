@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.mesh.mesh import Mesh
+from abut.mesh.record import MeshRecord
 from abut.types import Array
 
 
@@ -39,7 +39,7 @@ def corner_keys(corners: NDArray[np.int64]) -> NDArray[np.int64]:
     return result
 
 
-def facet_keys(mesh: Mesh, among: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def facet_keys(mesh: MeshRecord, among: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Corner keys (n, 4) and rows (n, 2) = (cell, local facet) of the facets whose corners are all in ``among``.
 
     The filter comes first because sorting the facets of every cell is what would cost time on large meshes.
@@ -63,6 +63,6 @@ def number_keys(*keys: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     return np.split(inverse, np.cumsum([len(k) for k in keys])[:-1])
 
 
-def bodies_at(mesh: Mesh, cells: NDArray[np.int64]) -> list[str]:
+def bodies_at(mesh: MeshRecord, cells: NDArray[np.int64]) -> list[str]:
     """Names of the bodies that hold any of the cells."""
     return [name for name, of_body in mesh.bodies.items() if np.isin(cells, of_body).any()]

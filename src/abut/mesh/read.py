@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,13 +24,14 @@ from abut.mesh.cell_block import CellBlock
 from abut.mesh.check import check_mesh, inside
 from abut.mesh.clockwise import turn_bodies
 from abut.mesh.facets import bodies_at, corner_keys, facet_keys, number_keys
-from abut.mesh.mesh import Mesh
+from abut.mesh.record import MeshRecord
 
+Kind = TypeVar("Kind", bound=MeshRecord)
 Parts = Mapping[str, NDArray[np.int64]]  # cells by type: (n, n_nodes) point numbers
 READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 
 
-def read_mesh(kind: type[Mesh], path: Path) -> Mesh:
+def read_mesh(kind: type[Kind], path: Path) -> Kind:
     """Read and check a mesh file by its ending. kind: the record to make. Raises InputError with the remedy for anything
     unsound."""
     reader = READERS.get(path.suffix.lower())
@@ -42,7 +44,7 @@ def read_mesh(kind: type[Mesh], path: Path) -> Mesh:
     return mesh
 
 
-def build(kind: type[Mesh], raw: RawMesh, where: str = "mesh") -> Mesh:
+def build(kind: type[Kind], raw: RawMesh, where: str = "mesh") -> Kind:
     """Make bodies, surfaces and node sets of the groups of a file; points that no cell uses are dropped, and
     plane bodies of clockwise cells turned round."""
     dims = {key: CELLS[key].dim for parts in raw.groups.values() for key in parts if key != "point"}
@@ -150,7 +152,7 @@ def _components(parts: Parts, n_points: int) -> dict[str, Parts]:
     }
 
 
-def _match(name: str, wanted: NDArray[np.int64], mesh: Mesh, where: str) -> NDArray[np.int64]:
+def _match(name: str, wanted: NDArray[np.int64], mesh: MeshRecord, where: str) -> NDArray[np.int64]:
     """Rows (cell, local facet) of the cells to which the facets with corner keys ``wanted`` belong."""
     keys, rows = facet_keys(mesh, wanted[wanted >= 0])
     keys_here, every = number_keys(wanted, keys)

@@ -1,22 +1,10 @@
 """What the user states, as frozen records that check themselves and each other."""
 
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
-from abut.model.conditions import (
-    Amplitude,
-    Equation,
-    Force,
-    History,
-    Moment,
-    NodalForce,
-    Pressure,
-    Rigid,
-    Support,
-    Temperature,
-    Term,
-    Traction,
-)
+from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import Coupling
+from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation

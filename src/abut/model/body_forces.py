@@ -10,22 +10,28 @@ from numpy.typing import ArrayLike, NDArray
 from abut import checks
 from abut.errors import InputError
 from abut.fields import Field
-from abut.model.conditions import (
-    Force,
-    History,
-    Moment,
-    NodalForce,
-    Pressure,
-    Temperature,
-    Traction,
-    check_amplitude,
-    vector,
-)
+from abut.model.conditions import History, check_amplitude, vector
+from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 
 
 @dataclass(frozen=True)
 class Gravity:
-    """Acceleration vector acting on the density of every body, or of the body named by ``on``."""
+    """Acceleration that acts on the density of every body, or of one.
+
+    Parameters
+    ----------
+    value : (dim,) of float
+        Acceleration [length/time^2].
+    on : str, optional
+        The body; every one where left out.
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+    """
 
     value: tuple[float, ...]
     on: str | None = None
@@ -38,8 +44,22 @@ class Gravity:
 
 @dataclass(frozen=True)
 class BodyForce:
-    """Force per volume (2D: per area and unit thickness) in every body, or in the body named by ``on``; numbers or a
-    function of position, points (n, dim) -> (n, dim)."""
+    """Force per volume in every body, or in one.
+
+    Parameters
+    ----------
+    value : (dim,) of float, or function
+        Force per volume (2D: per area and unit thickness), or a function of position, points (n, dim) -> (n, dim).
+    on : str, optional
+        The body; every one where left out.
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+    """
 
     value: tuple[float, ...] | Field
     on: str | None = None
@@ -53,11 +73,31 @@ class BodyForce:
 
 @dataclass(frozen=True)
 class Centrifugal:
-    """Force of a rotation on the density of every body, or of the body named by ``on``: density times speed squared times
-    the distance from the axis, outward, taken in the undeformed body. speed: angle (radian) per time; axis: its direction,
-    left out in 2D, where it is z, and where a model is axisymmetric y; through: a point of it, left out: the origin. The
+    """Force of a rotation on the density of every body, or of one.
+
+    It is density times speed squared times the distance from the axis, outward, taken in the undeformed body. The
     amplitude is that of the force, which is the square of the speed's.
 
+    Parameters
+    ----------
+    speed : float
+        Angle per time [radian/time].
+    axis : (3,) of float, optional
+        Its direction; left out in 2D, where it is z, and where a model is axisymmetric, y.
+    through : (dim,) of float, optional
+        A point of the axis [length]; the origin where left out.
+    on : str, optional
+        The body; every one where left out.
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> abut.Centrifugal(speed=314.0, axis=(0, 0, 1)).at([[2.0, 0.0, 5.0]]).tolist()
     [[197192.0, 0.0, 0.0]]

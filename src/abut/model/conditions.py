@@ -1,8 +1,8 @@
-"""Supports, equations, rigid bodies and loads, each with its history; records that check themselves."""
+"""Histories, supports, equations and rigid bodies; records that check themselves."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.errors import InputError
-from abut.expression import Expression, Expressions
 from abut.fields import Field, number_or_field
 from abut.types import Json
 
@@ -25,10 +24,22 @@ SLIGHTLY = 1e-9  # beyond the end is rounding
 
 @dataclass(frozen=True)
 class Amplitude:
-    """A history: factor over time as ``points`` (time, factor), times increasing; linear between, constant outside.
+    """A history: a factor over time, linear between points and constant outside.
 
-    Time runs from 0 to 1 over the load steps. Raises InputError for points that are no such list.
+    Calling it with a time gives the factor there.
 
+    Parameters
+    ----------
+    points : sequence of (float, float)
+        Pairs (time, factor), times increasing. Time runs from 0 to 1 over the load steps.
+
+    Raises
+    ------
+    InputError
+        For points that are no such list.
+
+    Examples
+    --------
     >>> import abut
     >>> pulse = abut.Amplitude(((0.0, 0.0), (0.5, 1.0), (1.0, 0.0)))
     >>> pulse(0.25)
@@ -93,10 +104,27 @@ def drives(condition: Any) -> bool:
 
 @dataclass(frozen=True)
 class Support:
-    """Prescribed displacement of a surface or node set: components x, y, z or ``normal`` (along the surface's own
-    outward normal); components left out are free. Values in the mesh's length unit, times ``amplitude``; x, y and z
-    may be expressions ("0.01*y") or functions of position, points (n, dim) -> (n,), taken at the nodes.
+    """Prescribed displacement of a surface or node set.
 
+    Parameters
+    ----------
+    on : str
+        The surface or node set.
+    x, y, z : float, str or function, optional
+        Components [length]: numbers, expressions ("0.01*y") or functions of position, points (n, dim) -> (n,), taken at
+        the nodes; free where left out.
+    normal : float, optional
+        Along the surface's own outward normal [length], in place of these.
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things.
+
+    Examples
+    --------
     >>> import abut
     >>> clamp = abut.Support("block.bottom", x=0, y=0)
     >>> bend = abut.Support("block.top", y=lambda points: -0.01 * points[:, 0] ** 2)  # x stays free
@@ -132,7 +160,22 @@ def support_along(on: str, component: str, value: float) -> Support:
 
 @dataclass(frozen=True)
 class Term:
-    """A displacement component of one point, times ``coefficient``: ``on`` is a node set of one node, or a point's index."""
+    """A displacement component of one point in an ``Equation``.
+
+    Parameters
+    ----------
+    on : str or int
+        A node set of one node, or a point's number.
+    component : str
+        "x", "y" or "z".
+    coefficient : float
+        What the component is multiplied by.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+    """
 
     on: str | int
     component: str
@@ -147,8 +190,24 @@ class Term:
 
 @dataclass(frozen=True)
 class Equation:
-    """A linear constraint: the sum of all terms is ``value`` (length, if coefficients are numbers), times ``amplitude``.
+    """A linear constraint: the sum of all terms is ``value``, times ``amplitude``.
 
+    Parameters
+    ----------
+    terms : sequence of Term
+        What is added up.
+    value : float
+        The sum [length, if coefficients are numbers].
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> tips = abut.Term("left tip", "y", 1.0), abut.Term("right tip", "y", -1.0)
     >>> alike = abut.Equation(tips)  # both tips sink by the same amount
@@ -164,6 +223,17 @@ class Equation:
         if not any(term.coefficient for term in self.terms):
             raise InputError("equation: no term with a coefficient other than zero; give at least one")
         check_amplitude(self.amplitude, "equation")
+
+
+def vector(values: Any, name: str) -> tuple[float, ...]:
+    """Two or three numbers. Raises InputError, beginning with ``name``, for anything else."""
+    try:
+        result = tuple(checks.finite(value, name) for value in values)
+    except TypeError:
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
+    if len(result) not in (2, 3):
+        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
+    return result
 
 
 def check_motion(body: Any, where: str) -> None:
@@ -183,11 +253,33 @@ def check_motion(body: Any, where: str) -> None:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A body that moves as a whole, by small rotations, or any but with ``kinematics="small"``: translation x, y, z of the
-    ``reference`` point (length) and rotations rx, ry, rz about the axes through it (radians; 2D: only rz; axisymmetric:
-    only y), times ``amplitude``, or those named in ``amplitudes`` times their own; components left out are free.
-    Reference: the mean of the body's points, where left out. The body needs no material, and in contact it is the target.
+    """A body that moves as a whole, by small rotations, or by any with ``kinematics="finite"``.
 
+    The body needs no material, and in contact it is the target.
+
+    Parameters
+    ----------
+    body : str
+        The body.
+    reference : (dim,) of float, optional
+        The point that moves and about which the body turns [length]; the mean of the body's points where left out.
+    x, y, z : float, optional
+        Prescribed translation of the reference [length]; free where left out.
+    rx, ry, rz : float, optional
+        Prescribed rotation about axes through it [radian]; 2D: only rz; axisymmetric: none, and only y; free where left
+        out.
+    amplitude : Amplitude, optional
+        Of all these over time.
+    amplitudes : mapping of str to Amplitude
+        Of some of them, by name.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> punch = abut.Rigid("punch", y=-0.01, rz=0.0)  # pressed down, kept upright, free to move sideways
     """
@@ -214,134 +306,3 @@ class Rigid:
     def history(self, name: str) -> History:
         """Of the component ``name``."""
         return self.amplitudes.get(name, self.amplitude)
-
-
-@dataclass(frozen=True)
-class Pressure:
-    """Pressure on a surface, force per area, positive into the body; a number, an expression ("0.01*(50 - y)") or a
-    function of position in the undeformed mesh, points (n, dim) -> (n,).
-
-    ``follows``: but with kinematics "small" it acts along the normal of the deformed surface, on its deformed area; False: a
-    dead load, along the normal and on the area of the undeformed one. Without effect with kinematics "small".
-
-    >>> import abut
-    >>> oil = abut.Pressure("bore", 12.0, abut.Amplitude(((0.0, 1.0), (1.0, 1.0))))  # in full from the start
-    """
-
-    on: str
-    value: float | str | Field
-    amplitude: History = None
-    follows: bool = True
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.follows, bool):
-            raise InputError(f"pressure on '{self.on}': follows: expected true or false, got {self.follows!r}")
-        object.__setattr__(self, "value", number_or_field(self.value, f"pressure on '{self.on}': value"))
-        check_amplitude(self.amplitude, f"pressure on '{self.on}'")
-
-
-def vector(values: Any, name: str) -> tuple[float, ...]:
-    """Two or three numbers. Raises InputError, beginning with ``name``, for anything else."""
-    try:
-        result = tuple(checks.finite(value, name) for value in values)
-    except TypeError:
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {values!r}") from None
-    if len(result) not in (2, 3):
-        raise InputError(f"{name}: expected 2 or 3 numbers, got {len(result)}")
-    return result
-
-
-def _components(values: Any, name: str) -> tuple[float, ...] | Field:
-    """A vector; as expressions where one component is."""
-    if isinstance(values, str) or not isinstance(values, Iterable):
-        raise InputError(f"{name}: expected 2 or 3 numbers or expressions, got {values!r}")
-    given = [number_or_field(value, name) for value in values]
-    if not any(isinstance(value, Expression) for value in given):
-        return vector(given, name)
-    return Expressions(tuple(v if isinstance(v, Expression) else Expression(repr(v)) for v in given))
-
-
-@dataclass(frozen=True)
-class Traction:
-    """Traction vector on a surface, force per area; numbers and expressions of position, or a function, points (n, dim) ->
-    (n, dim)."""
-
-    on: str
-    value: tuple[float | str, ...] | Field
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        if not callable(self.value):
-            object.__setattr__(self, "value", _components(self.value, f"traction on '{self.on}': value"))
-        check_amplitude(self.amplitude, f"traction on '{self.on}'")
-
-
-@dataclass(frozen=True)
-class Force:
-    """Total force (2D: per unit thickness), spread evenly over a surface, or at the reference of a rigid body or coupling.
-
-    >>> import abut
-    >>> abut.Force("lug.end", [1000, 0, 0]).value
-    (1000.0, 0.0, 0.0)
-    """
-
-    on: str
-    value: tuple[float, ...]
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", vector(self.value, f"force on '{self.on}': value"))
-        check_amplitude(self.amplitude, f"force on '{self.on}'")
-
-
-@dataclass(frozen=True)
-class Moment:
-    """Moment on a rigid body or coupling, force times length: three components about axes fixed in space, in the plane one
-    (per unit thickness). It keeps its direction however far the body turns, theory (D15).
-
-    >>> import abut
-    >>> abut.Moment("flange", 500).value
-    (500.0,)
-    """
-
-    on: str
-    value: tuple[float, ...]
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        where = f"moment on '{self.on}': value"
-        given: Any = self.value
-        numbers = tuple(checks.finite(value, where) for value in (given if np.ndim(given) else [given]))
-        if len(numbers) not in (1, 3):
-            raise InputError(f"{where}: expected 3 numbers, in the plane 1, got {len(numbers)}")
-        object.__setattr__(self, "value", numbers)
-        check_amplitude(self.amplitude, f"moment on '{self.on}'")
-
-
-@dataclass(frozen=True)
-class NodalForce:
-    """Force at each node of a node set or surface (2D: per unit thickness; axisymmetric: of the full circumference)."""
-
-    on: str
-    value: tuple[float, ...]
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", vector(self.value, f"nodal force on '{self.on}': value"))
-        check_amplitude(self.amplitude, f"nodal force on '{self.on}'")
-
-
-@dataclass(frozen=True)
-class Temperature:
-    """Change of temperature at the nodes of a node set or body (degrees), a number, an expression ("20 + 3*x") or a
-    function of position, points (n, dim) -> (n,). It strains bodies by their expansion; between nodes the shape functions
-    interpolate, zero at nodes without one, so that neighbours glued to a heated body are warm in their first row of cells.
-    Several add up, also with ``Solid.temperature``."""
-
-    on: str
-    value: float | str | Field
-    amplitude: History = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", number_or_field(self.value, f"temperature on '{self.on}': value"))
-        check_amplitude(self.amplitude, f"temperature on '{self.on}'")

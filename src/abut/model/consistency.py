@@ -10,19 +10,8 @@ from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
-from abut.model.conditions import (
-    COMPONENTS,
-    TURNS,
-    Equation,
-    Force,
-    Moment,
-    NodalForce,
-    Pressure,
-    Rigid,
-    Support,
-    Temperature,
-    Traction,
-)
+from abut.model.conditions import COMPONENTS, TURNS, Equation, Rigid, Support
+from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 
 
 def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:

@@ -24,7 +24,20 @@ STATED = {"decides": False}  # of fields that say how the sides were named, and 
 
 @dataclass(frozen=True)
 class Integration:
-    """Quadrature on segments: ``points`` per direction, or "auto" (exact on straight facets)."""
+    """Quadrature on segments.
+
+    Parameters
+    ----------
+    rule : str
+        "gauss" or "newton-cotes".
+    points : int or str
+        Per direction, or "auto": exact on straight facets.
+
+    Raises
+    ------
+    InputError
+        For a rule or a number that does not exist.
+    """
 
     rule: str = "gauss"
     points: int | str = "auto"
@@ -42,30 +55,64 @@ class Integration:
 
 @dataclass(frozen=True)
 class Contact:
-    """Two sides that touch. ``first`` and ``second`` are names of surfaces or bodies, or lists of them, which have one
-    pressure: every point of one side faces the nearest point of the other along its normal; of a body, the part of its
-    boundary that can meet the other side.
+    """Two sides that touch.
 
-    One of them, the contactor, carries the pressure; the other is its target. Which one is abut's choice
-    (``abut.contact.contactor_choice``), made as the model is built, and never changes what a key means: resultants
-    are those on ``first``. ``contactor`` and ``target``, in place of the two, force the choice; resultants are those on
-    the contactor then. A contact of a ``Model`` has both, and ``chosen`` says why abut took that side.
+    Every point of one side faces the nearest point of the other along its normal. One of the two, the contactor, carries
+    the pressure; the other is its target. Which one is abut's choice (``abut.contact.contactor_choice``), made as the
+    model is built, and never changes what a key means: resultants are those on ``first``. ``contactor`` and ``target``,
+    in place of the two, force the choice; resultants are those on the contactor then. A contact of a ``Model`` has both,
+    and ``chosen`` says why abut took that side.
 
-    ``offset`` is added to the geometric gap (negative: interference), in the mesh's length unit, in full from the start or
-    times ``amplitude``; ``adjust`` (length): initial gaps and overlaps up to this size count as zero, before the offset is
-    added; ``epsilon`` smooths the constraint function (dimensionless, relative to the square of a reference pressure;
-    that of friction by its square root);
-    ``kind``: "contact"; "tied", in all directions; "bilateral", which never opens and slides freely: its gap is zero, its
-    pressure of either sign (theory (L16)).
-    ``geometry``: "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)),
-    "faceted" does not; flat surfaces do not differ. ``method``: the node-to-segment ones are for comparison only.
-    ``law``: "complementarity", "constraint-function" or a law of your own (``abut.contact.laws.Law``). ``friction``:
-    Coulomb's coefficient, an expression of x, y and z
-    ("0.1 + 0.2*x") or a function of position, points (n, dim) -> (n,), both taken in the undeformed mesh, pairs of pressure
-    and coefficient, linear between and constant outside, or "rough" for surfaces that never slip while they touch; times
-    ``friction_amplitude``, constant where that is left out. With friction the result depends on the order of the loads, and
-    on the load steps.
+    With friction the result depends on the order of the loads, and on the load steps.
 
+    Parameters
+    ----------
+    first, second : str or sequence of str
+        Surfaces or bodies, or lists of them, which have one pressure; of a body, the part of its boundary that can meet
+        the other side.
+    name : str
+        For results; made of the sides where left out.
+    kind : str
+        "contact"; "tied", in all directions; "bilateral", which never opens and slides freely: its gap is zero, its
+        pressure of either sign (theory (L16)).
+    pressure : str
+        Space of the pressure: "auto", or one of ``docs/theory/pressure-spaces.md``.
+    law : str or Law
+        "complementarity", "constraint-function", or a law of your own (``abut.contact.laws.Law``).
+    epsilon : float
+        Smooths the constraint function; dimensionless, relative to the square of a reference pressure, that of friction
+        by its square root.
+    method : str
+        "segment-to-segment"; the node-to-segment ones are for comparison only.
+    integration : Integration
+        Quadrature on segments.
+    offset : float
+        Added to the geometric gap [length], negative: interference; in full from the start, or times ``amplitude``.
+    adjust : float
+        Initial gaps and overlaps up to this size count as zero, before the offset is added [length].
+    amplitude : Amplitude, optional
+        Of the offset over time.
+    friction : float, str, function or sequence of (float, float)
+        Coulomb's coefficient; an expression of x, y and z ("0.1 + 0.2*x") or a function of position, points (n, dim) ->
+        (n,), both taken in the undeformed mesh; pairs of pressure [force per area] and coefficient, linear between and
+        constant outside; or "rough" for surfaces that never slip while they touch.
+    friction_amplitude : Amplitude, optional
+        Factor of the coefficient over time; constant where left out.
+    geometry : str
+        "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)), "faceted" does
+        not; flat surfaces do not differ.
+    contactor, target : str or sequence of str
+        In place of ``first`` and ``second``.
+    chosen : str
+        Why this side is the contactor; set by ``Model``.
+
+    Raises
+    ------
+    InputError
+        For values that do not exist or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> press_fit = abut.Contact("shaft.side", "hub.bore", offset=-0.02)  # 0.02 of interference on the radius
     >>> press_fit.name

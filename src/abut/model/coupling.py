@@ -21,14 +21,43 @@ IN_LINE = 1e-6  # of their extent: how far points may lie off a line and still b
 
 @dataclass(frozen=True)
 class Coupling:
-    """Points of a surface or node set ``on`` that move with a reference point. "kinematic": they follow it as a rigid body,
-    or in the displacements ``follow`` only ("x", "y", "z"). "distributing": it has their mean motion, and its force and
-    moment are spread over them, which stiffens nothing: on a surface by area, on a node set evenly or by ``weights``, one
-    for each point in the order of their numbers (theory (F13)).
+    """Points of a surface or node set that move with a reference point.
 
-    reference: left out, the mean of the points. x to rz: its prescribed motion as of a ``Rigid``, times ``amplitude`` or
-    those named in ``amplitudes``; components left out are free. Loads on it: ``Force`` and ``Moment`` by its name.
+    Loads on it: ``Force`` and ``Moment`` by its name.
 
+    Parameters
+    ----------
+    name : str
+        Of the coupling.
+    on : str
+        A surface or node set.
+    kind : str
+        "kinematic": the points follow the reference as a rigid body, or in the displacements ``follow`` only.
+        "distributing": it has their mean motion, and its force and moment are spread over them, which stiffens nothing
+        (theory (F13)).
+    reference : (dim,) of float, optional
+        The point [length]; the mean of the points where left out.
+    follow : sequence of str, optional
+        Of "x", "y", "z".
+    weights : sequence of float, optional
+        Of a "distributing" one on a node set, one for each point in the order of their numbers; left out: evenly, on a
+        surface by area.
+    x, y, z : float, optional
+        Prescribed displacement of the reference [length]; free where left out.
+    rx, ry, rz : float, optional
+        Prescribed rotation [radian]; free where left out.
+    amplitude : Amplitude, optional
+        Of all these over time.
+    amplitudes : mapping of str to Amplitude
+        Of some of them, by name.
+
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> head = abut.Coupling("head", "bolt.end", reference=(0, 0, 90))
     >>> bent = abut.Moment("head", (0, 2e4, 0))

@@ -50,14 +50,48 @@ PLANES = ("strain", "stress", "axisymmetric")
 class Model:
     """The complete description of a problem, checked as a whole: names against the mesh, dimensions, materials.
 
-    ``plane`` is "strain", "stress" or "axisymmetric" in 2D and left out in 3D. Axisymmetric: x is the radius, y the axis;
-    forces are those of the full circumference; points on the axis stay on it without a support of their own. Every body is
-    one of ``solids`` or ``rigid``.
+    Axisymmetric: x is the radius, y the axis; forces are those of the full circumference; points on the axis stay on it
+    without a support of their own.
 
-    ``kinematics``: "small" (displacements and strains are small) or "finite" (large displacements and strains; balance of
-    forces and pressures in the deformed configuration; theory (D1)), or "small-strain" (bodies as with "small"; contact,
-    loads and rigid bodies as with "finite", where bodies have moved to; theory (D17)).
+    Parameters
+    ----------
+    mesh : Mesh
+        Points, cells and names.
+    solids : sequence of Solid
+        Bodies with their materials. Every body is one of these, or ``rigid``.
+    supports : sequence of Support
+        Prescribed displacements.
+    loads : sequence of loads
+        ``Pressure``, ``Traction``, ``Force``, ``Moment``, ``NodalForce``, ``Gravity``, ``BodyForce``, ``Centrifugal``,
+        ``Temperature``.
+    contacts : sequence of Contact
+        Pairs of sides that may touch, or are tied.
+    plane : str, optional
+        "strain", "stress" or "axisymmetric" in 2D; left out in 3D.
+    solve : SolveOptions
+        Load steps and linear solver.
+    equations : sequence of Equation
+        Linear constraints.
+    rigid : sequence of Rigid
+        Bodies that move as a whole.
+    probes : sequence of Probe
+        Where results are read.
+    kinematics : str
+        "small" (displacements and strains are small); "finite" (large displacements and strains; balance of forces and
+        pressures in the deformed configuration; theory (D1)); or "small-strain" (bodies as with "small"; contact, loads
+        and rigid bodies as with "finite", where bodies have moved to; theory (D17)).
+    rotations : sequence of Rotation
+        Prescribed turns, for kinematics "finite".
+    couplings : sequence of Coupling
+        Points that move with a reference.
 
+    Raises
+    ------
+    InputError
+        With place and remedy, for whatever does not fit together.
+
+    Examples
+    --------
     >>> import abut
     >>> from abut.mesh import make
     >>> mesh = make.join({"block": make.box([0, 1], [0, 1], [0, 1], cells=[2, 2, 2])})

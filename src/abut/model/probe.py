@@ -21,15 +21,36 @@ Vector = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Probe:
-    """Results at a place, for every step: at a point ``at``, along a ``line`` (start, end) at ``points`` in equal distances,
-    both ends among them (50 where left out), or at the nodes of ``on``, a node set or surface. Places are those of the
-    undeformed mesh (length).
+    """Results at a place, for every step: at a point, along a line, or at nodes.
 
-    ``of``: "displacement", "stress", "von-mises", "pressure", "gap"; left out: all that exist there, pressure and gap only
-    where the place lies on a surface of a contact. ``contact``: whose pressure and gap, where more than one is there.
-    ``body``: whose displacement, stress and side of a contact, where points lie on several; left out: the first in the
-    order of the mesh.
+    Parameters
+    ----------
+    name : str
+        Of the probe, and of its file.
+    at : (dim,) of float, optional
+        A point of the undeformed mesh [length].
+    line : ((dim,), (dim,)) of float, optional
+        Start and end of a line [length].
+    on : str, optional
+        A node set or surface.
+    points : int, optional
+        Of a line: in equal distances, both ends among them; 50 where left out.
+    of : sequence of str, optional
+        "displacement", "stress", "von-mises", "pressure", "gap"; left out: all that exist there, pressure and gap only
+        where the place lies on a surface of a contact.
+    contact : str, optional
+        Whose pressure and gap, where more than one is there.
+    body : str, optional
+        Whose displacement, stress and side of a contact, where points lie on several; the first in the order of the mesh
+        where left out.
 
+    Raises
+    ------
+    InputError
+        For no place or several, and for what does not exist.
+
+    Examples
+    --------
     >>> import abut
     >>> tip = abut.Probe("tip", at=(10.0, 0.0), of=("displacement",))
     >>> abut.Probe("through the wall", line=((1.0, 0.0), (2.0, 0.0)), points=11, of=("stress", "von-mises")).place

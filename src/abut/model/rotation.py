@@ -16,11 +16,28 @@ from abut.model.conditions import Amplitude, History, Support
 
 @dataclass(frozen=True)
 class Rotation:
-    """All points of a surface, node set or body turn about an axis, exactly on their arcs; not for kinematics "small".
+    """All points of a surface, node set or body turn about an axis, exactly on their arcs; for kinematics "finite".
 
-    angle: radians, times ``amplitude``, counterclockwise seen against ``axis``; centre: a point of the axis (length); axis:
-    its direction in 3D, of any length; left out in 2D.
+    Parameters
+    ----------
+    on : str
+        The surface, node set or body.
+    angle : float
+        Times ``amplitude``, counterclockwise seen against ``axis`` [radian].
+    centre : (dim,) of float
+        A point of the axis [length].
+    axis : (3,) of float, optional
+        Its direction in 3D, of any length; left out in 2D.
+    amplitude : Amplitude, optional
+        Factor over time; the ramp where left out.
 
+    Raises
+    ------
+    InputError
+        For values that are no such things, or do not go together.
+
+    Examples
+    --------
     >>> import abut
     >>> rolled = abut.Rotation("beam.end", angle=6.28, centre=(10.0, 0.0))
     """

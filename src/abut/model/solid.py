@@ -12,14 +12,27 @@ from abut.materials.material import Material
 
 @dataclass(frozen=True)
 class Solid:
-    """A body of the mesh with its material; ``temperature`` is a uniform change that strains it (degrees).
+    """A body of the mesh with its material.
 
-    ``integration`` of its cells: "auto" (full, but of plastic bodies "b-bar" or "reduced" where their cells would lock);
-    "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and
-    wedge15); "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under
-    finite deformation, theory (D7)).
-    ``material``: ``LinearElastic``, ``Plastic``, ``NeoHooke``, ``Hencky``, or one of your own
-    (``abut.materials.material.OwnMaterial``)."""
+    Parameters
+    ----------
+    body : str
+        The body.
+    material : Material
+        ``LinearElastic``, ``NeoHooke``, another one of abut's, or one of your own
+        (``abut.materials.material.OwnMaterial``).
+    temperature : float
+        A uniform change that strains it [temperature].
+    integration : str
+        Of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and wedge15);
+        "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under finite
+        deformation, theory (D7)).
+
+    Raises
+    ------
+    InputError
+        For an integration that does not exist.
+    """
 
     body: str
     material: Material

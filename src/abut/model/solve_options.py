@@ -17,11 +17,30 @@ MOST_STEPS = 1_000_000  # load steps, and iterations in one
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """How to solve: load steps of equal length, or ending at ``times`` (increasing, over 0 up to 1; the ramp's factor is the
-    time), linear solver, iterations allowed in a step of each method that is tried. ``steps`` "auto" is one step. Where
-    contacts have friction a step that does not converge is taken in parts, whose results are not written. ``seconds``: that
-    a run may take, after which it ends with the steps done so far.
+    """How to solve: load steps, linear solver, limits.
 
+    Where contacts have friction a step that does not converge is taken in parts, whose results are not written.
+
+    Parameters
+    ----------
+    steps : int or str
+        Load steps of equal length; "auto" is one, and with kinematics "finite" as many as it takes.
+    linear : str
+        "auto", "direct", "amg" (multigrid) or "petsc".
+    max_iterations : int
+        Allowed in a step, of each method that is tried.
+    times : sequence of float, optional
+        Ends of the steps, increasing, over 0 up to 1, in place of ``steps``; the ramp's factor is the time.
+    seconds : float, optional
+        That a run may take, after which it ends with the steps done so far [s].
+
+    Raises
+    ------
+    InputError
+        For values out of range.
+
+    Examples
+    --------
     >>> import abut
     >>> abut.SolveOptions(steps=4).ends
     (0.25, 0.5, 0.75, 1.0)

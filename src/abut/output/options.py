@@ -31,10 +31,21 @@ STEPS = ("all", "last")
 class Output:
     """Which VTU files a run writes; tables, summary and report have every step in any case.
 
-    steps: "all", "last", n for every n-th step, or a list of numbers; the last step is always among them. fields: names out
-    of ``FIELDS``; without any of the bodies' there is no ``fields.pvd``, without "contact" no ``contact_*.pvd``. Raises
-    InputError for anything else.
+    Parameters
+    ----------
+    steps : str, int or sequence of int
+        "all", "last", n for every n-th step, or a list of numbers; the last step is always among them.
+    fields : sequence of str
+        Names out of ``abut.output.options.FIELDS``; without any of the bodies' there is no ``fields.pvd``, without
+        "contact" no ``contact_*.pvd``.
 
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
     >>> import abut
     >>> abut.Output(steps=10, fields=["displacement", "von-mises"]).wants(20)
     True

@@ -24,15 +24,32 @@ ON_CONTACTS = ("pressure", "gap", *OF_FRICTION)
 
 
 def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
-    """A ``pyvista.MultiBlock`` with the blocks ``bodies`` (one grid for each body) and ``contacts`` (for each contact the
-    grids ``contactor`` and ``target``); quadratic cells stay quadratic.
+    """Bodies and contacts of a step as a ``pyvista.MultiBlock``.
 
-    step: index into ``solution.steps``. Points of bodies have displacement (n, 3), stress (n, 6: xx yy zz xy yz zx) and
-    von_mises; points of contacts pressure, multiplier and gap (NaN where there is none), displacement, contact_force (of the
-    mesh's point ``node``: points of that number repeat it), with friction traction, slip, total_slip, friction_status,
-    friction_work and total_friction_work; cells status and side (as in ``contact_*.vtu``). Raises InputError
-    without PyVista, or where there is no such step.
+    Parameters
+    ----------
+    solution : Solution
+        What is converted.
+    step : int
+        Index into ``solution.steps``.
 
+    Returns
+    -------
+    pyvista.MultiBlock
+        Blocks ``bodies`` (one grid for each body) and ``contacts`` (for each contact the grids ``contactor`` and
+        ``target``); quadratic cells stay quadratic. Points of bodies have displacement (n, 3) [length], stress (n, 6: xx
+        yy zz xy yz zx) and von_mises (n,) [force per area]; points of contacts pressure, multiplier and gap (NaN where
+        there is none), displacement, contact_force (of the mesh's point ``node``: points of that number repeat it), with
+        friction traction, slip, total_slip, friction_status, friction_work and total_friction_work; cells status and
+        side, as in ``contact_*.vtu``.
+
+    Raises
+    ------
+    InputError
+        Without PyVista, or where there is no such step.
+
+    Examples
+    --------
     >>> import abut
     >>> from abut.mesh import make
     >>> bar = abut.Model(
@@ -66,12 +83,32 @@ def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
 def plot(
     solution: Solution, what: str = "pressure", step: int = -1, scale: float = 1.0, path: str | Path | None = None
 ) -> Foreign:
-    """Show a solution in a window, or write it to the picture file ``path`` without one; returns the plotter.
+    """Show a solution in a window, or write it to a picture.
 
-    what: "pressure", "gap", with friction the size of the tangential "traction" or of the "slip" in all steps (on the
-    contactors, bodies as ghosts), "von Mises" or "displacement" (on the bodies).
-    scale: factor of the displacements. Raises InputError without PyVista, for an unknown quantity or step, for one of
-    friction where no contact has any, and where the file cannot be written.
+    Parameters
+    ----------
+    solution : Solution
+        What is shown.
+    what : str
+        "pressure", "gap", with friction the size of the tangential "traction" or of the "slip" in all steps (on the
+        contactors, bodies as ghosts); "von Mises" or "displacement" (on the bodies).
+    step : int
+        Index into ``solution.steps``.
+    scale : float
+        Factor of the displacements.
+    path : str or Path, optional
+        The picture file; without one a window opens.
+
+    Returns
+    -------
+    pyvista.Plotter
+        The plotter.
+
+    Raises
+    ------
+    InputError
+        Without PyVista, for an unknown quantity or step, for one of friction where no contact has any, and where the
+        file cannot be written.
     """
     checks.choice(what, "plot: what", tuple(FIELDS))
     checks.finite(scale, "plot: scale")

@@ -48,14 +48,38 @@ def write(
     fields: WriteFields = write_fields,
     output: Output = EVERYTHING,
 ) -> Path:
-    """Write everything about a solution to ``directory`` (created if needed) and return it.
+    """Write everything about a solution to a directory, which is created if needed.
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
-    likewise for each contact; probe_NAME.csv for each probe. origin: name, text and reference values of the job for the
-    report; steps: those whose VTU files are still to be written, all of them by default; fields: what writes the fields of
-    a step; output: which steps and fields have VTU files.
-    Raises InputError where the directory cannot be written, or a run writes there.
+    likewise for each contact; probe_NAME.csv for each probe.
 
+    Parameters
+    ----------
+    solution : Solution
+        What is written.
+    directory : str or Path
+        Where to; results of an earlier run there give way.
+    origin : abut.report.Origin, optional
+        Name, text and reference values of the job, for the report.
+    steps : sequence of Step, optional
+        Those whose VTU files are still to be written; all of them where left out.
+    fields : callable, optional
+        What writes the fields of a step.
+    output : Output
+        Which steps and fields have VTU files.
+
+    Returns
+    -------
+    Path
+        The directory.
+
+    Raises
+    ------
+    InputError
+        Where the directory cannot be written, or a run writes there.
+
+    Examples
+    --------
     >>> from tempfile import TemporaryDirectory
     >>> import abut
     >>> from abut.mesh import make

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.bulge import Held
 from abut.contact.common_normals import common_normals
 from abut.contact.coupling import Couple
-from abut.contact.geometry import nodal_normals
+from abut.contact.geometry import nodal_normals, turning_within
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model

@@ -16,12 +16,33 @@ __all__ = ["Beside", "Chart", "Origin", "read_origin", "write_report"]
 def write_report(
     solution: Solution, path: str | Path, origin: Origin | None = None, beside: Beside | None = None
 ) -> Path:
-    """Write the report of a solution to the HTML file ``path`` and return it.
+    """Write the report of a solution to one HTML file.
 
-    origin: the name and text of the job, and reference values; beside: another solution that it is compared with. Raises
-    InputError where the file cannot be written. Where abut was built without three.js and uPlot the picture and the plots
-    are images.
+    Where abut was built without three.js and uPlot the picture and the plots are images.
 
+    Parameters
+    ----------
+    solution : Solution
+        What is reported.
+    path : str or Path
+        The file.
+    origin : abut.report.Origin, optional
+        The name and text of the job, and reference values.
+    beside : abut.report.Beside, optional
+        Another solution that it is compared with.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be written.
+
+    Examples
+    --------
     >>> from tempfile import TemporaryDirectory
     >>> import abut
     >>> from abut.mesh import make

@@ -210,10 +210,29 @@ class Saved:
 
 @dataclass(frozen=True)
 class Solution:
-    """All steps of a run; ``converged`` is False when the last of them is not (then it holds the last state).
+    """All steps of a run.
 
-    ``complete`` is False while steps are still to come, or where the run was stopped before them; ``processes``: how many
-    solved it together."""
+    Parameters
+    ----------
+    model : Model
+        What was solved.
+    steps : tuple of Step
+        Each with displacements, stresses, reactions and contacts at its end; the last one may not have converged.
+    dofs : int
+        Number of unknown displacements.
+    solver : str
+        The linear solver, in words.
+    notes : tuple of str
+        What a user should know.
+    timings : mapping of str to float
+        Seconds by stage.
+    complete : bool
+        False while steps are still to come, or where the run was stopped before them.
+    ignored : tuple of str
+        What a deck asked for and the user left out.
+    processes : int
+        How many solved it together.
+    """
 
     model: Model
     steps: tuple[Step, ...]

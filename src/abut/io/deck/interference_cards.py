@@ -1,4 +1,4 @@
-"""*CONTACT INTERFERENCE of a deck: overlap that contact allows, over the steps."""
+"""*CONTACT INTERFERENCE and *MODEL CHANGE of a deck: overlap that contact allows, and pairs that come and go."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Pair, Prescribed, Step
 
-CARD = "CONTACTINTERFERENCE"
+CARD, CHANGE = "CONTACTINTERFERENCE", "MODELCHANGE"
+FAR = 10.0  # sizes of the model: the overlap that a pair which is removed would allow
+
+
+STAYS = " stays"  # a blank first: no name of a deck
 
 
 @dataclass(frozen=True)
@@ -31,13 +35,17 @@ def with_interferences(
 ) -> tuple[tuple[Step, ...], dict[str, Amplitude]]:
     """The steps with what their cards, in ``groups``, allow: values of kind "interference", whose numbers are those of
     pairs, or "shrink", of which the overlap of the mesh is the size; the amplitudes, with those by which they go down to
-    zero."""
+    zero. A pair that *MODEL CHANGE removes allows any overlap that can be, until it is added."""
     known, result = dict(scene.amplitudes), []
     for step, cards in zip(every, groups):
         values: list[Prescribed] = []
         new: set[str] = set()
         for card in cards:
-            if card.key == CARD:
+            if card.key == CHANGE:
+                with reasons.gathered():
+                    known[STAYS] = Amplitude(((0.0, 1.0), (step.period, 1.0)), False)
+                    values += _changes(card, scene)
+            elif card.key == CARD:
                 with reasons.gathered():
                     down = f" down over {step.period!r}"  # a blank first: no name of a deck
                     known[down] = Amplitude(((0.0, 1.0), (step.period, 0.0)), False)
@@ -71,12 +79,24 @@ def _values(card: Card, step: Step, scene: Scene, down: str) -> Iterator[Prescri
             yield Prescribed("interference", number, (0,), size, name or down, line.place)
 
 
+def _changes(card: Card, scene: Scene) -> Iterator[Prescribed]:
+    """Of *MODEL CHANGE."""
+    if key(card.get("TYPE", "ELEMENT") or "") != "CONTACTPAIR":
+        raise card.error("elements that come or go between steps are not supported; make a deck for each state")
+    if card.has("ADD") == card.has("REMOVE"):
+        raise card.error("expected either ADD or REMOVE")
+    far = FAR * float(np.ptp(scene.mesh.points, axis=0).max())
+    for line, slave, master in sides(card, scene.mesh):
+        number = np.array([_number(line, slave, master, scene.pairs)])
+        yield Prescribed("interference", number, (0,), far if card.has("REMOVE") else 0.0, STAYS, line.place)
+
+
 def _number(line: Line, slave: str, master: str, pairs: Sequence[Pair]) -> int:
     found = [i for i, pair in enumerate(pairs) if {pair.slave, pair.master} == {slave, master}]
     if not found:
         raise line.unknown(f"'{slave}' and '{master}' are no *CONTACT PAIR")
     if pairs[found[0]].tied:
-        raise line.error(f"'{slave}' and '{master}' are tied, and have no interference; take the line out")
+        raise line.error(f"'{slave}' and '{master}' are tied, and do neither overlap nor go; take the line out")
     if slave == master:
         raise line.error(f"'{slave}' touches itself, which has no interference; take the line out")
     return found[0]

@@ -24,6 +24,7 @@ from abut.io.deck.record import (
     Section,
     Transform,
 )
+from abut.io.deck.rubber_cards import rubber
 
 EMPTY = np.empty(0, np.int64)
 
@@ -49,11 +50,11 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     name = card.need("NAME")
     if "ELASTIC" in options and "HYPERELASTIC" in options:
         raise options["HYPERELASTIC"].error(f"material '{name}' has *ELASTIC as well; give one of them")
-    rubber = "HYPERELASTIC" in options
-    if rubber and "PLASTIC" in options:
+    law = rubber(options["HYPERELASTIC"]) if "HYPERELASTIC" in options else None
+    if law is not None and "PLASTIC" in options:
         raise options["PLASTIC"].error(f"material '{name}' has *HYPERELASTIC as well; give one of them")
-    if rubber:
-        constants = _neo_hooke(options["HYPERELASTIC"])
+    if law is not None:
+        constants = 0.0, 0.0
     elif "ELASTIC" in options:
         elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
         constants = elastic.number(0, "Young's modulus"), elastic.number(1, "Poisson's ratio", 0.0)
@@ -63,23 +64,7 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     expansion = 0.0
     if "EXPANSION" in options:
         expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
-    return Material(name, constants, density, expansion, card.place, rubber, hardening(options))
-
-
-def _neo_hooke(card: Card) -> tuple[float, float]:
-    """C10 and D1."""
-    if not card.has("NEO HOOKE"):
-        raise card.error("the kind is missing; abut reads *HYPERELASTIC, NEO HOOKE with C10 and D1")
-    line = _row(card, "C10 and D1")
-    shear, compressible = line.number(0, "C10"), line.number(1, "D1", 0.0)
-    if not shear > 0.0:
-        raise line.error(f"C10: expected a number > 0, got {shear:g}")
-    if not compressible > 0.0:
-        raise line.error(
-            f"D1: expected a number > 0, got {compressible:g}: abut has no incompressible material; D1 = 2 / K, and "
-            f"{0.1 / shear:.3g} gives a bulk modulus K of ten times the shear modulus"
-        )
-    return shear, compressible
+    return Material(name, constants, density, expansion, card.place, law, hardening(options))
 
 
 def _row(card: Card, what: str) -> Line:

@@ -49,15 +49,24 @@ class Hardening:
 
 
 @dataclass(frozen=True)
+class Rubber:
+    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ..."""
+
+    kind: str
+    constants: tuple[float, ...]
+    volume: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Material:
-    """constants: Young's modulus and Poisson's ratio, or C10 and D1 of a neo-Hookean material where ``rubber``."""
+    """constants: Young's modulus and Poisson's ratio, of others than rubber."""
 
     name: str
     constants: tuple[float, float]
     density: float
     expansion: float
     place: Place
-    rubber: bool = False
+    rubber: Rubber | None = None
     hardening: Hardening | None = None
 
 

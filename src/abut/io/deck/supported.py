@@ -19,7 +19,16 @@ READ: dict[str, tuple[str, ...]] = {
     "SURFACE": ("NAME", "TYPE", "INTERNAL"),
     "MATERIAL": ("NAME",),
     "ELASTIC": ("TYPE",),
-    "HYPERELASTIC": ("NEO HOOKE",),
+    "HYPERELASTIC": (
+        "NEO HOOKE",
+        "MOONEY-RIVLIN",
+        "YEOH",
+        "OGDEN",
+        "ARRUDA-BOYCE",
+        "POLYNOMIAL",
+        "REDUCED POLYNOMIAL",
+        "N",
+    ),
     "PLASTIC": ("HARDENING",),
     "CYCLIC HARDENING": (),
     "DENSITY": (),
@@ -41,6 +50,7 @@ READ: dict[str, tuple[str, ...]] = {
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
     "CONTACT PROPERTY ASSIGNMENT": (),
     "CONTACT INTERFERENCE": ("AMPLITUDE", "OP", "SHRINK", "TYPE"),
+    "MODEL CHANGE": ("ADD", "REMOVE", "TYPE"),
     "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
@@ -98,7 +108,7 @@ PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
 }
 
 _MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Hookean"
-_RUBBER = "of rubber elasticity only *HYPERELASTIC, NEO HOOKE is supported; fit its two constants"
+_RUBBER = "this kind of rubber elasticity is not supported; fit MOONEY-RIVLIN, YEOH, OGDEN or ARRUDA-BOYCE"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
     "BEAM SECTION": "beams are not supported; model the part with solid elements",
@@ -124,7 +134,6 @@ REFUSED: dict[str, str] = {
     "MASS": "point masses belong to dynamics",
     "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
     "MODAL DAMPING": "damping belongs to dynamics",
-    "MODEL CHANGE": "contact and elements that come or go between steps are not supported; make a deck for each state",
     "MULTI-STAGE CYCLIC SYMMETRY": "multistage cyclic symmetry is not supported; model one sector",
     "NCOPY": f"generated nodes are not read{_WRITE}",
     "NFILL": f"generated nodes are not read{_WRITE}",

@@ -1,0 +1,108 @@
+"""Motions that contact without friction resists by its facets alone: rollers and balls in races, pins in bores."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import abut
+from abut.diagnosis import check
+from abut.mesh import make
+from abut.problem.constraints import supports
+from abut.problem.contact_pairs import pairs
+from abut.problem.neutral_motions import Neutral, neutral_motions
+from abut.problem.restraint import restraint
+
+STEEL = abut.LinearElastic(210e3, 0.3)
+LOAD = 3000.0
+
+
+def races(
+    cell: str, cells: int, around: int, angles: tuple[float, ...] = (-135.0, -45.0), **more: object
+) -> abut.Model:
+    """Rollers of radius 1 between half rings with races of radii 2 and 4, turned by 0.13; the inner ring pressed down."""
+    parts = {
+        "outer": make.ring((4.0, 5.0), (-180, 0), cells=(2, around), cell=cell),
+        "inner": make.ring((1.0, 2.0), (-180, 0), cells=(2, around), cell=cell),
+    }
+    for i, angle in enumerate(np.deg2rad(angles)):
+        roller, by = make.disc(1.0, cells=cells, cell=cell), angle + 0.13
+        turn = np.array([[np.cos(by), np.sin(by)], [-np.sin(by), np.cos(by)]])
+        parts[f"r{i}"] = replace(roller, points=roller.points @ turn + 3.0 * np.array([np.cos(angle), np.sin(angle)]))
+    mesh = make.join(parts)
+    loads = [abut.Force("inner.inner", (0.0, -LOAD)), *more.pop("loads", [])]
+    contacts = [
+        abut.Contact(f"r{i}.round", race, name=f"r{i} {race}", friction=more.get("friction", 0.0))
+        for i in range(len(angles))
+        for race in ("outer.inner", "inner.outer")
+    ]
+    return abut.Model(
+        mesh, [abut.Solid(body, STEEL) for body in mesh.bodies],
+        [abut.Support("outer.outer", x=0, y=0), abut.Support("inner.inner", x=0)], loads, contacts, plane="strain",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("cell", "cells", "around"), [("quad4", 6, 53), ("quad8", 4, 37), ("tri3", 6, 53)])
+def test_rollers_share_the_load(cell: str, cells: int, around: int) -> None:
+    """Two rollers at 45 degrees take F / sqrt(2) each by statics: in the mean to the 1 to 2 % by which they lean as they
+    give way, each to what the springs take beside. Their spin and their way round are held, with hardly any iterations and no
+    turn to speak of. (Meshes so coarse have their line "resolution".)"""
+    solution = abut.solve(races(cell, cells, around))
+    (step,) = solution.steps
+    assert len(step.iterations) <= 5
+    assert step.turn < 0.05
+    assert not {"force balance", "free rigid-body modes", "rotation"} & {
+        c.name for c in solution.certificate if not c.passed
+    }
+    forces = np.array([np.hypot(*contact.force) for contact in solution.contacts])
+    assert forces.mean() == pytest.approx(LOAD / np.sqrt(2.0), rel=0.02)
+    assert forces == pytest.approx(LOAD / np.sqrt(2.0), rel=step.neutral)
+    assert 0.0 < step.regularisation < 0.1 * step.neutral
+    held = [note for note in solution.notes if "resists it by its facets alone" in note]
+    assert len(held) == 4
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.2, True), (0.001, False)])
+def test_loads_along_the_race(share: float, refused: bool) -> None:
+    """A force that drives a roller round the race sets it in motion; one below what facets leave is held and told."""
+    along = share * LOAD * np.array([-1.0, 1.0]) / np.sqrt(2.0)
+    model = races("quad4", 6, 53, loads=[abut.Force("r0.round", tuple(along))])
+    report = check(model)
+    assert report.status == (4 if refused else 0)
+    if refused:
+        with pytest.raises(abut.SingularModelError, match="body 'r0' is free to .*the loads act in that direction"):
+            abut.solve(model)
+    else:
+        assert any("resists it by its facets alone" in finding.line for finding in report.findings)
+        assert abut.solve(model).converged
+
+
+def found(model: abut.Model) -> Neutral:
+    constraints = supports(model)
+    every = pairs(model, constraints)
+    return neutral_motions(*(lambda held: (held.rigid, held.steady, every))(restraint(model.mesh, constraints, every)))
+
+
+@pytest.mark.parametrize(("taper", "expected"), [(0.0, 2), (0.01, 1)])
+def test_a_taper_is_no_noise(taper: float, expected: int) -> None:
+    """A shaft in a bore of 16 facets turns and shifts along its axis; on a taper of 1 in 100, far less than the 0.2 by which
+    facets turn, it turns only, since facets turn round the axis, not along it."""
+    parts = {
+        name: make.cylinder(outer, (0.0, 2.0), (2, 16, 4), "hex8", inner=inner)
+        for name, outer, inner in (("shaft", 1.0, 0.5), ("hub", 2.0, 1.0))
+    }
+    mesh = make.join(parts)
+    scale = 1.0 + taper * mesh.points[:, 2:]
+    mesh = replace(mesh, points=np.column_stack([mesh.points[:, :2] * scale, mesh.points[:, 2]]))
+    model = abut.Model(
+        mesh, [abut.Solid(body, STEEL) for body in parts], [abut.Support("hub.round", x=0, y=0, z=0)],
+        contacts=[abut.Contact("shaft.round", "hub.inner", offset=-0.001)],
+    )  # fmt: skip
+    assert np.linalg.matrix_rank(found(model).motions, tol=0.1) == expected
+
+
+def test_friction_resists() -> None:
+    assert not found(races("quad4", 6, 53, friction=0.1)).motions.shape[1]
+    assert np.linalg.matrix_rank(found(races("quad4", 6, 53)).motions, tol=0.1) == 4
