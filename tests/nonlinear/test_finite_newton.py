@@ -91,7 +91,8 @@ def test_energy_is_the_work_of_the_load() -> None:
     work = moved[-1] - third * (
         moved[0] + 4 * moved[1::2].sum() + 2 * moved[2:-1:2].sum() + moved[-1]
     )  # int t d(moved)
-    energy = bodies.energy(Motion(1.0, run.steps[-1].displacement.ravel()))
+    end = Motion(1.0, run.steps[-1].displacement.ravel())
+    energy = bodies.evaluate(end, end).energy
     assert work == pytest.approx(energy, rel=1e-5)
 
 
