@@ -98,7 +98,7 @@ def evened(
 
 def _evened_ends(contactor: Surface, at: Averages, average: NDArray[np.float64], of: Planes) -> NDArray[np.float64]:
     """The same in 2D: the pressure is even, so that of a parabola through the last three nodes those on the plane and next
-    to it have the shares which leave their resultant. Cells of first order."""
+    to it have the shares which leave their resultant, theory (P25). Cells of first order."""
     result = average.copy()
     closed = average > CLOSED * average.max(initial=0.0)
     linear = np.array([CELLS[BY_CODE[k].name].degree == 1 for k in at.surface.kinds], dtype=bool)
