@@ -26,6 +26,7 @@ BARER = 0.1  # difference of such shares that is worth a choice
 FINER = 1.25  # ratio of facet sizes from which on one side counts as finer than the other
 MARGIN = 1.1  # by which shares must pass their limits for the choice to be clear: they are measured
 SAME_SIZE = 1e-3  # relative difference of sizes that is none
+STIFFER = 3.0  # ratio of moduli from which on a contactor that is a little finer may show the facets of its target
 TWICE = 2.0  # ratio of facet sizes that is worth a word
 CLOSE = 0.05  # of the sum of two facets' sizes: gaps within that of the smallest one lie where contact begins
 NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they face each other
@@ -111,9 +112,12 @@ def choose(one: Side, other: Side) -> Choice:
 
 
 def shows_facets(contactor: Side, target: Side) -> bool:
-    """Whether a contactor may touch the facets of its target one by one: the rule takes the other side, and it is finer."""
+    """Whether a contactor may touch the facets of its target one by one: the rule takes the other side, and it is finer, by
+    a little if it is also stiffer, else by far: less does no harm that would show."""
     choice = choose(contactor, target)
-    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and target.size > FINER * contactor.size
+    finer = target.size / contactor.size
+    stiffer = contactor.modulus > STIFFER * target.modulus
+    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and finer > (FINER if stiffer else TWICE)
 
 
 def _bare(side: Side, other: Side) -> bool:
