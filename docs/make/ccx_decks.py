@@ -43,7 +43,7 @@ REMARKS = {
     "beamcontact": "a coarse beam turns about the edges of two narrow stops: the pressure stands on a part of a facet; "
     "refined below",
     "changesurfbeh": "tied in both steps, since the change is left out",
-    "contact2": "in the second of three steps: P2 on one facet across a beam; see below",
+    "contact2": "in the second of three steps; the pressure space: P2, with dual-P1 0.41 %",
     "cubespring": "the side that carries the pressure: with that of CalculiX both agree",
     "fricloop": "one facet on another, pressed in the first step: friction at its four corners, where abut has it, holds it "
     "from widening more than friction all over it; see below",
