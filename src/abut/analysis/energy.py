@@ -96,5 +96,6 @@ def energy(
         stepping=stepping,
         size=max(float(np.abs(internal) @ np.abs(moved)), NOTHING * earlier, 1e-300),
         left=float(rounding + unbalanced),
-        earlier=earlier,
+        earlier=earlier if now.flowed else 0.0,
+        flowed=now.flowed,
     )

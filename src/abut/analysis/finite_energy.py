@@ -74,4 +74,5 @@ def finite_energy(
         elastic=now.stored,
         stabilisation=dragged,
         plastic=plastic,
+        flowed=now.flowed,
     )

@@ -22,9 +22,10 @@ class Energy:
     kinematics also what the mean stresses of the step do beyond what is stored.
     size: what errors are compared with, the sum of all nodal forces of stresses times displacements by size; left: what
     displacements in double precision and the tolerance of equilibrium may leave open; elastic: strain energy at the end,
-    with finite kinematics only; earlier: the largest size of the steps before;
+    with finite kinematics only; earlier: with them, and after flow, the largest size of the steps before;
     stabilisation: what a drag takes on the way of a step that it leads, theory (G24); plastic: what plastic flow
-    takes, with what hardening keeps of it, theory (Y11).
+    takes, with what hardening keeps of it, theory (Y11);
+    flowed: the same since the beginning.
     """
 
     loads: float
@@ -39,6 +40,7 @@ class Energy:
     earlier: float = 0.0
     stabilisation: float = 0.0
     plastic: float = 0.0
+    flowed: float = 0.0
 
     @property
     def error(self) -> float:
@@ -57,4 +59,6 @@ class Energy:
     def limit_beside(self, most: float) -> float:
         """The same where other steps of the run, before or after, have a size of up to ``most``: before the first touch
         what equilibrium leaves open is much beside the work of a step, but nothing beside the run."""
+        if self.elastic is None and not self.flowed:
+            return self.limit
         return replace(self, earlier=max(self.earlier, most)).limit
