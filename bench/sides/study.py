@@ -130,7 +130,7 @@ def rows_of(part: Part, both: bool) -> Iterator[Row]:
 
 
 def line_of(row: Row) -> list[str]:
-    """A row of the table: the chosen side's error is marked, and where the other one is called a wrong choice."""
+    """One model: the chosen side's error is marked, and where the other one is called a wrong choice."""
     case = row.case
     text = [_named(case), f"{case.ratio:g}", f"{case.sizes[0]}, {case.sizes[1]}"]
     marks = [" *" if row.chosen == side else " said" if row.said else "" for side in (0, 1)]
@@ -143,13 +143,13 @@ def summary(part: str, rows: list[Row]) -> list[list[str]]:
     result = []
     for key in dict.fromkeys(row.case.cells for row in rows):
         own = [row for row in rows if row.case.cells == key]
+        both = [row for row in own if not any(map(math.isnan, row.errors))]
         taken = max(row.errors[row.chosen] for row in own)
-        best, worst = (max(f(row.errors) for row in own) for f in (min, max))
-        wrong = [row for row in own if row.errors[1 - row.chosen] > row.limit]
+        best, worst = (max((f(row.errors) for row in both), default=math.nan) for f in (min, max))
+        wrong = [row for row in both if row.errors[1 - row.chosen] > row.limit]
+        said = f"{sum(row.said for row in wrong)} of {len(wrong)}" if both else "-"
         numbers = [_percent(value) for value in (taken, own[0].limit, best, worst)]
-        result.append(
-            [part, _named(own[0].case), str(len(own)), *numbers, f"{sum(r.said for r in wrong)} of {len(wrong)}"]
-        )
+        result.append([part, _named(own[0].case), str(len(own)), *numbers, said])
     return result
 
 
@@ -161,7 +161,6 @@ def _percent(value: float) -> str:
     return "-" if math.isnan(value) else f"{100 * value:.1f}"
 
 
-HEADER = ["cells", "ratio", "facets", "first", "second", "abut's choice (*)"]
 SUMMARY = ["part", "cells", "models", "abut's choice", "limit", "better side", "worse side", "wrong and said"]
 
 
@@ -182,7 +181,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", nargs="*", choices=[*PARTS, *MOVING, []], metavar="PART")
     parser.add_argument("--chosen", action="store_true", help="solve with abut's choice only")
-    parser.add_argument("--rows", action="store_true", help="show every model")
+    parser.add_argument(
+        "--rows", action="store_true", help="show every model: cells, ratio, facets, errors of both sides"
+    )
     parser.add_argument("--markdown", action="store_true")
     arguments = parser.parse_args()
     missed = False
@@ -190,9 +191,11 @@ def main() -> int:
         if name in MOVING:
             show(*MOVING[name](), arguments.markdown)
             continue
-        rows = list(rows_of(PARTS[name], not arguments.chosen))
-        if arguments.rows:
-            show(HEADER, [line_of(row) for row in rows], arguments.markdown)
+        rows = []
+        for row in rows_of(PARTS[name], not arguments.chosen):
+            rows.append(row)
+            if arguments.rows:
+                print("  ".join(line_of(row)), flush=True)
         show(SUMMARY, summary(name, rows), arguments.markdown)
         missed |= any(row.errors[row.chosen] > row.limit or row.silent for row in rows)
     return int(missed)

@@ -33,6 +33,15 @@ def test_the_wrong_side_is_told() -> None:
     assert row.errors[0] > 0.5 > 5.0 * row.errors[1]
 
 
+def test_a_contactor_twice_as_fine_is_told() -> None:
+    """Of alike bodies, too: off by more than the 4 % that the study allows, where the other side is not."""
+    case = problems.line(("tri3", "tri3"), 1.0, (16, 8))
+    wrong, right = (abut.solve(case.forced(side)) for side in (0, 1))
+    assert case.error(wrong) > 0.04 > case.error(right)
+    assert "sides" in {check.name for check in wrong.certificate if not check.passed}
+    assert "sides" not in {check.name for check in right.certificate}
+
+
 def test_every_facet_type_is_in_the_study() -> None:
     """On both sides alike, and all problems of a part can be built."""
     cells = {cell for part in study.PARTS.values() for pair in part.cells for cell in pair}

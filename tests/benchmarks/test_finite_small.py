@@ -38,8 +38,8 @@ SAME = 2e-6
 ROUNDED = {"pin-lug/job": 1e-5, "two-rings/job": 1e-3, "twisted-hub/job": 1e-5}
 
 # Small displacements have the normals between both sides, (R2), large ones those of the contactor, which under a load are
-# the same, but not on the facet or two of round bodies that a tiny one presses together: by this angle over one of them, share
-# of (R2) * size / radius. Pressures differ by half of its square (4.9e-6, 1.1e-6 with 4, 8 cells; 2.5e-4, 8.9e-5
+# the same, but not on the facet or two of round bodies that a tiny one presses together: by this angle over one of them, the
+# share in (R2) * size / radius. Pressures differ by half of its square (4.9e-6, 1.1e-6 with 4, 8 cells; 2.5e-4, 8.9e-5
 # with 3, 5).
 LEANS = {"hertz-line/quad8": 0.25 * 2.0 / 50.0, "hertz-sphere/job": 0.5 * 1.1 / 3.0 / 8.0}
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,20 @@ def test_a_side_that_dips_in_does_not_see_the_far_side(cell: str) -> None:
     points = seen(make.join({"ground": ground, "block": block}), "block", "ground", 0.7)
     assert len(points.gap)
     assert points.gap.min() == pytest.approx(-DIP, rel=1e-6)
+
+
+@pytest.mark.parametrize("cell", ["quad4", "quad8", "hex8", "tet10"])
+def test_what_is_beside_a_body_does_not_see_its_far_side(cell: str) -> None:
+    """A block with leaning sides, a little above the ground: lines of sight from its side go down through the ground's top
+    and leave by its end, half a block away. Only its bottom sees the ground, as far away as it is."""
+    solid = cell in ("tet10", "hex8")
+    span, depth = [1.0, 1.8], [[0, 0.4]] if solid else []
+    ground = (make.box if solid else make.rectangle)([0, 1.5], *depth, [0, 0.6], (8, *[3] * solid, 3), cell)
+    block = (make.box if solid else make.rectangle)(span, *depth, [0.6 + DIP, 1.0], (4, *[2] * solid, 3), cell)
+    leaning = block.points + 0.05 * (block.points[:, -1:] - 0.6 - DIP) * np.eye(block.points.shape[1])[0]
+    mesh = make.join({"ground": ground, "block": replace(block, points=leaning)})
+    points = seen(mesh, "block", "ground", 0.7)
+    assert points.gap.min() == pytest.approx(DIP, rel=1e-6)
 
 
 @pytest.mark.parametrize("depth", [0.02, 0.1, 0.2])

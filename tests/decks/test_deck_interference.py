@@ -114,7 +114,9 @@ def test_pairs_that_come_and_go(nlgeom: str, tmp_path: Path) -> None:
     assert solution.converged
     ends = [next(s for s in solution.steps if abs(s.factor - t) < 1e-9) for t in (0.2, 0.4, 0.6, 0.8, 1.0)]
     full = 1000.0 * (0.05 - 0.05**2 / 2.0) * 0.95 if nlgeom else 50.0
-    assert [abs(s.contacts[0].force[2]) for s in ends] == pytest.approx([full, 0.0, 0.0, full, full], rel=1e-6, abs=1e-9)
+    assert [abs(s.contacts[0].force[2]) for s in ends] == pytest.approx(
+        [full, 0.0, 0.0, full, full], rel=1e-6, abs=1e-9
+    )
 
 
 @pytest.mark.parametrize(

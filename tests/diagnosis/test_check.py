@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ import abut
 from abut.cells import CELLS
 from abut.cli import main
 from abut.diagnosis import Finding, Report, check
+from abut.diagnosis.cost import foresee
 from abut.diagnosis.quality import quality
 from abut.errors import InputError
 from abut.job import load_job
@@ -22,6 +24,7 @@ from abut.linear.cost_model import LARGE, MEMORY, Effort, of_stiffness, seconds
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.shapes import CORNERS
+from abut.problem.constraints import supports
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = (EXAMPLES / "two-blocks" / "job.toml").read_text()
@@ -354,6 +357,26 @@ def test_expected_times_agree_with_the_choice_of_the_solver(cell: str) -> None:
         own = Effort(stiffness, {cell: n**3}, multipliers=n**2, pairs=1, bodies=1, cutting=0.0, steps=1, stretched=1.0)
         expected = {solver: seconds(own, solver)["solve"] for solver in ("direct", "amg")}
         assert min(expected, key=lambda solver: expected[solver]) == faster
+
+
+def test_time_at_large_displacements_counts_iterations_and_steps() -> None:
+    """Each iteration has new factors: thirty where five steps are given; as many steps as runs find where none are."""
+
+    def foreseen(**solve: Any) -> float:
+        mesh = rectangle(cells=(20, 20), cell="quad8")
+        held = [abut.Support("bottom", x=0, y=0), abut.Support("top", y=0.1)]
+        rubber = abut.NeoHooke(1.0, 0.4)
+        model = abut.Model(
+            mesh, [abut.Solid("body", rubber)], held, plane="strain", kinematics="finite",
+            solve=abut.SolveOptions(**solve),
+        )  # fmt: skip
+        (found,) = (finding for finding in check(model).findings if "free displacements" in finding.what)
+        assert ("18 load steps" in found.what) == (not solve)
+        return foresee(model, supports(model), []).stages["solve"]
+
+    assert foreseen(steps=10) == pytest.approx(2.0 * foreseen(steps=5))
+    assert foreseen() == pytest.approx(18.0 / 5.0 * foreseen(steps=5))
+    assert foreseen(times=(0.5, 1.0)) == pytest.approx(2.0 / 5.0 * foreseen(steps=5))
 
 
 LINES = [i for i, line in enumerate(TEXT.splitlines()) if line.strip() and not line.startswith("#")]

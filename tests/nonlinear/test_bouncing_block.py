@@ -13,9 +13,9 @@ import abut
 from abut.linear.choice import Direct
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.mesh.make import join, rectangle
-from abut.nonlinear.large_steps import march_finite
+from abut.nonlinear.large_steps import LargeSteps
+from abut.nonlinear.march import Control, march
 from abut.nonlinear.pace import pace_of
-from abut.nonlinear.stepping import Control
 from abut.problem.backend import Serial
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
@@ -78,7 +78,7 @@ def test_iterations_are_fewer_than_published() -> None:
     problem = replace(problem, terms=(laplace(model), *problem.terms[1:]))
     control = Control(50, rows.append, _silent, _silent, _silent, _same, _silent)
     pace = pace_of(model.solve.steps, model.solve.times, model.histories)
-    attempts = list(march_finite(problem, [problem.start()], pace, Direct(), control))
+    attempts = list(march(LargeSteps(problem, Direct(), control), [problem.start()], pace, control))
     assert all(attempt.converged for attempt in attempts)
     assert len(attempts) == STEPS
     assert sum(attempt.state.closed.any() for attempt in attempts) == 3 * STEPS // EACH

@@ -51,7 +51,7 @@ def test_quadratic(load: object, material: object) -> None:
 def test_unsymmetric_tangent_is_quadratic_too() -> None:
     rows = abut.solve(replace(cook(4), solve=abut.SolveOptions(steps=1, max_iterations=30))).steps[-1].iterations
     assert rows[-1].residual < 1e-9
-    assert rows[-1].residual < 1e-3 * rows[-2].residual
+    assert rows[-1].residual < max(1e-3 * rows[-2].residual, 1e-10)  # rounding
 
 
 def test_dead_and_following_pressure() -> None:
@@ -91,7 +91,8 @@ def test_energy_is_the_work_of_the_load() -> None:
     work = moved[-1] - third * (
         moved[0] + 4 * moved[1::2].sum() + 2 * moved[2:-1:2].sum() + moved[-1]
     )  # int t d(moved)
-    energy = bodies.energy(Motion(1.0, run.steps[-1].displacement.ravel()))
+    end = Motion(1.0, run.steps[-1].displacement.ravel())
+    energy = bodies.evaluate(end, end).energy
     assert work == pytest.approx(energy, rel=1e-5)
 
 
@@ -107,8 +108,12 @@ def test_a_cell_turned_inside_out_halves_the_step() -> None:
 
 
 def test_what_cannot_be_reached_ends_with_the_last_state() -> None:
-    """Pressed to less than nothing: no load step gets there, and what is reported is sound."""
-    solution = abut.solve(model([], supports=[*HELD, abut.Support("body.right", x=-2.5, y=0)]))
+    """A row of cells between two walls, pressed to less than nothing: it has no way round. No load step gets there, and what
+    is reported is sound."""
+    row = join({"body": rectangle((0.0, 2.0), (0.0, 1.0), (4, 1), "quad4")})
+    between = [abut.Support(f"body.{side}", y=0) for side in ("top", "bottom")]
+    pressed = model([], supports=[abut.Support("body.left", x=0), *between, abut.Support("body.right", x=-2.5)])
+    solution = abut.solve(replace(pressed, mesh=row))
     assert not solution.converged
     assert any("did not converge" in note for note in solution.notes)
     assert np.isfinite(solution.displacement).all()

@@ -13,9 +13,6 @@ from abut.contact.laws import Coulomb, LawState
 from abut.errors import InputError, SingularModelError
 from abut.linear import static_condensation
 from abut.mesh import make
-from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.stepping import Automatic
-from abut.solution.state import at_rest
 from models.friction import FRICTION, cattaneo, errors, on_a_slope, profile, pushed, sheared
 from models.patch import CELL_OF, two_blocks
 
@@ -247,23 +244,3 @@ def test_no_friction_is_the_contact_without() -> None:
     plain = replace(model, contacts=[replace(model.contacts[0], friction=0)])
     assert abut.solve(model).contacts[0].friction is None
     assert np.array_equal(abut.solve(model).displacement, abut.solve(plain).displacement)
-
-
-def test_steps_are_halved_and_grow_again() -> None:
-    def attempt(time: float, converged: bool) -> Attempt:
-        none = np.zeros(0, bool)
-        return Attempt(1, replace(at_rest(0, 0), time=time), converged, (), none, none, time)
-
-    schedule = Automatic([0.5, 1.0])
-    assert schedule.next(None) == 0.5
-    assert schedule.next(attempt(0.5, False)) == 0.25
-    assert schedule.next(attempt(0.25, False)) == 0.125
-    assert schedule.next(attempt(0.125, True)) == 0.375
-    assert schedule.next(attempt(0.375, True)) == 0.5
-    assert schedule.next(attempt(0.5, True)) == 1.0
-    assert schedule.next(attempt(1.0, True)) is None
-    schedule, time = Automatic([1.0]), 1.0
-    for _ in range(6):
-        assert schedule.next(attempt(time, False)) == 0.5 * time
-        time *= 0.5
-    assert schedule.next(attempt(time, False)) is None

@@ -6,7 +6,7 @@ import pytest
 
 from abut.errors import InputError
 from abut.model import Amplitude, SolveOptions
-from abut.nonlinear.pace import EASY, FIRST, GROWTH, HARD, SHRINK, SMALLEST, Pace, pace_of
+from abut.nonlinear.pace import EASY, FIRST, GROWTH, HARD, SHRINK, SMALLEST, Pace, given_pace, pace_of
 
 
 def ends(pace: Pace, iterations: int) -> list[float]:
@@ -182,3 +182,24 @@ def test_steps_in_which_friction_lands_are_followed_by_shorter_ones() -> None:
         pace.take(3, share)
     lengths = [pace.end - pace.time for pace in (easy, hard, much, given)]
     assert lengths == pytest.approx([0.15, 0.1 * 0.5**0.5, 0.05, 0.1])
+
+
+def test_given_steps_are_taken_in_parts_and_grow_again() -> None:
+    """Half as far where they fail, twice as far again after each part; what ends at a given time is a step."""
+    pace, found = given_pace([0.5, 1.0]), []
+    pace.halve()
+    pace.halve()
+    while (end := pace.end) is not None:
+        found.append((end, pace.whole(end)))
+        pace.take(50)
+    assert found == [(0.125, False), (0.3125, False), (0.5, True), (1.0, True)]
+
+
+def test_given_steps_end_at_last() -> None:
+    pace = given_pace([1.0])
+    for k in range(6):
+        assert not pace.last
+        pace.halve()
+        assert pace.end == 0.5 ** (k + 1)
+    assert pace.last
+    assert given_pace([0.5, 1.0], parts=False).last

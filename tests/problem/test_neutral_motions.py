@@ -47,8 +47,8 @@ def races(
 @pytest.mark.parametrize(("cell", "cells", "around"), [("quad4", 6, 53), ("quad8", 4, 37), ("tri3", 6, 53)])
 def test_rollers_share_the_load(cell: str, cells: int, around: int) -> None:
     """Two rollers at 45 degrees take F / sqrt(2) each by statics: in the mean to the 1 to 2 % by which they lean as they
-    give way, each to what the springs take beside. Their spin and their way round are held, with hardly any iterations and no
-    turn to speak of. (Meshes so coarse have their line "resolution".)"""
+    give way, each to what the springs take beside. Their spin and their way round are held, with hardly any iterations and
+    no turn to speak of. (Meshes so coarse have their line "resolution".)"""
     solution = abut.solve(races(cell, cells, around))
     (step,) = solution.steps
     assert len(step.iterations) <= 5
@@ -72,7 +72,7 @@ def test_loads_along_the_race(share: float, refused: bool) -> None:
     report = check(model)
     assert report.status == (4 if refused else 0)
     if refused:
-        with pytest.raises(abut.SingularModelError, match="body 'r0' is free to .*the loads act in that direction"):
+        with pytest.raises(abut.SingularModelError, match=r"body 'r0' is free to .*the loads act in that direction"):
             abut.solve(model)
     else:
         assert any("resists it by its facets alone" in finding.line for finding in report.findings)

@@ -21,7 +21,9 @@ from abut.materials.elastic import LinearElastic
 from abut.materials.material import Evaluated, OwnMaterial
 from abut.mesh.make import box, join, rectangle
 from abut.nonlinear import load_step, stepping
-from abut.nonlinear.stepping import Control, march
+from abut.nonlinear.march import Control, march
+from abut.nonlinear.pace import Pace, given_pace
+from abut.nonlinear.stepping import SmallSteps
 from abut.output.restart import load_steps, save_step
 from abut.verify import law_tangents, material_tangent
 from models.friction import rubbed
@@ -78,7 +80,7 @@ def test_a_linear_model_is_factorised_once(
 
 
 def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A schedule that halves a step that fails: each attempt starts from the last converged state."""
+    """A step that fails is halved: each attempt starts from the last converged state."""
     problem = assembled(blocks(1))
     starts: list[tuple[float, float]] = []
     true = load_step.load_step
@@ -87,18 +89,6 @@ def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch)
         starts.append((task.before.time, time))
         attempt = true(task, time, prepared)
         return replace(attempt, converged=False) if time - task.before.time > 0.3 else attempt
-
-    @dataclass(frozen=True)
-    class Halving:
-        def next(self, attempt: load_step.Attempt | None) -> float | None:
-            if attempt is None:
-                return 1.0
-            if not attempt.converged:
-                return 0.5 * (starts[-1][0] + starts[-1][1])
-            return 1.0 if attempt.state.time < 1.0 else None
-
-        def whole(self, time: float) -> bool:
-            return True
 
     monkeypatch.setattr(stepping, "load_step", failing)
 
@@ -109,11 +99,12 @@ def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch)
         raise reason
 
     control = Control(50, none, none, none, none, never, none)
-    attempts = list(march(problem, problem.start(), Halving(), Direct(), control))
-    assert [start for start, _ in starts] == [0.0, 0.0, 0.0, 0.25, 0.25, 0.25, 0.4375, 0.4375, 0.71875]
+    first = problem.start()
+    attempts = list(march(SmallSteps(problem, first, Direct(), control), [first], Pace([1.0], first=1.0), control))
+    assert [start for start, _ in starts] == [0.0, 0.0, 0.0, 0.25, 0.25, 0.4375, 0.71875]
     done = [a for a in attempts if a.converged]
     assert [a.number for a in done] == [1, 2, 3, 4]
-    whole = next(march(problem, problem.start(), stepping.Fixed([1.0]), Direct(), control))
+    whole = next(march(SmallSteps(problem, first, Direct(), control), [first], given_pace([1.0], parts=False), control))
     assert np.abs(done[-1].state.multipliers - whole.state.multipliers).max() < 1e-9 * whole.state.largest.pressure
 
 

@@ -162,7 +162,7 @@ def contact_result(
         target_pressure=carried,
         checks=(
             *_checks(state, residual, around, nodal, share, average),
-            *sides_check(pair, around.sides, nodal, carried),
+            *sides_check(pair, around.sides, nodal, carried, NOTHING * max(around.reference, around.beside)),
         ),
         statistics=statistics,
         resultant=amount,

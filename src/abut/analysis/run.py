@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -19,11 +19,12 @@ from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.side_choice import choices
-from abut.nonlinear.large_steps import march_finite
+from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.pace import pace_of
+from abut.nonlinear.march import Control, Stepper, march
+from abut.nonlinear.pace import Pace, given_pace, pace_of
 from abut.nonlinear.stabilised import STRIDES
-from abut.nonlinear.stepping import Automatic, Control, Fixed, Schedule, march
+from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
@@ -139,26 +140,32 @@ class Run:
                 f"time {time:.6g} first, not to {attempt.time:.6g}"
             )
 
-        halve = self.model.finite or any(pair.frictional for pair in problem.pairs)
         control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves)
-        attempts: Iterator[Attempt]
+        pace = self._pace()
+        for saved in done:
+            strides = STRIDES if is_dragged(saved.state) else ()
+            pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)
+        states = [problem.start(), *(saved.state for saved in done)]
+        stepper: Stepper
         if isinstance(problem, FiniteProblem):
-            pace = pace_of(solve.steps, solve.times, self.model.histories)
-            for saved in done:
-                strides = STRIDES if is_dragged(saved.state) else ()
-                pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)
-            states = [problem.start(), *(saved.state for saved in done)]
-            attempts = march_finite(problem, states, pace, self.solver, control)
+            stepper = LargeSteps(problem, self.solver, control)
         else:
-            schedule: Schedule = Automatic(times, first.time) if halve else Fixed(times)
-            attempts = march(problem, first, schedule, self.solver, control, len(self.steps) + 1)
-        for attempt in attempts:
+            stepper = SmallSteps(problem, first, self.solver, control)
+        for attempt in march(stepper, states, pace, control):
             self.clock.mark("solve")
             ends = (0, 0) if self.model.finite else (attempt.number - 1, count)
             observe(Phase(f"stresses and checks of step {attempt.number}", None, *ends))
             self._end(attempt)
         if self.solver.effort:
             self.told.note(self.solver.effort)
+
+    def _pace(self) -> Pace:
+        """Before the first step. Large sliding finds its own steps; with friction or large displacements those of the user
+        are taken in parts where they fail."""
+        model, pairs = self.model, self.assembled.problem.pairs
+        if model.finite and pairs:
+            return pace_of(model.solve.steps, model.solve.times, model.histories)
+        return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs))
 
     def so_far(self, complete: bool) -> Solution:
         """The steps up to here; complete: there are no more to come."""

@@ -15,15 +15,18 @@ LIMIT = 0.045  # seen where contact is five facets wide to each side: above it t
 Array = NDArray[np.float64]
 
 
-def sides_check(pair: Pair, sides: tuple[Side, Side] | None, nodal: Array, carried: Array) -> Iterator[Check]:
+def sides_check(
+    pair: Pair, sides: tuple[Side, Side] | None, nodal: Array, carried: Array, none: float = 0.0
+) -> Iterator[Check]:
     """A line where the rule would take the other side because this one is finer and not softer; theory (P17).
 
     sides: contactor and target as the choice sees them; nodal: (n_facets, 9) reported pressure; carried:
-    (n_target_facets, 9) the same at the target's nodes."""
+    (n_target_facets, 9) the same at the target's nodes; none: pressure that is taken for none."""
     if sides is None or not shows_facets(*sides):
         return
+    pressed = np.nanmax(np.abs(nodal), initial=0.0) > none
     yield Check(
-        pair.contact.name, "sides", unresolved(pair, nodal, carried), LIMIT,
+        pair.contact.name, "sides", unresolved(pair, nodal, carried) if pressed else 0.0, LIMIT,
         f"share of the pressure that the target's facets cannot follow, where {against(*sides)}",
     )  # fmt: skip
 

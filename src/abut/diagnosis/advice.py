@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.coupling import surface_degree
-from abut.materials.elastic import LinearElastic
+from abut.materials.material import linear
 from abut.model import LAWS, METHODS, SolveOptions
 from abut.problem.constraints import supports
 from abut.problem.restraint import restraint
@@ -179,8 +179,8 @@ def _by_deformation(solution: Solution) -> Iterator[Remedy]:
         at = model.mesh.nodes_of(solid.body)
         if (
             not model.small_strains
-            and isinstance(solid.material, LinearElastic)
-            and np.abs(step.stress[at]).max() > STRAINED * solid.material.young
+            and linear(solid.material) is solid.material
+            and np.abs(step.stress[at]).max() > STRAINED * solid.material.modulus
         ):
             yield Remedy(
                 f"material kind = \"neo-hooke\" of body '{solid.body}'",

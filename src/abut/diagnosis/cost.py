@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import chosen
-from abut.linear.cost_model import LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds
+from abut.linear.cost_model import FOUND, LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds
 from abut.linear.direct import available_memory
 from abut.model import Model
 from abut.problem.constraints import Constraints
@@ -30,7 +30,8 @@ class Foreseen:
 
 
 def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Foreseen:
-    """What a run will need: seconds mostly within a factor of two, memory of two or three."""
+    """What a run will need: seconds mostly within a factor of two, of a typical number of load steps where these are found
+    on the way; memory of two or three."""
     n = int(constraints.free.shape[1])
     petsc = model.solve.linear == "petsc"
     sizes = LARGE_ON_MANY if petsc else LARGE_FINITE if model.finite else LARGE
@@ -53,7 +54,7 @@ def cost(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[
             "info",
             "solve",
             f"{n} free displacements, {multipliers} multipliers; linear solver {name}: about "
-            f"{_time(foreseen.seconds)} {alone}(to a factor of two) and {_memory(megabytes)}",
+            f"{_time(foreseen.seconds)} {alone}({_known(model)}) and {_memory(megabytes)}",
         )
     ]
     if petsc and find_spec("petsc4py") is None:
@@ -77,6 +78,12 @@ def cost(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[
             )
         )
     return findings
+
+
+def _known(model: Model) -> str:
+    if model.finite and model.solve.finds_steps:
+        return f"for {FOUND} load steps; a run finds them, where it is easy fewer"
+    return "to a factor of two"
 
 
 def _time(seconds: float) -> str:

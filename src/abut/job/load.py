@@ -67,7 +67,8 @@ MATERIALS: Mapping[str, Callable[..., Material]] = {
 }  # fmt: skip
 
 
-CHOICES = ("str", "int", "list[str]")  # pydantic's names for one of several types that a value may have
+# pydantic's names for one of several types that a value may have
+CHOICES = ("str", "int", "float", "list[str]", "list[float]", "list[list[float]]")
 DECK = ".inp"
 
 

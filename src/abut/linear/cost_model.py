@@ -42,6 +42,13 @@ LEVELS, CYCLE = 5e-8, 3e-9  # seconds an entry of the stiffness for setting mult
 FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins where the last ended
 KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
 START = 0.005
+FOUND, ITERATIONS = 18, 6  # load steps at large displacements where a run finds them, and iterations in one: 5 to 8
+FINITE, TANGENT, UNSYMMETRIC = (
+    4e-3,
+    3.0,
+    2.0,
+)  # seconds an iteration; its cells and factors over those of small displacements
+FOLLOWED = 6e-5  # seconds a multiplier and iteration: contact at current positions and its derivatives
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 LARGE_FINITE = {1: 5_000, 2: 10_000}  # the same with kinematics "finite": unsymmetric factors in every iteration
 LARGE_ON_MANY = {1: 5_000, 2: 5_000}  # the same on several processes: MUMPS factorises at every iteration
@@ -82,7 +89,7 @@ class Stiffness:
 @dataclass(frozen=True)
 class Effort:
     """What has to be done. cells: of each kind; multipliers, pairs, bodies, steps: how many; cutting: seconds; stretched:
-    mean ratio of the cells' edges."""
+    mean ratio of the cells' edges; finite: large displacements."""
 
     stiffness: Stiffness
     cells: dict[str, int]
@@ -92,6 +99,7 @@ class Effort:
     cutting: float
     steps: int
     stretched: float
+    finite: bool = False
 
 
 def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
@@ -111,7 +119,8 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
         pairs=len(pairs),
         bodies=len(model.mesh.bodies),
         cutting=sum(map(_cutting, pairs)),
-        steps=len(model.ends),
+        steps=FOUND if model.finite and model.solve.finds_steps else len(model.ends),
+        finite=model.finite,
         stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
     )
 
@@ -125,7 +134,12 @@ def seconds(effort: Effort, solver: str) -> dict[str, float]:
     """Seconds of each stage, with "direct" or "amg" as the linear solver."""
     solutions = FIRST + NEXT * (effort.steps - 1) if effort.multipliers else effort.steps
     prepared, displacements = preparing(effort.stiffness, solver), effort.stiffness.displacements
-    if solver == "amg":
+    if effort.finite:
+        anew = effort.stiffness.entries * CYCLE * KRYLOV * effort.stretched**STRETCHED if solver == "amg" else 0.0
+        each = FINITE + anew + (1.0 if solver == "amg" else UNSYMMETRIC) * prepared
+        each += TANGENT * (_assembly(effort) + effort.cutting) + FOLLOWED * effort.multipliers
+        solving = ITERATIONS * effort.steps * each
+    elif solver == "amg":
         krylov = KRYLOV * effort.stretched**STRETCHED * (FIRST + NEXT * (effort.steps - 1)) / FIRST
         solving = prepared + effort.stiffness.entries * CYCLE * krylov
     else:
@@ -139,11 +153,15 @@ def seconds(effort: Effort, solver: str) -> dict[str, float]:
             SOLUTION + (DENSE * effort.multipliers**3 if eliminated else 0.0)
         )
     return {
-        "assembly": START + sum(ASSEMBLY[kind] * count for kind, count in effort.cells.items()),
+        "assembly": START + _assembly(effort),
         "interface": effort.cutting + A_PAIR * effort.pairs + A_BODY * effort.bodies,
         "solve": solving,
         "results": effort.steps * (RESULT * displacements + A_PAIR * effort.pairs),
     }
+
+
+def _assembly(effort: Effort) -> float:
+    return sum(ASSEMBLY[kind] * count for kind, count in effort.cells.items())
 
 
 def _cells(mesh: Mesh) -> dict[str, int]:

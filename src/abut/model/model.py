@@ -199,11 +199,11 @@ class Model:
 
     @cached_property
     def ends(self) -> tuple[float, ...]:
-        """Time at the end of each load step: those of ``solve``, and where the way matters (friction, materials that are not
-        linear) the corners of all histories, which a step across would never see."""
+        """Time at the end of each load step: those of ``solve``, and where the way matters (friction, large displacements,
+        materials that are not linear) the corners of all histories, which a step across would never see."""
         given = self.solve.ends
         rubs = any(contact.frictional for contact in self.contacts)
-        if not rubs and all(material.constant for material in self.materials.values()):
+        if not (rubs or self.finite) and all(material.constant for material in self.materials.values()):
             return given
         return with_corners(given, self.histories)
 

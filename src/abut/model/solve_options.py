@@ -66,6 +66,11 @@ class SolveOptions:
             self._check_times()
 
     @property
+    def finds_steps(self) -> bool:
+        """Whether a run at large displacements finds all of its load steps."""
+        return self.steps == AUTO and not self.times
+
+    @property
     def ends(self) -> tuple[float, ...]:
         """Time at the end of each load step."""
         count = self.steps if isinstance(self.steps, int) else 1

@@ -1,24 +1,23 @@
-"""Load stepping at large displacements: automatic step lengths, each step begun by extrapolation."""
+"""Load steps at large displacements, each begun by extrapolation."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from abut.linear.solver import LinearSolver, NotConverged
+from abut.linear.solver import LinearSolver
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
 from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.stabilised import led_on, stabilised
-from abut.nonlinear.stepping import Control
 from abut.nonlinear.unsettled import gives_way
 from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import drag_of, is_dragged
-from abut.problem.step_error import landed_in
 from abut.solution.state import State
 
 MOST = 25  # iterations in a step, above which it is halved
@@ -28,43 +27,47 @@ AGAIN = (
 CAREFUL = 2  # cuts in a row from which on a line search shortens iterations
 
 
-def march_finite(
-    problem: FiniteProblem, done: Sequence[State], pace: Pace, solver: LinearSolver, control: Control
-) -> Iterator[Attempt]:
-    """Load step after load step. done: the converged states so far, from the start on; pace: after the last of them.
+class LargeSteps:
+    """As ``Stepper``, at large displacements: where a linear solver fails another one takes that step."""
 
-    A failed attempt is yielded only where no other follows it; where a linear solver fails, another one solves that step."""
-    before, cuts = done[-1], 0
-    stands_in: LinearSolver | None = None
-    earlier = done[-2] if len(done) > 1 else None
-    number, limit = len(done), min(MOST, control.limit)
-    control.prepared(f"{solver.name}, unsymmetric, new in every {'iteration' if solver.count is None else 'step'}")
-    while (time := pace.end) is not None:
-        if cuts == 0 and stands_in is None:
-            control.begins(number, time)
-        tried = cuts > (AGAIN if problem.restraint.by_supports else 0)
-        begins = tried or pace.turned or earlier is None or is_dragged(before) or let_go(problem, earlier, before)
-        guess = None if begins or earlier is None else extrapolated(problem, earlier, before, time)
-        setting = Setting(problem, stands_in or solver, number, limit, control.observe)
-        try:
-            attempts = _attempts(setting, before, guess, time, careful=cuts >= CAREFUL)
-            if gave_up := not attempts[-1].converged and pace.last:
-                attempts = _led(setting, before, pace, attempts[-1])
-        except NotConverged as reason:
-            stands_in = control.fallback(number, reason)
-            continue
-        if attempts[-1].converged:
-            stands_in = None
-            pace.take(sum(len(part.iterations) for part in attempts), landed_in(attempts[-1].state).share)
-            yield from attempts
-            earlier, before, number, cuts = before, attempts[-1].state, number + 1, 0
-            continue
-        if gave_up:
-            yield attempts[-1]
-            return
-        cuts += 1
-        pace.halve()
-        control.halves(attempts[-1], pace.end or time)
+    def __init__(self, problem: FiniteProblem, solver: LinearSolver, control: Control) -> None:
+        self._problem, self._solver, self._control = problem, solver, control
+        self._stands_in: LinearSolver | None = None
+        self._limit = min(MOST, control.limit) if problem.pairs else control.limit
+        control.prepared(f"{solver.name}, new in every {'iteration' if solver.count is None else 'step'}")
+
+    def prepare(self) -> None:
+        """As in ``Stepper``: every step sets up its own."""
+
+    def attempts(self, begin: Begin, pace: Pace) -> Sequence[Attempt]:
+        """As in ``Stepper``; under a drag where no other step is short enough."""
+        assert pace.end is not None
+        before, time = begin.before, pace.end
+        setting = Setting(
+            self._problem, self._stands_in or self._solver, begin.number, self._limit, self._control.observe
+        )
+        attempts = _attempts(setting, before, self._guess(begin, pace), time, careful=begin.cuts >= CAREFUL)
+        return _led(setting, before, pace, attempts[-1]) if not attempts[-1].converged and pace.last else attempts
+
+    def replace(self, solver: LinearSolver) -> None:
+        """As in ``Stepper``: for this step."""
+        self._stands_in = solver
+
+    def end(self) -> None:
+        """As in ``Stepper``."""
+        self._stands_in = None
+
+    def _guess(self, begin: Begin, pace: Pace) -> State | None:
+        """By extrapolation, where that tells something; without contact the tangent at the last state tells more."""
+        problem, before, earlier = self._problem, begin.before, begin.earlier
+        tried = begin.cuts > (AGAIN if problem.restraint.by_supports else 0)
+        if tried or pace.turned or earlier is None or is_dragged(before) or not problem.pairs:
+            return None
+        return (
+            None
+            if let_go(problem, earlier, before)
+            else extrapolated(problem, earlier, before, pace.end or before.time)
+        )
 
 
 def _attempts(setting: Setting, before: State, guess: State | None, time: float, careful: bool) -> Sequence[Attempt]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from abut.contact.coupling import surface_degree
 from abut.contact.pressure_space import DUAL_P1
 from abut.linear.solver import Prepared
-from abut.nonlinear.equilibrium import equilibrium
 from abut.nonlinear.iteration import Found, largest_so_far
 from abut.nonlinear.newton import Task, newton
 from abut.problem.balance import Balance
@@ -45,13 +44,6 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
 
     The problem has dual functions wherever the space has them. What is closed all over at the outset may stay so: that is
     tried first. Else dual functions tell where contact is closed, and there the ordinary ones take their place."""
-    if prepared.system.about is not None:
-        none = np.zeros(0, dtype=bool)
-        return _ended(task, time, *equilibrium(task, time, prepared), none)
-    return _searched(task, time, prepared)
-
-
-def _searched(task: Task, time: float, prepared: Prepared) -> Attempt:
     problem = task.problem
     pairs = prepared.system.pairs
     begin = replace(problem.restrict(task.before), time=time)

@@ -64,8 +64,9 @@ def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:
     none = np.zeros(len(found.state.status), dtype=bool)
-    state, balance = replace(found.state, time=time), None
+    state, balance = found.state, None  # that of the last step, where no other is sound
     if found.system is not None:
+        state = replace(found.state, time=time)
         balance = Balance.of(found.system, state)
     if found.converged:
         assert found.system is not None

@@ -35,7 +35,8 @@ def following_status(system: Linearised, state: State, increment: Increment, ask
 
 def without_pulling(system: Linearised, state: State, there: State, increment: Increment) -> State | None:
     """The state (its unknowns as they are) without the points that pull at ``there``, where contact alone holds a body: what
-    they pull others press, far from the forces that loads ask for. None where none pull, or all of a contact."""
+    they pull others press, far from the forces that loads ask for. None where none pull, or all of a contact. Without it
+    ``test_pin_on_one_node`` and ``test_pin_that_falls`` fail (96 iterations instead of fewer than 50)."""
     if system.restraint.by_supports:
         return None
     least = FLAT * float(np.abs(there.multipliers).max(initial=increment.largest.pressure))

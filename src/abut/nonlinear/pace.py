@@ -1,4 +1,4 @@
-"""Automatic load steps at large displacements: how long the next one is."""
+"""The ends of load steps: how long the next one is."""
 
 from __future__ import annotations
 
@@ -14,20 +14,22 @@ EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by 
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
 LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
 LEAST = 0.5  # by how much at most
-SMALLEST = 1.0 / 4096.0  # of the way to the next goal
+SMALLEST, LAST = 1.0 / 4096.0, 1.0 / 64.0  # of the way to the next goal; the same of steps that a user has given
 SAME = 1e-12  # times that differ by less are the same
 
 
 class Pace:
     """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
     goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
-    ahead is new."""
+    ahead is new; given: the goals are the load steps, however many iterations they take, and what ends between is a part
+    of one; smallest: share of the way to the next goal below which a step is too short."""
 
     def __init__(
         self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
-        kinks: Sequence[float] = (),
+        kinks: Sequence[float] = (), given: bool = False, smallest: float = SMALLEST,
     ) -> None:  # fmt: skip
         self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
+        self._given, self._smallest = given, smallest
         self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
         self.time = 0.0
         self._length = self._fresh()
@@ -48,6 +50,10 @@ class Pace:
             return goal
         return self.time + min(self._length, 0.5 * left if left < 2.0 * self._length else left)
 
+    def whole(self, time: float) -> bool:
+        """Whether what ends at a time is a load step, not a part of one."""
+        return not self._given or time in self._goals
+
     @property
     def turned(self) -> bool:
         """Whether the way ahead is new."""
@@ -56,13 +62,13 @@ class Pace:
     @property
     def stuck(self) -> bool:
         """Whether steps have become too short."""
-        return self._length < SMALLEST * self._leg
+        return self._length < self._smallest * self._leg
 
     @property
     def last(self) -> bool:
         """Whether steps are too short when the next one fails."""
         end = self.end
-        return end is None or 0.5 * (end - self.time) < SMALLEST * self._leg
+        return end is None or 0.5 * (end - self.time) < self._smallest * self._leg
 
     def halve(self) -> None:
         """After a step that failed."""
@@ -83,6 +89,7 @@ class Pace:
             self._length = self._fresh()
             return
         factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+        factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
             factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
         self._length = min(factor * self._length, self._longest)
@@ -107,6 +114,11 @@ class Pace:
 
     def _fresh(self) -> float:
         return min(self._share * self._leg, self._longest)
+
+
+def given_pace(ends: Sequence[float], parts: bool = True) -> Pace:
+    """Load steps that end at given times; parts: those that fail are taken in parts, down to a sixty-fourth."""
+    return Pace(ends, first=1.0, legs=ends[:-1], given=True, smallest=LAST if parts else 1.0)
 
 
 def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:

@@ -127,6 +127,9 @@ def _solved(step: Step, guess: State | None, time: float) -> Found:
         here = _newton(step, guess, time)
     except (SingularModelError, Unsound) as reason:
         step.failed = str(reason)
+        if not step.done and step.before.time > 0.0:  # what is left open where it began
+            begun, state = clocks.perf_counter(), replace(step.before, time=time)
+            _report(step, _judged(step, step.problem.ahead(step.before, time), state), begun)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
     step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     changing = here.changed if step.failed else none
@@ -250,7 +253,11 @@ def _carried(step: Step, time: float) -> State:
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
     """The problem near a state, with the status that the laws ask for there."""
-    own = step.problem.linearise(step.before, state)
+    return _judged(step, step.problem.linearise(step.before, state), state, guessed)
+
+
+def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) -> Trial:
+    """What a state leaves open. own: the problem near it."""
     system = dragged(own, step.drag)
     before = state.status
     state = state.with_status(following_status(system, state, step.increment, step.asked, guessed))

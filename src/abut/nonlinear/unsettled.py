@@ -29,7 +29,7 @@ def circling(errors: Sequence[float]) -> bool:
 def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
     """Where most is left open: forces (n_unknowns,) and laws (n,), both relative."""
     force, law = (np.abs(part) for part in (forces, laws))
-    if law.max(initial=0.0) < force.max(initial=0.0):
+    if not problem.pairs or law.max(initial=0.0) < force.max(initial=0.0):
         free = problem.constraints.free
         point = int(np.argmax(abs(free) @ force)) // problem.model.mesh.dim
         return f"most at {place(problem, point)} in the undeformed mesh"

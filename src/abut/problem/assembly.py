@@ -54,8 +54,7 @@ def assemble(
     reduced = backend.reduce(constraints)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
-    sliding = model.finite and bool(model.contacts)
-    every = finite_pairs(model, constraints) if sliding else pairs(model, constraints, backend.couple)
+    every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
@@ -95,7 +94,7 @@ def assemble(
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if constant else 0.0,
     )
-    problem = finite_problem(problem, backend.differentiate) if sliding else problem
+    problem = finite_problem(problem, backend.differentiate) if model.finite else problem
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
             note(f"body '{solid.body}': integration = \"{how}\", as plastic flow would lock its cells otherwise")

@@ -1,4 +1,5 @@
-"""A contact problem at large displacements and sliding: linearised anew at every state, contact at current positions."""
+"""A problem at large displacements, with contact or without, linearised anew at every state; contact at current
+positions."""
 
 from __future__ import annotations
 
@@ -20,13 +21,14 @@ from abut.problem.adjusted_gaps import BARELY, taken_off
 from abut.problem.contact_pairs import Pair, reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
-from abut.problem.linearised import Linearised, by_pair
-from abut.problem.problem import TOUCHING, ContactProblem, unit_of
+from abut.problem.linearised import Expansion, Linearised, by_pair
+from abut.problem.problem import TOUCHING, ContactProblem, stacked, unit_of
 from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.step_error import LANDED, PairEnd, landed
 from abut.problem.terms import Motion, Share
 from abut.problem.turning_ties import TurningTie, turning_tie
 from abut.solution.state import State, at_rest
+from abut.types import Operator
 
 INNER = "inner"  # whose history is where "dual-P1" had ordinary functions, in the step that ended
 FOLLOWING = "following"  # whose history is which function each one followed, in the step that ended
@@ -35,6 +37,7 @@ FIT = "fit"  # whose history is what fits add to the weighted gaps, in the step 
 SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
 SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
 RUBBING = 1e-2  # the same with friction, where states depend on their past anyway
+SLIGHT = 1e-5  # strain of a cell whose forces are at least what others are judged against
 SHIFT = "shift"  # whose history is where points touch that were apart
 LATE = "late"  # whose history is the points for functions that the last state's do not cover, in a step that is solved again
 Array = NDArray[np.float64]
@@ -203,29 +206,47 @@ class FiniteProblem(ContactProblem):
         shares, contacts = self._forces(before, now.time, here), self._contacts(before, now, here, now)
         stiff = [share.tangent for share in shares if share.tangent is not None]
         bendings = [contact.bending for contact in contacts]
-        bending = reduce(add, bendings) if bendings else sp.csr_matrix((len(here),) * 2)
+        bending = reduce(add, bendings) if bendings else None
         whole = np.sum([share.force for share in shares], axis=0)
         if change.any():
-            whole = whole + sum(tangent.internal(change) for tangent in stiff) - bending @ change
-        by_contact = constraints.reduce(bending)
-        stiffness = self.springs.added_to(sum(tangent.reduce(constraints) for tangent in stiff) - by_contact)
+            whole = whole + sum(tangent.internal(change) for tangent in stiff)
+            whole = whole if bending is None else whole - bending @ change
+        by_contact = None if bending is None else constraints.reduce(bending)
+        elastic = sum(tangent.reduce(constraints) for tangent in stiff)
+        stiffness = self.springs.added_to(elastic if by_contact is None else elastic - by_contact)
         rows = [pair_now.pair.rows for pair_now in contacts]
         if self.constraints.turns is not None:
             pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, self.split(now.multipliers)))
             stiffness = stiffness + self.constraints.turns.bending(now.unknowns, there, whole - pushed)
         force = constraints.free.T @ whole
         about = self._expansion(shares, now.unknowns, here, force, stiffness)
-        assert about is not None
         operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
         pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
-        gap = np.concatenate([pair_now.gap + pair_now.by_position @ change for pair_now in contacts])
+        gap = np.concatenate([np.zeros(0), *(each.gap + each.by_position @ change for each in contacts)])
         load = -about.unbalanced
         return Linearised(
-            now.time, factors, stiffness, load, pairs, sp.vstack(operators).tocsr(), gap, self.motions, self.restraint, load,
-            unit_of(stiffness), about=replace(about, symmetric=False),
-            pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr(), forgotten=self._idle(contacts),
-            bending=by_contact, shares=self._named(shares),
+            now.time, factors, stiffness, load, pairs, stacked(pairs, self.n_free), gap, self.motions, self.restraint, load,
+            unit_of(stiffness), about=about if not pairs else replace(about, symmetric=False),
+            pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr() if rows else None,
+            forgotten=self._idle(contacts), bending=by_contact, shares=self._named(shares),
         )  # fmt: skip
+
+    def _expansion(
+        self, shares: Sequence[Share], at: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
+        stiffness: Operator,
+    ) -> Expansion:  # fmt: skip
+        """The state of finite deformation, with points moved by (dim n_points,); forces are judged against the largest one,
+        reactions among them, and at least against what a strain of ``SLIGHT`` makes of a cell, theory (D13). A stiff body
+        that moves far leaves more than that in a soft one's scale."""
+        points = self.model.mesh.points
+        size = float(np.ptp(points, axis=0).max()) / len(points) ** (1.0 / self.model.dim)
+        largest = max(float(np.abs(share.force).max(initial=0.0)) for share in shares)
+        symmetric = all(share.symmetric for share in shares)
+        unbalanced = force + self.springs.forces(at)
+        unit = unit_of(stiffness)
+        moduli = [solid.material.modulus for solid in self.model.solids]
+        rounding = 4.0 * np.finfo(float).eps * unit * max(moduli) / min(moduli) * float(np.abs(moved).max(initial=0.0))
+        return Expansion(at, unbalanced, max(largest, SLIGHT * unit * size), symmetric, rounding)
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers (n,), pair by pair."""

@@ -17,14 +17,13 @@ from abut.problem.constraints import Constraints
 from abut.problem.contact_pairs import Pair, with_plain_functions
 from abut.problem.free_modes import FreeModeSprings
 from abut.problem.laws import LawRows
-from abut.problem.linearised import Expansion, Linearised
+from abut.problem.linearised import Linearised
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Motion, Share, Term
 from abut.solution.state import State, at_rest
 from abut.types import Operator, Sparse
 
 TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
-SLIGHT = 1e-5
 CONTACTS = "contacts"  # whose history is the slip
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
@@ -114,62 +113,32 @@ class ContactProblem:
         have no rounding."""
         if self.constant:
             rest = np.zeros(self.n_free)
-            return self._near(before, replace(before, unknowns=rest), replace(now, unknowns=rest), None)
-        return self._near(before, before, now, None)
+            return self._near(before, replace(before, unknowns=rest), replace(now, unknowns=rest))
+        return self._near(before, before, now)
 
-    def begin(self, before: State, time: float) -> Linearised:
-        """The problem near the converged state ``before``, but at another time: displacements that are prescribed until then
-        act by the tangent, so that the first iteration spreads them over the bodies."""
-        now = replace(before, time=time)
-        return self._near(before, before, now, self.displacement(now) - self.displacement(before))
-
-    def _near(self, converged: State, before: State, now: State, prescribed: NDArray[np.float64] | None) -> Linearised:
-        """prescribed: displacements (dim n_points,) that are to come yet, by the tangent."""
+    def _near(self, converged: State, before: State, now: State) -> Linearised:
         slipped = self._slipped(converged)
-        at, shares = now.unknowns, self._shares(before, now, prescribed)
-        whole = np.asarray(sum(share.force for share in shares))
-        if prescribed is not None:
-            whole = whole + sum(s.tangent.internal(prescribed) for s in shares if s.tangent is not None)
+        at, there, here = now.unknowns, self.displacement(before), self.displacement(now)
+        shares = [
+            term.evaluate(*(Motion(s.time, u, before.history.of(term.name)) for s, u in ((before, there), (now, here))))
+            for term in self.terms
+        ]
         factors = weights(self.model.histories, now.time)
-        there = factors if prescribed is None else weights(self.model.histories, before.time)
-        constraints = self.constraints.near(at, there)
-        force = constraints.free.T @ whole
+        force = self.constraints.free.T @ np.asarray(sum(share.force for share in shares))
         if self.constant:
             stiffness, load = self.stiffness, -force
         else:
-            stiffness = self._tangent(shares, constraints)
-            if self.constraints.turns is not None:
-                stiffness = stiffness + self.constraints.turns.bending(at, there, whole)
+            tangents = [share.tangent.reduce(self.constraints) for share in shares if share.tangent is not None]
+            stiffness = self.springs.added_to(sum(tangents[1:], tangents[0]))
             load = stiffness @ at - force - self.springs.forces(at)
         return Linearised(
             now.time, factors, stiffness, load, self.pairs, self.operator, self._offset(factors, slipped), self.motions,
-            self.restraint, load, self.unit or unit_of(stiffness),
-            about=self._expansion(shares, at, self.displacement(now), force, stiffness),
-            shares={} if self.constant else self._named(shares),
+            self.restraint, load, self.unit or unit_of(stiffness), shares={} if self.constant else self._named(shares),
         )  # fmt: skip
 
     def _named(self, shares: Sequence[Share]) -> dict[str, Share]:
         """Of the terms by name, without their tangents."""
         return {term.name: replace(share, tangent=None) for term, share in zip(self.terms, shares)}
-
-    def _expansion(
-        self, shares: Sequence[Share], at: NDArray[np.float64], moved: NDArray[np.float64], force: NDArray[np.float64],
-        stiffness: Operator,
-    ) -> Expansion | None:  # fmt: skip
-        """The state of finite deformation, with points moved by (dim n_points,); forces are judged against the largest one,
-        reactions among them, and at least against what a strain of ``SLIGHT`` makes of a cell, theory (D13). A stiff body
-        that moves far leaves more than that in a soft one's scale."""
-        if not self.model.finite:
-            return None
-        points = self.model.mesh.points
-        size = float(np.ptp(points, axis=0).max()) / len(points) ** (1.0 / self.model.dim)
-        largest = max(float(np.abs(share.force).max(initial=0.0)) for share in shares)
-        symmetric = all(share.symmetric for share in shares)
-        unbalanced = force + self.springs.forces(at)
-        unit = unit_of(stiffness)
-        moduli = [solid.material.modulus for solid in self.model.solids]
-        rounding = 4.0 * np.finfo(float).eps * unit * max(moduli) / min(moduli) * float(np.abs(moved).max(initial=0.0))
-        return Expansion(at, unbalanced, max(largest, SLIGHT * unit * size), symmetric, rounding)
 
     def accepted(self, before: State, now: State, system: Linearised) -> State:
         """As in ``Problem``."""
@@ -215,13 +184,6 @@ class ContactProblem:
                 gap[pair.tangential] -= before
         return np.concatenate(gaps) if gaps else np.zeros(0)
 
-    def _tangent(self, shares: Sequence[Share], constraints: Constraints) -> Operator:
-        """The stiffness on the free displacements. constraints: near the state."""
-        if self.stiffness is not None:
-            return self.stiffness
-        tangents = [share.tangent.reduce(constraints) for share in shares if share.tangent is not None]
-        return self.springs.added_to(sum(tangents[1:], tangents[0]))
-
     def _slipped(self, before: State) -> list[NDArray[np.float64]]:
         """Weighted tangential jumps of each pair from which the next step's slip counts, theory (R3): those in a converged
         state, and what is open moved on until it closes; empty without friction."""
@@ -263,16 +225,6 @@ class ContactProblem:
                 came[pair.tangential] = approached / pair.weight[pair.tangential]
                 result[pair.contact.name] = np.column_stack([step, total + np.where(closed, step, 0.0), came, new])
         return result
-
-    def _shares(self, before: State, now: State, prescribed: NDArray[np.float64] | None = None) -> list[Share]:
-        """Of every term. prescribed: displacements to leave out of those of ``now``."""
-        there, here = self.displacement(before), self.displacement(now)
-        if prescribed is not None:
-            here = here - prescribed
-        return [
-            term.evaluate(*(Motion(s.time, u, before.history.of(term.name)) for s, u in ((before, there), (now, here))))
-            for term in self.terms
-        ]
 
 
 def stacked(pairs: Sequence[Pair], n_free: int) -> Sparse:
