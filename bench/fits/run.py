@@ -110,7 +110,8 @@ def bearings() -> None:
         forces = [float(np.linalg.norm(step.contacts[0].force)) for step in steps]
         change = 100.0 * (max(forces) / min(forces) - 1.0)
         print(
-            f"bearing turned {cell} {around!s:9} force {min(forces):.1f} to {max(forces):.1f} N, {change:.2f} %",
+            f"bearing turned {cell} {around!s:9} force {min(forces):.1f} to {max(forces):.1f} N, {change:.2f} %, "
+            f"{sum(len(step.iterations) for step in steps)} iterations",
             flush=True,
         )
 
