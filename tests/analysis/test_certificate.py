@@ -101,8 +101,8 @@ def test_ties_are_checked_for_their_integration_only() -> None:
 )
 def test_oscillation_of_spurious_modes(cell: str, pressure: str, n: int, m: int) -> None:
     """With spurious modes the law picks one of many solutions: a corner of their set, where facets' values jump by about the
-    pressure, or (matching meshes) one from its inside without any. Which is up to rounding, and so is whether the equations
-    of matching meshes are refused as singular on the way."""
+    pressure, or one from its inside without any, where interior points end. Which is up to rounding, and so is whether the
+    equations of matching meshes are refused as singular on the way."""
     try:
         solution = abut.solve(pressed(n, m, cell, pressure=pressure))
     except abut.SingularModelError:
@@ -110,7 +110,7 @@ def test_oscillation_of_spurious_modes(cell: str, pressure: str, n: int, m: int)
         solution = None
     if solution is not None:
         own = solution.contacts[0].multiplier
-        even = n == m and np.nanmax(own) < 1.2 * np.nanmin(own)
+        even = np.nanmax(own) < 1.2 * np.nanmin(own)
         assert even or "oscillation" in failed(solution)
         assert even or checks(solution)["oscillation"].value > 0.2
     assert checks(abut.solve(pressed(n, m, cell)))["oscillation"].value < 0.01

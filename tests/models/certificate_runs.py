@@ -209,7 +209,7 @@ UNSOUND_RUNS = (
     Run("round punch on six quad8 facets", lambda: strip(6, adjust=0.0), peak(STRIP_PEAK), COARSE),
     Run("round punch, coarse plate as contactor", lambda: replace(strip(6, adjust=0.0),
         contacts=[abut.Contact(contactor="plate.top", target="punch.bottom")]), peak(STRIP_PEAK), COARSE),
-    Run("one Gauss point", lambda: column("hex8", "hex8", ((1, 2, 2), (2, 1, 2)), integration=gauss), even(1e-3),
+    Run("one Gauss point", lambda: column("hex8", "hex8", ((1, 2, 2), (2, 1, 2)), integration=gauss), outside,
         ("facet moments",)),
     Run("node-to-segment, two-pass", lambda: column("quad8", "quad8", ((5, 3), (7, 3)), method="node-to-segment-two-pass"),
         outside, ("oscillation",)),
