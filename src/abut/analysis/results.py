@@ -207,18 +207,11 @@ def _finite_energy(
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     now = FiniteActing(
         end.displacement, end.internal, end.loads, end.reaction, pressed,
-        end.internal - end.loads - end.reaction - pressed, _stored(end, acted), state.unknowns,
+        end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
         drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     return now, finite_energy(acted, now, balance.diagonal, contacts, _largest_size(steps))
-
-
-def _stored(end: _End, before: FiniteActing) -> float:
-    """Strain energy, where bodies know it; under small strains the work of stresses up to now, the same for linear ones."""
-    if end.balance.energy is not None:
-        return end.balance.energy
-    return before.stored + 0.5 * float((before.internal + end.internal) @ (end.displacement - before.displacement))
 
 
 def _turn(model: Model, displacement: NDArray[np.float64]) -> float:

@@ -22,7 +22,7 @@ class Balance:
 
     factors: (n_histories,) of the histories; pairs: as they lie; gap: (n,) weighted gaps and slips; diagonal: (n_free,) of
     the stiffness; forces: by term, (dim n_points,) as in ``Share``, empty where the problem is constant; energy: elastic,
-    of all terms, None where none knows it.
+    of all terms, not a number where none knows it.
     """
 
     factors: Vector
@@ -30,14 +30,14 @@ class Balance:
     gap: Vector
     diagonal: Vector
     forces: Mapping[str, Vector]
-    energy: float | None
+    energy: float
 
     @classmethod
     def of(cls, system: Linearised, state: State) -> Balance:
         """Of the problem near ``state``, nothing condensed."""
         forces = {name: share.force for name, share in system.shares.items()}
         known = [share.energy for share in system.shares.values() if share.energy is not None]
-        energy = sum(known) if known else None
+        energy = sum(known) if known else float("nan")
         return cls(system.factors, system.pairs, system.gap(state), system.stiffness.diagonal(), forces, energy)
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:

@@ -105,7 +105,8 @@ class SolidBodies:
         """As in ``Term``."""
         deformed = self.backend.deform(*self._at(now, before.history))
         symmetric = is_symmetric(self.model.deformable)
-        return Share(deformed.force, deformed.tangent, deformed.history, symmetric, deformed.energy)
+        energy = None if self.model.small_strains else deformed.energy
+        return Share(deformed.force, deformed.tangent, deformed.history, symmetric, energy)
 
     def stress(self, motion: Motion) -> PointStress:
         """As in ``Bodies``: Cauchy stresses under finite strains."""
