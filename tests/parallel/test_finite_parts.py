@@ -106,6 +106,6 @@ def test_a_part_without_cells() -> None:
     parts = dealt(model(), 4)
     store = parts.team.stores[3]  # type: ignore[attr-defined]
     assert store["part"].mesh.n_cells == 0
-    force, energy = part.deform(store, 0, {}, np.zeros((0, 3)), np.zeros(0))
+    force, energy, _ = part.deform(store, 0, {}, np.zeros((0, 3)), np.zeros(0), {})
     assert (force.shape, energy) == ((0,), 0.0)
     assert part.product(store, 0, np.zeros(0)).shape == (0,)

@@ -129,4 +129,4 @@ def test_forces_of_a_part_are_the_same_without_its_matrix() -> None:
     assert store["stiffness"].shape == (0, 0)
     del store["stiffness"]
     assert part.internal(store, np.zeros((0, 2))).shape == (0, 2)
-    assert part.stresses(store, {}, np.zeros((0, 3)), np.zeros(0)) == ((), [])
+    assert part.stresses(store, {}, np.zeros((0, 3)), np.zeros(0), {}) == ((), [])

@@ -71,7 +71,8 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
 def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:
     problem: Problem = task.problem
     largest = largest_so_far(prepared.system, found.state, task.increment)
-    state, whole = problem.expand(task.before, found.state, found.laws, found.system or prepared.system)
+    system = prepared.system if found.system is None else found.system  # one without contact has no length
+    state, whole = problem.expand(task.before, found.state, found.laws, system)
     state = replace(state, largest=largest)
     if found.converged:
         state = problem.accepted(task.before, state, whole)
