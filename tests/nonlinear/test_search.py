@@ -113,7 +113,7 @@ class Ready:
     solver: Prepared
 
     def ended(self, found: Found) -> State:
-        return self.own.expand(self.whole.start(), found.state, found.laws, self.solver.system)
+        return self.own.expand(self.whole.start(), found.state, found.laws, self.solver.system)[0]
 
 
 def prepared(model: abut.Model) -> Ready:
@@ -140,7 +140,7 @@ def peeled(ready: Ready) -> State:
     for number in range(1, LONG + 1):
         solved = solve_set(ready.solver, state, Increment(1), tied, number, ROUGH)
         if not solved.changed.any():
-            return ready.own.expand(ready.whole.start(), solved.state, active_laws, ready.solver.system)
+            return ready.own.expand(ready.whole.start(), solved.state, active_laws, ready.solver.system)[0]
         state = solved.state.with_closed(solved.wanted)
     raise AssertionError("not converged")
 
