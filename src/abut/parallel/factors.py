@@ -53,7 +53,10 @@ def keep_factors(
     rows = saddle_rows(store[number], n, more, conditions or NONE)
     comm, old = store[number].comm, store.get("factors")
     pattern = _pattern(rows, store[number], conditions or NONE)
-    if old is not None and (old.operator.getSize()[0], old.symmetric) == (rows.shape[1], symmetric):
+    fits = old is not None and (old.pattern.shape, old.symmetric) == (pattern.shape, symmetric)
+    if old is not None and all(
+        comm.tompi4py().allgather(fits)
+    ):  # a model of as many unknowns may lie on processes otherwise
         both = (old.pattern + pattern).tocsr()  # sums of ones: what is stored once stays
         grown, wide = comm.tompi4py().allreduce(
             np.array([both.nnz > old.pattern.nnz, both.nnz > WIDE * pattern.nnz], dtype=np.int64)
