@@ -227,7 +227,7 @@ def test_what_friction_no_longer_holds_is_said() -> None:
     assert not solution.converged
     last = solution.steps[-2]
     bound = sum(c.friction.force_limit for c in last.contacts if c.friction is not None)
-    assert 80.0 * (last.factor - 0.5) == pytest.approx(bound, rel=0.02)
+    assert 80.0 * (last.factor - 0.5) == pytest.approx(bound, abs=40.0 / 64.0)  # parts of a step go down to 1/64 of it
     (remedy,) = remedies(solution)
     assert remedy.action.startswith("a support")
     for name in ("under", "over"):
