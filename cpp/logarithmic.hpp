@@ -114,13 +114,11 @@ private:
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
       if (matrix[0][1] == 0 && matrix[1][2] == 0 && matrix[2][0] == 0)
         return;
-      for (int p = 0; p < 2; ++p)
-        for (int q = p + 1; q < 3; ++q)
-          rotate(p, q);
+      rotate<0, 1>(), rotate<0, 2>(), rotate<1, 2>();
     }
   }
 
-  void rotate(int p, int q) {
+  template <int p, int q> void rotate() {
     const double off = matrix[p][q];
     const double tiny = 1e-17 * (std::abs(matrix[p][p]) + std::abs(matrix[q][q]));
     if (std::abs(off) <= tiny) {
@@ -130,7 +128,7 @@ private:
     const double apart = matrix[q][q] - matrix[p][p];
     const double t = (apart >= 0 ? 2 : -2) * off / (std::abs(apart) + std::sqrt(apart * apart + 4 * off * off));
     const double cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
-    const int r = 3 - p - q;
+    constexpr int r = 3 - p - q;
     const double rp = matrix[r][p], rq = matrix[r][q];
     matrix[p][p] -= t * off, matrix[q][q] += t * off;
     matrix[p][q] = matrix[q][p] = 0;
@@ -147,12 +145,15 @@ private:
   // To the principal axes, of strains with doubled shear. That of stresses doubles its columns of shear and halves its
   // rows of shear.
   void rotations() {
-    for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        const int a = I[s], b = J[s], i = I[t], j = J[t];
-        const double one = axes[i][a] * axes[j][b], other = axes[j][a] * axes[i][b];
-        of_strain[s][t] = doubled(s) * (t < 3 ? one : (one + other) / 2);
+    for (int s = 0; s < STRAINS; ++s) {
+      const int a = I[s], b = J[s];
+      double *const row = of_strain[s];
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        row[i] = doubled(s) * axes[i][a] * axes[i][b];
+        row[3 + i] = doubled(s) / 2 * (axes[i][a] * axes[j][b] + axes[j][a] * axes[i][b]);
       }
+    }
   }
 
   // First divided differences of ln(1 + 2 g) / 2 over the eigenvalues g.
