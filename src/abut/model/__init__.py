@@ -1,5 +1,6 @@
 """What the user states, as frozen records that check themselves and each other."""
 
+from abut.model.axes import Axes
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
@@ -12,7 +13,7 @@ from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Centrifugal", "Contact", "Coupling",
-    "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
+    "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
     "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip
