@@ -14,6 +14,6 @@ from abut.model.solve_options import SolveOptions
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
-    "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce",
+    "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip
