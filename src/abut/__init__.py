@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         Model,
         Moment,
         NodalForce,
+        Preload,
         Pressure,
         Probe,
         Rigid,
@@ -64,7 +65,7 @@ _HOME = {  # of public names that do not come from abut.model
 __all__ = [
     "AbutError", "Amplitude", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling",
     "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh",
-    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Pressure",
+    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Preload", "Pressure",
     "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
     "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve",
     "to_pyvista", "write", "write_report",

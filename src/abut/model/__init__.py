@@ -7,6 +7,7 @@ from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integra
 from abut.model.coupling import Coupling
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
+from abut.model.preload import Preload
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation
 from abut.model.solid import Solid
@@ -15,5 +16,6 @@ from abut.model.solve_options import SolveOptions
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
     "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce",
-    "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term",
+    "Traction",
 ]  # fmt: skip
