@@ -107,8 +107,8 @@ def test_every_solid_assembly(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [10, 78])
 def test_facets_with_a_common_edge_in_micrometres(seed: int) -> None:
-    """Balls whose curved edges have the chords of edges of the other side: rounding decided which of both bounds what is cut,
-    .2 to .4 % of the pressure."""
+    """Balls whose curved edges have the chords of edges of the other side: rounding decided which of both bounds what is
+    cut, .2 to .4 % of the pressure."""
     check(list(SOLID.values())[seed % len(SOLID)], seed, ("um",))
 
 
