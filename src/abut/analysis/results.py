@@ -33,9 +33,9 @@ from abut.nonlinear.semismooth import BALANCED
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
 from abut.problem.finite import FiniteProblem
 from abut.problem.follower_loads import FollowerLoads
+from abut.problem.pair import Pair
 from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales

@@ -16,9 +16,9 @@ from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem.body_rows import body_rows
 from abut.problem.elimination import eliminate
-from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
+from abut.problem.rigid_modes import RigidModes
 from abut.problem.turns import Turn, Turns, about
 from abut.types import Array, Sparse
 
@@ -136,6 +136,12 @@ class Constraints:
         moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
         along = np.einsum("nda,nd->na", axes, directions)
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
+
+
+def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
+    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
+    taken = constraints.taken(rigid.modes)
+    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
 
 
 def _gram(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
