@@ -21,7 +21,7 @@ from abut.mesh.patches import Patches
 from abut.mesh.surface import Surface
 from abut.model import Force, Load, Model, NodalForce, Pressure, Traction
 from abut.model.conditions import COMPONENTS, Support, weights
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import ContactResult
 from abut.types import Sparse
 
