@@ -140,7 +140,7 @@ def _cell_slopes(mesh: Mesh, skin: Surface, displacement: Array) -> Array:
                 slopes = shape_functions(cell.code, np.ascontiguousarray(middle))[1][0]
                 own = block.nodes[skin.cells[here] - first]
                 map_, moved = (np.swapaxes(values[own], 1, 2) @ slopes for values in (skin.points, displacement))
-                result[here] = moved @ np.linalg.inv(map_)
+                result[here] = moved @ np.linalg.pinv(map_)  # cells may be degenerate there
     return result
 
 
