@@ -20,7 +20,8 @@ from abut.job import load_job
 from abut.mesh.make import join, rectangle
 from abut.output.results import summary
 from abut.problem.constraints import supports
-from abut.problem.contact_pairs import Pair, pair
+from abut.problem.contact_pairs import pair
+from abut.problem.pair import Pair
 from abut.solution import Check
 from models.patch import model, two_blocks
 

@@ -21,7 +21,7 @@ from abut.mesh.patches import Patches
 from abut.mesh.surface import Surface
 from abut.model import Force, Load, Model, NodalForce, Pressure, Traction
 from abut.model.conditions import COMPONENTS, Support, weights
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import ContactResult
 
 ALONG = 1e-6  # sine of the angle between a facet's normal and an axis up to which it is along it

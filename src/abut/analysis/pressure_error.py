@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, WHOLE, Graph
 from abut.contact.geometry import side_normals
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 AVERAGED = 1.0 / 6.0  # of half the second difference: averages, theory (P17)
 CHANGE = 0.4  # of the change of that from node to node, theory (P17)

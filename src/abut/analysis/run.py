@@ -179,7 +179,7 @@ class Run:
         rubs = any(pair.frictional for pair in pairs)
         slips = Slips(self._fits()) if rubs and solve.finds_steps else None
         if model.finite and pairs:
-            return pace_of(solve.steps, solve.times, model.histories, slips)
+            return pace_of(solve.steps, solve.times, (*model.histories, *model.locking), slips)
         return given_pace(model.ends, model.finite or rubs, slips)
 
     def _fits(self) -> bool:
