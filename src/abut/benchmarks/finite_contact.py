@@ -140,7 +140,7 @@ BENCHMARKS = (
                 "where points touch and stick depends on the steps",
             ),
             "iterations": _few(150.0, "linear solutions"),
-            "steps": _few(30.0, "load steps"),
+            "steps": _few(45.0, "load steps"),
         },
     ),
     Benchmark(
@@ -152,7 +152,7 @@ BENCHMARKS = (
                 "0.0157 with square-log, 0.0162 with log-squared",
             ),
             "iterations": _few(150.0, "linear solutions"),
-            "steps": _few(30.0, "load steps"),
+            "steps": _few(45.0, "load steps"),
         },
     ),
 )  # fmt: skip
