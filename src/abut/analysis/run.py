@@ -23,7 +23,8 @@ from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.pace import Pace, given_pace, pace_of
-from abut.nonlinear.stabilised import STRIDES
+from abut.nonlinear.settings import DEFAULT, Settings
+from abut.nonlinear.stabilised import strides
 from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
@@ -67,12 +68,16 @@ class Run:
     assembled: Assembled
     kind: str
     solver: LinearSolver
+    settings: Settings = DEFAULT
     steps: list[Step] = field(default_factory=list)
     acted: Acted = None  # what acted at the end of the last step, with friction or finite kinematics
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
 
     @classmethod
-    def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
+    def of(
+        cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved],
+        settings: Settings = DEFAULT,
+    ) -> Run:  # fmt: skip
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
         places = find_places(model)
@@ -92,7 +97,17 @@ class Run:
         if resume and model.solve.linear in ("auto", "petsc"):
             kind = resume[-1].linear
         return cls(
-            model, told, deadline, keep, team, clock, places, assembled, kind, linear_solver(kind, problem, team)
+            model,
+            told,
+            deadline,
+            keep,
+            team,
+            clock,
+            places,
+            assembled,
+            kind,
+            linear_solver(kind, problem, team),
+            settings,
         )
 
     def restore(self, done: Sequence[Saved]) -> State:
@@ -140,11 +155,13 @@ class Run:
                 f"time {time:.6g} first, not to {attempt.time:.6g}"
             )
 
-        control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves)
+        control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves,
+            self.settings,
+        )  # fmt: skip
         pace = self._pace()
         for saved in done:
-            strides = STRIDES if is_dragged(saved.state) else ()
-            pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)
+            tried = strides(self.settings) if is_dragged(saved.state) else ()
+            pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, tried)
         states = [problem.start(), *(saved.state for saved in done)]
         stepper: Stepper
         if isinstance(problem, FiniteProblem):
@@ -164,8 +181,8 @@ class Run:
         are taken in parts where they fail."""
         model, pairs = self.model, self.assembled.problem.pairs
         if model.finite and pairs:
-            return pace_of(model.solve.steps, model.solve.times, model.histories)
-        return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs))
+            return pace_of(model.solve.steps, model.solve.times, model.histories, self.settings)
+        return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs), self.settings)
 
     def so_far(self, complete: bool) -> Solution:
         """The steps up to here; complete: there are no more to come."""

@@ -4,40 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from abut.model.conditions import History
 from abut.model.step_ends import SAME as NEAR
 from abut.model.step_ends import apart, named_times
-
-FIRST = 0.1  # of the way to the next goal
-EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
-HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
-LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
-LEAST = 0.5  # by how much at most
-SMALLEST, LAST = 1.0 / 4096.0, 1.0 / 64.0  # of the way to the next goal; the same of steps that a user has given
-SAME = 1e-12  # times that differ by less are the same
+from abut.nonlinear.settings import DEFAULT, Settings
 
 
 class Pace:
     """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
     goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
     ahead is new; given: the goals are the load steps, however many iterations they take, and what ends between is a part
-    of one; smallest: share of the way to the next goal below which a step is too short."""
+    of one; settings: thresholds."""
 
     def __init__(
-        self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
-        kinks: Sequence[float] = (), given: bool = False, smallest: float = SMALLEST,
+        self, goals: Sequence[float], longest: float = 1.0, first: float | None = None, legs: Sequence[float] = (),
+        kinks: Sequence[float] = (), given: bool = False, settings: Settings = DEFAULT,
     ) -> None:  # fmt: skip
-        self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
-        self._given, self._smallest = given, smallest
-        self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
+        self._goals, self._longest, self._kinks, self._given = goals, longest, kinks, given
+        self._settings, self._same = settings.steps, settings.newton.rounding
+        self._share = self._settings.first if first is None else first
+        self._legs = [*(leg for leg in legs if leg < goals[-1] - self._same), goals[-1]]
         self.time = 0.0
         self._length = self._fresh()
 
     @property
     def goal(self) -> float | None:
         """The next one; None at the end."""
-        return next((goal for goal in self._goals if goal > self.time + SAME), None)
+        return next((goal for goal in self._goals if goal > self.time + self._same), None)
 
     @property
     def end(self) -> float | None:
@@ -46,7 +41,7 @@ class Pace:
         if goal is None:
             return None
         left = goal - self.time
-        if left <= self._length * (1.0 + SAME):
+        if left <= self._length * (1.0 + self._same):
             return goal
         return self.time + min(self._length, 0.5 * left if left < 2.0 * self._length else left)
 
@@ -62,13 +57,13 @@ class Pace:
     @property
     def stuck(self) -> bool:
         """Whether steps have become too short."""
-        return self._length < self._smallest * self._leg
+        return self._length < self._settings.smallest * self._leg
 
     @property
     def last(self) -> bool:
         """Whether steps are too short when the next one fails."""
         end = self.end
-        return end is None or 0.5 * (end - self.time) < self._smallest * self._leg
+        return end is None or 0.5 * (end - self.time) < self._settings.smallest * self._leg
 
     def halve(self) -> None:
         """After a step that failed."""
@@ -85,13 +80,15 @@ class Pace:
         end = self.end
         assert end is not None
         self.time = end
-        if any(abs(end - leg) < SAME for leg in self._legs):
+        if any(abs(end - leg) < self._same for leg in self._legs):
             self._length = self._fresh()
             return
-        factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+        steps = self._settings
+        hard = iterations > 2 * steps.easy
+        factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
         factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
-            factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
+            factor = min(factor, max(0.5, math.sqrt(steps.landed / landed)))
         self._length = min(factor * self._length, self._longest)
 
     def repeat(self, time: float, iterations: int, landed: float = 0.0, strides: Sequence[float] = ()) -> None:
@@ -99,35 +96,40 @@ class Pace:
         length = self._length
         for share in strides:
             self.stride(share)
-            if self.end is not None and abs(self.end - time) < SAME:
+            if self.end is not None and abs(self.end - time) < self._same:
                 break
             self._length = length
-        while self.end is not None and self.end > time + SAME and not self.stuck:
+        while self.end is not None and self.end > time + self._same and not self.stuck:
             self.halve()
         self.take(iterations, landed)
         self.time = time
 
     @property
     def _leg(self) -> float:
-        begin = max((leg for leg in self._legs[:-1] if leg <= self.time + SAME), default=0.0)
-        return next(leg for leg in self._legs if leg > begin + SAME) - begin
+        begin = max((leg for leg in self._legs[:-1] if leg <= self.time + self._same), default=0.0)
+        return next(leg for leg in self._legs if leg > begin + self._same) - begin
 
     def _fresh(self) -> float:
         return min(self._share * self._leg, self._longest)
 
 
-def given_pace(ends: Sequence[float], parts: bool = True) -> Pace:
-    """Load steps that end at given times; parts: those that fail are taken in parts, down to a sixty-fourth."""
-    return Pace(ends, first=1.0, legs=ends[:-1], given=True, smallest=LAST if parts else 1.0)
+def given_pace(ends: Sequence[float], parts: bool = True, settings: Settings = DEFAULT) -> Pace:
+    """Load steps that end at given times; parts: those that fail are taken in parts, down to the root of
+    the smallest share (a sixty-fourth)."""
+    smallest = settings.steps.smallest**0.5 if parts else 1.0
+    settings = replace(settings, steps=replace(settings.steps, smallest=smallest))
+    return Pace(ends, first=1.0, legs=ends[:-1], given=True, settings=settings)
 
 
-def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
+def pace_of(
+    steps: int | str, times: Sequence[float] | None, histories: Sequence[History], settings: Settings = DEFAULT
+) -> Pace:
     """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this; times
     are met, each in one step if it can be."""
     named, turns = named_times(histories)
     if times:
         goals = sorted([*times, *apart([time for time in named if time < times[-1]], times)])
-        return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
+        return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns, settings=settings)
     if isinstance(steps, str):
-        return Pace([*named, 1.0], legs=turns, kinks=turns)
-    return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns)
+        return Pace([*named, 1.0], legs=turns, kinks=turns, settings=settings)
+    return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns, settings=settings)
