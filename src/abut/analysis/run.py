@@ -181,7 +181,7 @@ class Run:
         are taken in parts where they fail."""
         model, pairs = self.model, self.assembled.problem.pairs
         if model.finite and pairs:
-            return pace_of(model.solve.steps, model.solve.times, model.histories, self.settings)
+            return pace_of(model.solve.steps, model.solve.times, (*model.histories, *model.locking), self.settings)
         return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs), self.settings)
 
     def so_far(self, complete: bool) -> Solution:

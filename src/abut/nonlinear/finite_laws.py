@@ -14,10 +14,10 @@ from abut.contact.smooth_friction import SmoothCoulomb
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
-from abut.problem.contact_pairs import Pair
 from abut.problem.finite import bare
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
 DIGITS = np.finfo(float).nmant  # binary ones of a number

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
 from abut.nonlinear.iteration import Increment, advance, largest_force
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
 Laws = Callable[[Linearised, State], Sequence[LawRows]]

@@ -18,8 +18,8 @@ from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quo
 from abut.nonlinear.interior_point import softness
 from abut.nonlinear.iteration import advance
 from abut.nonlinear.settings import NOTHING, Settings
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
+from abut.problem.pair import Pair
 from abut.solution.state import State
 
 Vector = NDArray[np.float64]

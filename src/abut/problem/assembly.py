@@ -12,18 +12,21 @@ from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.backend import Backend
+from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
-from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.contact_pairs import pairs
 from abut.problem.finite import finite_problem
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.neutral_motions import neutral_motions
+from abut.problem.pair import Pair
+from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
-from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies
+from abut.problem.terms import Term
 from abut.solution import Observer, Phase
 
 
@@ -72,19 +75,16 @@ def assemble(
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
-    constant = model.deformable.constant
     bodies: Bodies
-    if constant:
+    if model.deformable.constant:
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
+    beside = _beside(model, constraints, loaded)
+    constant = bodies.constant and all(term.constant for term in beside)
     problem = ContactProblem(
         model=model,
-        terms=(
-            bodies,
-            DeadLoads(loaded, model.histories),
-            *([FollowerLoads(model, constraints.bodies)] if followers(model) else []),
-        ),
+        terms=(bodies, *beside),
         constraints=constraints,
         pairs=every,
         operator=stacked(every, n_free),
@@ -101,6 +101,15 @@ def assemble(
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]:
+    """What takes part in the balance of forces beside bodies."""
+    terms: list[Term] = [DeadLoads(loaded, model.histories)]
+    if followers(model):
+        terms.append(FollowerLoads(model, constraints.bodies))
+    locked = LockedPreloads.of(model)
+    return terms if locked is None else [*terms, locked]
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

@@ -16,9 +16,10 @@ from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem.body_rows import body_rows
-from abut.problem.elimination import eliminate
-from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+from abut.problem.elimination import eliminate, row_products
+from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
+from abut.problem.rigid_modes import RigidModes
+from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
 from abut.types import Array, Sparse
 
@@ -129,7 +130,7 @@ class Constraints:
     def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
         dim = directions.shape[1]
-        gram = _gram(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
+        gram = row_products(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
         if self.orthonormal:
             return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
@@ -138,15 +139,10 @@ class Constraints:
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
 
 
-def _gram(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Products of the rows (n, dim) of each point with each other, (n, dim, dim)."""
-    count = free.indptr[rows + 1] - free.indptr[rows]
-    if free.nnz and count.max(initial=0) <= 1:  # supports along the axes
-        at = np.minimum(free.indptr[rows], free.nnz - 1)
-        column, value = np.where(count, free.indices[at], -1), np.where(count, free.data[at], 0.0)
-        return np.where(column[:, :, None] == column[:, None], value[:, :, None] * value[:, None], 0.0)
-    parts = [free[rows[:, a]] for a in range(rows.shape[1])]
-    return np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in parts] for p in parts]).transpose(2, 0, 1)
+def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
+    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
+    taken = constraints.taken(rigid.modes)
+    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
 
 
 def supports(model: Model) -> Constraints:
@@ -158,7 +154,7 @@ def supports(model: Model) -> Constraints:
     free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), whole)
     orthonormal, coupled, links, turning = True, False, None, list[Turn]()
     holding = [body for body in bodies if body.holds]
-    if holding or model.equations:
+    if holding or model.equations or model.preloads:
         free, prescribed, links, turning = _together(
             model, free, prescribed, tuple(part[on_bodies] for part in conditions), holding
         )
@@ -173,7 +169,14 @@ def supports(model: Model) -> Constraints:
     turning += _turned(model, free.shape[1])
     turns = Turns(turning, model.dim, len(model.mesh.points)) if model.finite and turning else None
     return Constraints(
-        free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None, turns
+        free,
+        prescribed,
+        largest,
+        orthonormal,
+        coupled,
+        bodies,
+        links if model.equations or model.preloads else None,
+        turns,
     )
 
 
@@ -187,7 +190,9 @@ def _together(
     """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12). The turns
     are those of rigid bodies."""
     n_dofs, n_own = free.shape
-    free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
+    cut = shortenings_of(model)
+    columns_of = [*(body.columns(n_dofs) for body in bodies), sp.csr_matrix((n_dofs, len(cut)))]
+    free = sp.hstack([free, *columns_of], format="csr")
     rows, values, names = [], [], []
     first = n_own
     for body in bodies:
@@ -202,11 +207,18 @@ def _together(
     rows_of = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
     linear, constants = equations(model)
     names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
-    points = sp.vstack([rows_of, linear], format="csr")
-    rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
-    values.append(np.concatenate([value, constants]) - points @ prescribed)
+    names += cut.names
+    points = sp.vstack([rows_of, linear, cut.at_points], format="csr")
+    above = sp.csr_matrix((rows_of.shape[0] + linear.shape[0], len(cut)))
+    by_unknowns = points @ free + sp.hstack(
+        [sp.csr_matrix((points.shape[0], first)), sp.vstack([above, cut.by_shortenings])], format="csr"
+    )
+    rows.append(_without_rounding(by_unknowns, abs(points).max(axis=1).toarray().ravel()))
+    values.append(np.concatenate([value, constants, cut.values]) - points @ prescribed)
     every = sp.vstack(rows, format="csr")
     done = eliminate(every, np.concatenate(values), names)
+    cut.require_closing(done.free[first:])
+    linear = sp.vstack([linear, cut.at_points], format="csr")
     others = sp.csr_matrix((every.shape[0] - linear.shape[0], n_dofs))
     of_equations = sp.vstack([others, linear], format="csr")
     links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution.state import State
 
 LANDED = "landed"  # whose history is the two forces of ``Landed`` of each contact, in the step that ended
