@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.nonlinear import semismooth
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.turns import rotation
 from models.patch import CELL_OF, two_blocks
 from models.sliding import turned
@@ -26,15 +26,11 @@ EXACT = 1e-9
 ENDS = (
     1e-12  # of Newton's method, which else stops at 1e-9 of the largest force: what the discretisation leaves is seen
 )
+TO_THE_END = replace(DEFAULT, newton=replace(DEFAULT.newton, balanced=ENDS))
 LINEAR = ("P0", "P1", "dual", "dual-P1")  # those whose pressures are determined
 QUADRATIC = (*LINEAR, "P1-discontinuous", "P2")
 PLANE = {"line2": "quad4", "line3": "quad8"}
 SECOND_ORDER = ("tri6", "quad8", "quad9", "line3")
-
-
-@pytest.fixture(autouse=True)
-def _to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(semismooth, "BALANCED", ENDS)
 
 
 def sideways(dim: int) -> float:
@@ -77,7 +73,7 @@ def errors(contactor: str, target: str, pressure: str, friction: float = 0.0) ->
         contacts=[abut.Contact(contactor="lower.top", target="upper.bottom", pressure=pressure, friction=friction)],
         kinematics="finite", solve=abut.SolveOptions(steps=1),
     )  # fmt: skip
-    solution = abut.solve(built)
+    solution = abut.solve(built, settings=TO_THE_END)
     assert solution.converged
     exact = mesh.points @ moves.T - mesh.points
     wrong = np.nanmax(np.abs(solution.contacts[0].multiplier / cauchy(dim) - 1.0))

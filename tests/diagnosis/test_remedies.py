@@ -15,7 +15,7 @@ import abut
 from abut.diagnosis.advice import Remedy, remedies, unsettled
 from abut.diagnosis.contactor import swap
 from abut.mesh import make
-from abut.nonlinear import smooth_laws
+from abut.nonlinear.settings import DEFAULT
 from abut.output.results import summary, write
 from abut.solution import Iteration, Solution, Step
 from models.assemblies import PLANE
@@ -104,12 +104,12 @@ def test_more_iterations_cure_a_limit_that_is_too_low() -> None:
     assert abut.solve(applied(solution.model, remedy)).converged
 
 
-def test_complementarity_cures_a_newton_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_complementarity_cures_a_newton_that_fails() -> None:
     """The constraint function without a line search, so that it fails at once."""
-    monkeypatch.setattr(smooth_laws, "HALVINGS", 0)
-    monkeypatch.setattr(smooth_laws, "TRIES", -1)
+    impatient = replace(DEFAULT, newton=replace(DEFAULT.newton, halvings=0))
     original = ball()
-    solution = abut.solve(replace(original, contacts=[replace(original.contacts[0], law="constraint-function")]))
+    smooth = replace(original, contacts=[replace(original.contacts[0], law="constraint-function")])
+    solution = abut.solve(smooth, settings=impatient)
     assert not solution.converged
     (remedy,) = remedies(solution)
     assert remedy.action == "contact 'ball.round-block.top': law = \"complementarity\""

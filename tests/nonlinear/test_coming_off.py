@@ -10,22 +10,9 @@ import abut
 from abut.linear.choice import Direct
 from abut.mesh import make
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.large_steps import let_go
 from abut.nonlinear.semismooth import Step, solve_finite
 from abut.solution.state import CLOSED, OPEN, State
 from models.sliding import arched, finite
-
-
-def test_a_contact_that_has_ended() -> None:
-    problem = finite(arched(0.0))
-    rest = problem.start()
-    n = len(rest.status)
-    touching = rest.with_closed(np.arange(n) == 2)
-    apart = rest.with_closed(np.zeros(n, dtype=bool))
-    assert let_go(problem, touching, apart)
-    assert not let_go(problem, apart, touching)
-    assert not let_go(problem, touching, touching)
-    assert not let_go(problem, apart, apart)
 
 
 def test_a_guess_that_comes_off_does_not_let_go() -> None:

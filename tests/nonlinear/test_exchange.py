@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from abut.nonlinear.exchange import AGAIN, exchanged
+from abut.nonlinear.exchange import exchanged
+from abut.nonlinear.settings import DEFAULT
 from abut.solution.state import State, at_rest
+
+AGAIN = DEFAULT.newton.again
 
 TURNS = np.array([0, AGAIN])
 
@@ -66,7 +69,7 @@ class Linear:
 def after(linear: Linear, closed: list[bool], closings: NDArray[np.int64]) -> State:
     """What an iteration with points closed ends with."""
     here = at_rest(0, len(linear)).with_closed(np.array(closed))
-    return exchanged(cast(Any, linear), here, linear.solved(here), closings, linear.solved)
+    return exchanged(cast(Any, linear), here, linear.solved(here), closings, AGAIN, linear.solved)
 
 
 def test_one_takes_the_place_of_the_other() -> None:

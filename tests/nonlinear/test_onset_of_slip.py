@@ -7,10 +7,13 @@ import pytest
 
 import abut
 from abut.mesh import make
-from abut.nonlinear.pace import FINER, POINTS, SMALLEST, Pace, Slips
+from abut.nonlinear.pace import Pace, Slips
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.step_error import Onset
 
 YOUNG, LENGTH, HEIGHT, PRESSURE, FRICTION = 1e5, 20.0, 0.5, 10.0, 0.3
+POINTS, SMALLEST = DEFAULT.steps.points, DEFAULT.steps.smallest
+FINER = 1.0 / POINTS  # of a step that jumps over the onset
 FULL = FRICTION * PRESSURE * LENGTH  # force under which all of the bar slips
 REACH = FULL * LENGTH / (2.0 * YOUNG * HEIGHT)  # displacement of its end then
 

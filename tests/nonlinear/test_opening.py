@@ -8,7 +8,8 @@ import numpy as np
 
 from abut.nonlinear.finite_laws import Asked
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.opening import BENT, following_status, without_pulling
+from abut.nonlinear.opening import following_status, without_pulling
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.linearised import Linearised
 from abut.solution.state import CLOSED, OPEN, State
 from models.corners import pin_in_cradle
@@ -37,12 +38,12 @@ def status(apart: float, pressures: tuple[float, float], guessed: bool = False) 
 
 
 def test_what_presses_stays() -> None:
-    assert status(0.5 * BENT, (1.0, -1.0)) == [CLOSED, OPEN]
+    assert status(0.5 * DEFAULT.newton.bent, (1.0, -1.0)) == [CLOSED, OPEN]
 
 
 def test_what_is_far_goes() -> None:
     """A linear problem tells nothing of it."""
-    assert status(2.0 * BENT, (1.0, 1.0)) == [OPEN, OPEN]
+    assert status(2.0 * DEFAULT.newton.bent, (1.0, 1.0)) == [OPEN, OPEN]
 
 
 def test_what_penetrates_stays() -> None:
@@ -52,7 +53,7 @@ def test_what_penetrates_stays() -> None:
 def test_guess() -> None:
     """It opens what the law opens (p < E g / h), but for all of a contact."""
     young = touching(0.0)[0].pairs[0].stiffness * touching(0.0)[0].pairs[0].size
-    gap = 0.5 * BENT
+    gap = 0.5 * DEFAULT.newton.bent
     assert status(gap, (2.0 * young * gap, 0.1 * young * gap), guessed=True) == [CLOSED, OPEN]
     assert status(gap, (0.2 * young * gap, 0.1 * young * gap), guessed=True) == [CLOSED, CLOSED]
 

@@ -6,7 +6,12 @@ import pytest
 
 from abut.errors import InputError
 from abut.model import Amplitude, SolveOptions
-from abut.nonlinear.pace import EASY, FIRST, GROWTH, HARD, SHRINK, SMALLEST, Pace, given_pace, pace_of
+from abut.nonlinear.pace import Pace, given_pace, pace_of
+from abut.nonlinear.settings import DEFAULT
+
+STEPS = DEFAULT.steps
+FIRST, EASY, GROWTH, SMALLEST = STEPS.first, STEPS.easy, STEPS.growth, STEPS.smallest
+HARD, SHRINK = 2 * EASY, STEPS.shrink
 
 
 def ends(pace: Pace, iterations: int) -> list[float]:
@@ -29,7 +34,7 @@ def test_easy_steps_grow_and_end_at_the_goal() -> None:
 def test_hard_steps_shrink() -> None:
     pace = Pace([1.0])
     pace.take(20)
-    assert abs(pace.end - 0.17) < 1e-12
+    assert abs(pace.end - (FIRST + SHRINK * FIRST)) < 1e-12
 
 
 def test_a_cut_halves_and_gives_up_at_last() -> None:

@@ -18,9 +18,10 @@ from abut.linear.solver import Prepared
 from abut.mesh import make
 from abut.nonlinear import active_set
 from abut.nonlinear.active_set import solve_step
-from abut.nonlinear.exact import ROUGH, solve_set
+from abut.nonlinear.exact import solve_set
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.problem import ContactProblem, Problem
 from abut.solution import State
 from models.oracle import assembled, at_the_end, exact, programme
@@ -138,7 +139,7 @@ def peeled(ready: Ready) -> State:
     """One active set after the other as the law asks for them, however many it takes: the search's slow twin."""
     state, tied = ready.first, ready.solver.system.tied
     for number in range(1, LONG + 1):
-        solved = solve_set(ready.solver, state, Increment(1), tied, number, ROUGH)
+        solved = solve_set(ready.solver, state, Increment(1), tied, number, DEFAULT.accuracy.rough)
         if not solved.changed.any():
             return ready.own.expand(ready.whole.start(), solved.state, active_laws, ready.solver.system)[0]
         state = solved.state.with_closed(solved.wanted)
@@ -283,12 +284,12 @@ def test_easy_models_never_search(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_when_a_set_is_hopeless() -> None:
-    assert not active_set.hopeless([40, 14, 5], 3)  # too early to tell
-    assert not active_set.hopeless([161, 27, 17, 12], 4)
-    assert active_set.hopeless([161, 27, 17, 12], 8)  # later the same pace is too slow
-    assert active_set.hopeless([8, 5, 4, 4], 4)
-    assert active_set.hopeless([4, 3, 2, 2, 2, 2], 6)  # no fewer for three iterations
-    assert active_set.hopeless([106, 3, 6, 15, 13], 5)  # ever more change
+    assert not active_set.hopeless([40, 14, 5], 3, DEFAULT)  # too early to tell
+    assert not active_set.hopeless([161, 27, 17, 12], 4, DEFAULT)
+    assert active_set.hopeless([161, 27, 17, 12], 8, DEFAULT)  # later the same pace is too slow
+    assert active_set.hopeless([8, 5, 4, 4], 4, DEFAULT)
+    assert active_set.hopeless([4, 3, 2, 2, 2, 2], 6, DEFAULT)  # no fewer for three iterations
+    assert active_set.hopeless([106, 3, 6, 15, 13], 5, DEFAULT)  # ever more change
 
 
 def test_foreseen_wrongly() -> None:

@@ -12,7 +12,7 @@ from abut.analysis.linear_solvers import linear_solver
 from abut.diagnosis.cures import cures
 from abut.nonlinear.drag import Drag, dragged, scale
 from abut.nonlinear.one_step import Setting
-from abut.nonlinear.semismooth import BALANCED
+from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.stabilised import is_gone, stabilised
 from abut.output.contact_rows import energy_columns, energy_row
 from abut.problem.stabilising import drag_of, is_dragged, with_drag, without_drag
@@ -99,7 +99,7 @@ def test_a_ball_on_one_node_rolls_half_as_far_as_its_plate() -> None:
         assert led.converged, led.attempts[-1].reason
         assert [part.whole for part in led.attempts] == [False] * (len(led.attempts) - 1) + [True]
         states.append(led.attempts[-1].state)
-        assert np.abs(drag_of(states[-1])).max() <= BALANCED * states[-1].largest.force
+        assert np.abs(drag_of(states[-1])).max() <= DEFAULT.newton.balanced * states[-1].largest.force
     middle = problem.model.mesh.points.tolist().index([0.0, 0.0, 0.0])
     ways = {state.time: problem.displacement(state)[3 * middle : 3 * middle + 3] for state in states}
     assert ways[1.0][0] - ways[0.5][0] == pytest.approx(0.5 * ROLLED, rel=0.01)
@@ -136,4 +136,7 @@ def test_bodies_that_are_gone() -> None:
     problem = finite(arch(way=0.1))
     state = problem.start()
     for ways, expected in ((1.9, False), (2.1, True)):
-        assert is_gone(problem, state, replace(state, unknowns=state.unknowns + ways * SPAN)) is expected
+        assert (
+            is_gone(problem, state, replace(state, unknowns=state.unknowns + ways * SPAN), DEFAULT.holding.gone)
+            is expected
+        )

@@ -8,6 +8,7 @@ import numpy as np
 
 import abut
 from abut.nonlinear.holding import lifted
+from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.unsettled import circling, gives_way, most_at
 from models.clamps import NAMED, WHOLE, clamp
 from models.corners import peg, pin_in_cradle
@@ -16,12 +17,12 @@ from models.sliding import finite
 
 def test_iterations_that_come_back() -> None:
     """After two or three, all around once; falling or with nothing of the kind they go on."""
-    assert circling([1.0, 3e-3, 5e-2, 3e-3, 5e-2])
-    assert circling([0.7, 0.1, 1.0, 0.2, 0.1, 1.0, 0.2])
-    assert circling([2e-3, 2e-3, 2e-3, 2e-3])
-    assert not circling([5e-2, 3e-3, 5e-2])
-    assert not circling([1.0, 3e-3, 5e-2, 3e-3, 4e-2])
-    assert not circling([1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7])
+    assert circling([1.0, 3e-3, 5e-2, 3e-3, 5e-2], DEFAULT)
+    assert circling([0.7, 0.1, 1.0, 0.2, 0.1, 1.0, 0.2], DEFAULT)
+    assert circling([2e-3, 2e-3, 2e-3, 2e-3], DEFAULT)
+    assert not circling([5e-2, 3e-3, 5e-2], DEFAULT)
+    assert not circling([1.0, 3e-3, 5e-2, 3e-3, 4e-2], DEFAULT)
+    assert not circling([1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7], DEFAULT)
 
 
 def test_where_most_is_left() -> None:

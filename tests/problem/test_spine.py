@@ -23,6 +23,7 @@ from abut.mesh.make import box, join, rectangle
 from abut.nonlinear import load_step, stepping
 from abut.nonlinear.march import Control, march
 from abut.nonlinear.pace import Pace, given_pace
+from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.stepping import SmallSteps
 from abut.output.restart import load_steps, save_step
 from abut.verify import law_tangents, material_tangent
@@ -259,6 +260,6 @@ def test_newton_converges_quadratically(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(newton, "_unbalanced", told)
     solution = stiffening.pressed(stiffening.Stiffening(5.0, 1.0, 200.0), depth=0.05)
     assert solution.converged
-    first = errors[: next(i for i, error in enumerate(errors) if error < newton.BALANCED) + 1]
+    first = errors[: next(i for i, error in enumerate(errors) if error < DEFAULT.newton.balanced) + 1]
     before, last, rounding = first[-3:]
     assert np.log(rounding / last) / np.log(last / before) > 1.7

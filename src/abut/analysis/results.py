@@ -29,9 +29,8 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.nonlinear.friction_newton import TOLERANCE
 from abut.nonlinear.load_step import Attempt
-from abut.nonlinear.semismooth import BALANCED
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
 from abut.problem.constraints import Constraints
@@ -192,7 +191,7 @@ def _energy(
     now = Acting(
         end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads, end.reaction,
         _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
-        largest * max(attempt.iterations[-1].residual, TOLERANCE), end.flow.work if end.flow else 0.0,
+        largest * max(attempt.iterations[-1].residual, DEFAULT.newton.balanced), end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, Acting):
         acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), balance)
@@ -215,7 +214,7 @@ def _finite_energy(
     problem, balance, state = end.problem, end.balance, end.state
     histories = problem.model.histories
     pressed = _pressed(end)
-    left = state.largest.force * max(attempt.iterations[-1].residual, BALANCED)
+    left = state.largest.force * max(attempt.iterations[-1].residual, DEFAULT.newton.balanced)
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     now = FiniteActing(

@@ -24,7 +24,8 @@ from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
-from abut.nonlinear.stabilised import STRIDES
+from abut.nonlinear.settings import DEFAULT, Settings
+from abut.nonlinear.stabilised import strides
 from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
@@ -68,12 +69,16 @@ class Run:
     assembled: Assembled
     kind: str
     solver: LinearSolver
+    settings: Settings = DEFAULT
     steps: list[Step] = field(default_factory=list)
     acted: Acted = None  # what acted at the end of the last step, with friction or finite kinematics
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
 
     @classmethod
-    def of(cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved]) -> Run:
+    def of(
+        cls, model: Model, observe: Observer, keep: OnStep, team: Team | None, resume: Sequence[Saved],
+        settings: Settings = DEFAULT,
+    ) -> Run:  # fmt: skip
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
         places = find_places(model)
@@ -93,7 +98,17 @@ class Run:
         if resume and model.solve.linear in ("auto", "petsc"):
             kind = resume[-1].linear
         return cls(
-            model, told, deadline, keep, team, clock, places, assembled, kind, linear_solver(kind, problem, team)
+            model,
+            told,
+            deadline,
+            keep,
+            team,
+            clock,
+            places,
+            assembled,
+            kind,
+            linear_solver(kind, problem, team),
+            settings,
         )
 
     def restore(self, done: Sequence[Saved]) -> State:
@@ -151,14 +166,15 @@ class Run:
             )
 
         control = Control(
-            solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, slip, refines
+            solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, slip, refines,
+            self.settings,
         )  # fmt: skip
         pace = self._pace()
         states = [problem.start(), *(saved.state for saved in done)]
         for before, saved in zip(states, done):
-            strides = STRIDES if is_dragged(saved.state) else ()
+            tried = strides(self.settings) if is_dragged(saved.state) else ()
             share, begun = landed_in(saved.state).share, slip(before, saved.state)
-            pace.repeat(saved.state.time, len(saved.iterations), share, begun, strides)
+            pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
         stepper: Stepper
         if isinstance(problem, FiniteProblem):
             stepper = LargeSteps(problem, self.solver, control)
@@ -179,8 +195,8 @@ class Run:
         rubs = any(pair.frictional for pair in pairs)
         slips = Slips(self._fits()) if rubs and solve.finds_steps else None
         if model.finite and pairs:
-            return pace_of(solve.steps, solve.times, (*model.histories, *model.locking), slips)
-        return given_pace(model.ends, model.finite or rubs, slips)
+            return pace_of(solve.steps, solve.times, (*model.histories, *model.locking), slips, self.settings)
+        return given_pace(model.ends, model.finite or rubs, slips, self.settings)
 
     def _fits(self) -> bool:
         """Whether surfaces with friction press from the outset, and loads act besides."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from abut.analysis.run import Run
 from abut.errors import OutOfTime
 from abut.model import Model
+from abut.nonlinear.settings import DEFAULT, Settings
 from abut.solution import Observer, OnStep, Saved, Solution
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def solve(
     on_step: OnStep | None = None,
     resume: Sequence[Saved] = (),
     team: Team | None = None,
+    settings: Settings = DEFAULT,
 ) -> Solution:
     """Solve a model step by step.
 
@@ -42,6 +44,8 @@ def solve(
     team : abut.parallel.Team, optional
         Processes that share the work (``abut.parallel.lead``); ``solve.linear`` "petsc" takes this one alone where there
         is none.
+    settings : abut.nonlinear.settings.Settings, optional
+        Thresholds of the nonlinear solution; for tests and studies.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def solve(
     >>> all(check.passed for check in solution.certificate)
     True
     """
-    run = Run.of(model, observer or _silent, on_step or _silent, team, resume)
+    run = Run.of(model, observer or _silent, on_step or _silent, team, resume, settings)
     first = run.restore(resume)
     try:
         run.march(first, resume)

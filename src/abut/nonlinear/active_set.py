@@ -11,21 +11,14 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import ROUGH, STRIDE, TOLD, Aim, Solved, finer, settled, solve_set
+from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.iteration import Found, Increment, active_laws
 from abut.nonlinear.search import Log, search
+from abut.nonlinear.settings import Settings
 from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
 from abut.solution.state import State
-
-FINE = 1e-5  # reduction of the residual asked of iterative linear solvers once sets repeat
-PATIENCE = 3  # iterations without fewer changes than ever that count as a cycle
-ROWS = 8  # of a step in which the set should settle, at the pace of the last three: else interior points are quicker
-MISLED = 0.25  # share of the active set that changes, and more than before, where a set was foreseen wrongly
-SETTLING, SETTLED = 0.1, 6  # the same below which a set that was foreseen well may settle yet, until that row of a step
-LAST = 12  # row of a step by which the violation should be gone, at its pace of the last three
-HALVED = 0.5  # share of the changes that may be left once a set was foreseen wrongly
 
 
 def solve_step(
@@ -49,12 +42,13 @@ def solve_step(
             return found
         return finish_smooth(solver, found.state, increment, limit, list(found.iterations), observe)
     tied = solver.system.tied
-    course = Course(solver, tied)
+    settings = increment.settings
+    course = Course(solver, tied, settings, settings.accuracy.rough)
     state = begin
     sets: list[NDArray[np.bool_]] = []
     log = Log(list(earlier), observe, len(earlier) + limit)
     before = np.inf
-    accuracy = STRIDE if settle else ROUGH
+    accuracy = settings.accuracy.stride if settle else settings.accuracy.rough
     if state.closed.all() and not settle:
         accuracy = 0.1 * solver.accurate  # closed all over may well be the answer
     while not log.full:
@@ -69,11 +63,11 @@ def solve_step(
         state = solved.state
         sets.append(state.closed)
         if not solved.changed.any():
-            if settled(solver, solved, aim, before):
+            if settled(solver, solved, settings, aim, before):
                 if aim == "set":
                     return Found(state, tuple(log.done), True, solved.changed, active_laws)
                 return finish_smooth(solver, state, increment, limit, log.done, observe)
-            accuracy, before = finer(solver, solved, aim), solved.error
+            accuracy, before = finer(solver, solved, settings, aim), solved.error
             continue
         before = np.inf
         if aim == "this set":
@@ -82,7 +76,7 @@ def solve_step(
         if following is None:
             return search(solver, begin, increment, limit, log, tied, aim)
         state, accuracy = state.with_closed(following.closed), following.accuracy
-    recent = np.stack(sets[-6:])
+    recent = np.stack(sets[-2 * settings.newton.patience :])
     cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | solved.changed
     return Found(state.with_closed(sets[-1]), tuple(log.done), False, cycling, active_laws)
 
@@ -97,19 +91,21 @@ class Following:
 
 @dataclass
 class Course:
-    """The active sets of a step so far. seen: those solved with; changes, violations: of each solution, how many multipliers
+    """The active sets of a step so far. finest: reduction of the residual asked for; seen:
+    those solved with; changes, violations: of each solution, how many multipliers
     changed and the law's largest violation; lawful: what the law asked for where another set was foreseen; foresee: whether
-    foresight is of use; doubtful: it was just found to be of none; finest: reduction of the residual asked for."""
+    foresight is of use; doubtful: it was just found to be of none."""
 
     solver: Prepared
     tied: NDArray[np.bool_]
+    settings: Settings
+    finest: float
     seen: set[bytes] = field(default_factory=set)
     changes: list[int] = field(default_factory=list)
     violations: list[float] = field(default_factory=list)
     lawful: NDArray[np.bool_] | None = None
     foresee: bool = True
     doubtful: bool = False
-    finest: float = ROUGH
 
     def following(self, solved: Solved, rows: int, accuracy: float) -> Following | None:
         """The set to solve with after one that changed; None where interior points are quicker. rows: of the step so far;
@@ -117,7 +113,7 @@ class Course:
 
         Raises SingularModelError where no contact that only pushes balances the loads."""
         active, count = solved.state.closed, int(solved.changed.sum())
-        if self.lawful is not None and count > max(self.changes[-1], MISLED * active.sum()):
+        if self.lawful is not None and count > max(self.changes[-1], self.settings.status.misled * active.sum()):
             return self._back(self.lawful, active, accuracy)
         self.changes.append(count)
         self.violations.append(float(solved.violation.max()))
@@ -130,8 +126,8 @@ class Course:
         self.doubtful = False
         if slow:
             _check_balance(self.solver)
-        if repeated and not stuck and not self.solver.exact and self.finest > FINE:
-            self.finest = FINE  # sets may repeat because they were not solved well enough
+        if repeated and not stuck and not self.solver.exact and self.finest > self.settings.accuracy.fine:
+            self.finest = self.settings.accuracy.fine  # sets may repeat because they were not solved well enough
             self.seen.clear()
         elif slow:
             return None
@@ -147,7 +143,7 @@ class Course:
         """The set that the law asks for, or a better guess that has not been seen yet; no guess from a state that an
         iterative solver has left too rough to tell anything."""
         self.lawful = None
-        if not self.foresee or not (self.solver.exact or solved.error <= TOLD):
+        if not self.foresee or not (self.solver.exact or solved.error <= self.settings.accuracy.told):
             return solved.wanted
         guess = self.solver.foresee(gap, solved.state.multipliers, solved.wanted, self.tied)
         if guess.tobytes() in {*self.seen, solved.state.closed.tobytes()}:
@@ -157,33 +153,33 @@ class Course:
 
     def _slow(self, active: NDArray[np.bool_], rows: int) -> bool:
         """Whether interior points would be quicker."""
-        count = self.changes[-1]
-        settling = self.foresee and count <= SETTLING * active.sum() and rows < SETTLED
-        if hopeless(self.changes, rows) and not (settling or closing(self.violations, rows)):
+        count, settings = self.changes[-1], self.settings
+        soon = rows < 2 * settings.newton.patience
+        settling = self.foresee and count <= settings.status.settling * active.sum() and soon
+        if hopeless(self.changes, rows, settings) and not (settling or closing(self.violations, rows, settings)):
             return True
-        return self.doubtful and count >= HALVED * self.changes[-2]
+        return self.doubtful and count >= 0.5 * self.changes[-2]
 
 
-def stalled(changes: Sequence[int]) -> bool:
-    """Whether for some iterations as many multipliers changed as ever before. changes: how many in each."""
-    return len(changes) > PATIENCE and min(changes[-PATIENCE:]) >= min(changes[:-PATIENCE])
-
-
-def hopeless(changes: Sequence[int], rows: int) -> bool:
-    """Whether the set will take too many more iterations, if any number is enough. rows: those of the step so far."""
-    if len(changes) <= PATIENCE:
+def hopeless(changes: Sequence[int], rows: int, settings: Settings) -> bool:
+    """Whether the set will take too many more iterations at the pace of the last ones, or for some as many multipliers
+    changed as ever before. changes: how many in each; rows: those of the step so far."""
+    patience = settings.newton.patience
+    if len(changes) <= patience:
         return False
-    pace = np.log(changes[-1 - PATIENCE] / changes[-1]) / PATIENCE
-    return stalled(changes) or bool(np.log(changes[-1]) > max(ROWS - rows, 1) * pace)
+    pace = np.log(changes[-1 - patience] / changes[-1]) / patience
+    stalled = min(changes[-patience:]) >= min(changes[:-patience])
+    return stalled or bool(np.log(changes[-1]) > max(settings.status.rows - rows, 1) * pace)
 
 
-def closing(violations: Sequence[float], rows: int) -> bool:
+def closing(violations: Sequence[float], rows: int, settings: Settings) -> bool:
     """Whether the law's largest violation falls so evenly that it will soon be gone: an edge of contact that goes back facet
     by facet, theory (V9). rows: those of the step so far."""
-    last = violations[-1 - PATIENCE :]
-    if len(last) <= PATIENCE or any(after >= before for before, after in pairwise(last)):
+    patience = settings.newton.patience
+    last = violations[-1 - patience :]
+    if len(last) <= patience or any(after >= before for before, after in pairwise(last)):
         return False
-    return rows + last[-1] * PATIENCE / (last[0] - last[-1]) <= LAST
+    return rows + last[-1] * patience / (last[0] - last[-1]) <= 1.5 * settings.status.rows
 
 
 def _check_balance(solver: Prepared) -> None:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from abut.problem.linearised import Linearised
 
-LEAST = 1e-2  # of the median, that the drag's share of a stiffness is at least: rigid bodies have none
 Vector = NDArray[np.float64]
 
 
@@ -36,7 +35,8 @@ def dragged(system: Linearised, drag: Drag | None) -> Linearised:
 
 
 def scale(system: Linearised) -> Vector:
-    """(n_free,) the size of the stiffness of each displacement alone, which drags go with: soft bodies meet little."""
+    """(n_free,) the size of the stiffness of each displacement alone, which drags go with: soft bodies meet little, rigid
+    ones as much as a hundredth of the median."""
     diagonal = np.abs(system.stiffness.diagonal())
     stiff = diagonal[diagonal > 0.0]
-    return np.maximum(diagonal, LEAST * float(np.median(stiff))) if len(stiff) else np.ones_like(diagonal)
+    return np.maximum(diagonal, 0.01 * float(np.median(stiff))) if len(stiff) else np.ones_like(diagonal)

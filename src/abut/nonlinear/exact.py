@@ -11,21 +11,11 @@ from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
 from abut.nonlinear.iteration import Increment, active_laws, advance, largest_pressure, next_active, report
+from abut.nonlinear.settings import Settings
 from abut.solution import Iteration
 from abut.solution.state import State
 
 Aim = Literal["solution", "set", "this set"]
-ROUGH = 1e-2  # reduction of the residual asked of iterative linear solvers while the set changes
-TOLD, MOST = (
-    0.2,
-    3,
-)  # of equilibrium and of closed gaps, where a state tells which set comes next; solutions until there
-STRIDE = 1e-4  # the same at most in one solve, lest a set is solved to the end that then turns out not to be final
-SURE, FURTHER = 0.3, 1e-6  # once a set stands still: share of what is missing to ask for, as the error weighs rows in
-# another way than the norm of the residual; and the most at once
-TRUSTED = 0.1  # error from which on a set that stands still is not taken for the last one
-STALLED = 1e-8  # the same that may be left where it no longer falls
-SEARCHED = 1e-5  # of equilibrium and of closed gaps, where only the set is wanted
 
 
 @dataclass(frozen=True)
@@ -55,37 +45,39 @@ def solve_set(
     """Solve with the active set of ``state``, completed where it lets a body go, as iteration ``count`` of the step.
 
     An iterative solver goes on where a rough solution says nothing, as after a state that was far off."""
-    clock = time.perf_counter()
+    clock, asked = time.perf_counter(), increment.settings.accuracy
     system = solver.system
     active = system.restraint.complete(system.forces, state.closed, system.gap(state)) | tied
     state = state.with_closed(active)
-    for _ in range(MOST if not solver.exact else 1):
+    for _ in range(increment.settings.newton.patience if not solver.exact else 1):
         state = advance(solver, state, active_laws(system, state), accuracy)
         wanted, violation = next_active(system, state, increment, tied)
         changed = int((wanted != active).sum())
         row = report(system, state, increment, count, changed, violation, time.perf_counter() - clock)
         solved = Solved(state, wanted, violation, closure(solver, state, increment), row)
-        if solved.error <= TOLD:
+        if solved.error <= asked.told:
             break
-        accuracy = max(TOLD / solved.error, STRIDE)
+        accuracy = max(asked.told / solved.error, asked.stride)
     return replace(solved, row=replace(row, contact_residual=max(row.contact_residual, solved.closure)))
 
 
-def settled(solver: Prepared, solved: Solved, aim: Aim, before: float = np.inf) -> bool:
+def settled(solver: Prepared, solved: Solved, settings: Settings, aim: Aim, before: float = np.inf) -> bool:
     """Whether a set that stands still has been solved well enough. before: its error after the solution before this one:
     what no longer falls is rounding."""
-    rounding = solved.error <= STALLED and solved.error > 0.5 * before
-    return solver.exact or solved.error <= _wanted(solver, aim) or rounding
+    rounding = solved.error <= settings.newton.stalled and solved.error > 0.5 * before
+    return solver.exact or solved.error <= _wanted(solver, settings, aim) or rounding
 
 
-def finer(solver: Prepared, solved: Solved, aim: Aim) -> float:
+def finer(solver: Prepared, solved: Solved, settings: Settings, aim: Aim) -> float:
     """The reduction of the residual to ask for next where it has not: the rougher the state in which a set stands still,
     the less is it worth to be solved to the end."""
-    return max(SURE * _wanted(solver, aim) / solved.error, min(solved.error, TRUSTED) ** 2, FURTHER)
+    asked = settings.accuracy
+    last = asked.spare * _wanted(solver, settings, aim) / solved.error
+    return max(last, min(solved.error**2, asked.rough), asked.fine)
 
 
-def _wanted(solver: Prepared, aim: Aim) -> float:
-    return max(SEARCHED, solver.accurate) if aim == "set" else solver.accurate
+def _wanted(solver: Prepared, settings: Settings, aim: Aim) -> float:
+    return max(settings.accuracy.fine, solver.accurate) if aim == "set" else solver.accurate
 
 
 def closure(solver: Prepared, state: State, increment: Increment) -> float:

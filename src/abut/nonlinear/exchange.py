@@ -11,20 +11,23 @@ from numpy.typing import NDArray
 from abut.problem.linearised import Linearised
 from abut.solution.state import OPEN, State
 
-AGAIN = 2  # times that a point closes in a step, from which on it may take the place of another
 Advance = Callable[[State], State]
 
 
-def exchanged(system: Linearised, here: State, there: State, closings: NDArray[np.int64], advance: Advance) -> State:
+def exchanged(
+    system: Linearised, here: State, there: State, closings: NDArray[np.int64], again: int, advance: Advance
+) -> State:
     """The state at the end of an iteration from ``here`` that would end at ``there``.
 
     A point that has closed again and again penetrates where it is open, and pulls where it is closed with the others. In
     the linear problem a pressure on it changes theirs in proportion, which the two solutions tell; the first of them
     that it brings to nothing opens, and so on until the point presses (principal pivoting, Cottle and Dantzig 1968).
     What pulls when it does opens too, one after the other.
-    closings: (n,) how often each multiplier has closed in the step; advance: the linear solution with a state's status."""
+    closings: (n,) how often each multiplier has closed in the step; again: times from which on a point may take the
+    place of another; advance: the linear solution with a state's status. Without it the
+    benchmark "capstan" takes 38 steps and 383 iterations instead of 29 and 287."""
     pressures = _pressures(system)
-    pulls = pressures & here.closed & (closings >= AGAIN) & (there.multipliers < 0.0)
+    pulls = pressures & here.closed & (closings >= again) & (there.multipliers < 0.0)
     if not pulls.any():
         return there
     point = int(np.argmin(np.where(pulls, there.multipliers, 0.0)))

@@ -13,14 +13,14 @@ from abut.contact.laws import ConstraintFunction, Law, LawState
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
+from abut.nonlinear.settings import NOTHING
 from abut.problem.finite import bare
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
-SHORTEST = 1e-9  # first step over the facet size, in the search for a gap that meets a pressure
-DOUBLINGS, BISECTIONS = 40, 50  # of that step, until there is such a gap in it, and then of the step
+DIGITS = np.finfo(float).nmant  # binary ones of a number
 Vector = NDArray[np.float64]
 
 
@@ -89,11 +89,11 @@ def _met(pair: Pair, law: Law, gap: Vector, pressure: Vector, closed: NDArray[np
     high = gap / pair.weight
     low, first = high.copy(), sign(high)
     searched = pressure > 0.0
-    for k in range(DOUBLINGS):
+    for k in range(DIGITS):
         same = searched & (sign(low) == first)
-        high, low = np.where(same, low, high), np.where(same, low - SHORTEST * pair.size * 2.0**k, low)
+        high, low = np.where(same, low, high), np.where(same, low - pair.size * 2.0 ** (k - DIGITS // 2), low)
     found = searched & (sign(low) != first)
-    for _ in range(BISECTIONS):
+    for _ in range(DIGITS):
         middle = 0.5 * (low + high)
         above = sign(middle) == first
         low, high = np.where(above, low, middle), np.where(above, middle, high)
@@ -141,6 +141,6 @@ def left_open(system: Linearised, laws: Sequence[LawRows], asked: Asked) -> Vect
         missed = law.residual / pair.weight * pair.stiffness
         if asked.of(pair, system) is not None:
             give = np.abs(law.by_gap.diagonal()) + np.abs(law.by_pressure.diagonal()) / pair.scale
-            missed = missed / np.maximum(give, 1e-300)
+            missed = missed / np.maximum(give, NOTHING)
         result.append(missed)
     return np.concatenate([np.zeros(0), *result])

@@ -8,28 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import MOST, STRIDE, TOLD
 from abut.nonlinear.iteration import Increment, advance, largest_force
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
-ENOUGH = 0.1  # reduction of the residual that a solution at least aims at
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
 
 def advanced(solver: Prepared, state: State, laws: Laws, increment: Increment, accuracy: float) -> State:
     """The state after a Newton step. An iterative solver, asked for ``accuracy`` of the residual, goes on where forces are
     so far from balance that the state says nothing."""
-    system = solver.system
-    for _ in range(1 if solver.exact else MOST):
+    system, asked = solver.system, increment.settings.accuracy
+    for _ in range(1 if solver.exact else increment.settings.newton.patience):
         state = advance(solver, state, laws(system, state), accuracy)
         left = float(np.abs(system.unbalanced(state)).max(initial=0.0))
         left /= largest_force(system, state, system.internal(state), increment)
-        if left <= TOLD:
+        if left <= asked.told:
             break
-        accuracy = float(np.clip(TOLD / left, STRIDE, ENOUGH))
+        accuracy = float(np.clip(asked.told / left, asked.stride, asked.spare))
     return state
 
 

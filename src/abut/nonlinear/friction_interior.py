@@ -17,14 +17,11 @@ from abut.linear.solver import Prepared
 from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
 from abut.nonlinear.interior_point import softness
 from abut.nonlinear.iteration import advance
+from abut.nonlinear.settings import NOTHING, Settings
 from abut.problem.laws import LawRows
 from abut.problem.pair import Pair
 from abut.solution.state import State
 
-STEEPEST = 100.0  # coefficient of friction that stands for surfaces that never slip
-TRIES, SHORTER = 12, 0.8  # of steps that leave some products too far behind, and how much shorter each is
-LEAST = 1e-6  # share of the mean product that is aimed at
-ACCURACY = 1e-3  # reduction of residuals asked of iterative solvers
 Vector = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
@@ -52,9 +49,10 @@ class Programme:
     along: Numbers
     idle: Numbers
     softness: float
+    settings: Settings
 
     @classmethod
-    def of(cls, solver: Prepared) -> Programme:
+    def of(cls, solver: Prepared, settings: Settings) -> Programme:
         system, first, normal, along = solver.system, 0, [], []
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
@@ -67,7 +65,14 @@ class Programme:
             first += len(pair)
         numbers, tangents = np.concatenate(normal), np.concatenate(along)
         programme = cls(
-            solver, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, numbers[:0], softness(solver)
+            solver,
+            numbers,
+            system.scale[numbers],
+            np.arange(len(numbers)),
+            tangents,
+            numbers[:0],
+            softness(solver),
+            settings,
         )
         holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
@@ -79,7 +84,8 @@ class Programme:
         system, first, parts = self.solver.system, 0, []
         for pair in system.pairs:
             if not pair.two_way:
-                parts.append(_bound(pair, system.factors, pressure[first : first + len(pair.space)]))
+                own = pressure[first : first + len(pair.space)]
+                parts.append(_bound(pair, system.factors, own, self.settings.interior.steepest))
                 first += len(pair.space)
         bound, slope = (np.concatenate(values) for values in zip(*parts))
         return bound[self.rubs], slope[self.rubs]
@@ -89,11 +95,11 @@ class Programme:
         return np.where(self.along >= 0, values[np.maximum(self.along, 0)], 0.0)
 
 
-def _bound(pair: Pair, factors: Vector, pressure: Vector) -> tuple[Vector, Vector]:
+def _bound(pair: Pair, factors: Vector, pressure: Vector, steepest: float) -> tuple[Vector, Vector]:
     if not pair.frictional:
         return np.zeros(len(pressure)), np.zeros(len(pressure))
     limit = pair.friction(factors)
-    return (STEEPEST * pressure, np.full(len(pressure), STEEPEST)) if limit.rough else limit.at(pressure)
+    return (steepest * pressure, np.full(len(pressure), steepest)) if limit.rough else limit.at(pressure)
 
 
 @dataclass(frozen=True)
@@ -165,14 +171,14 @@ def begin(programme: Programme, state: State, manner: Manner) -> Interior:
     gap = system.gap(state)
     gap[programme.idle] = 0.0
     rows = _by_pairs(programme, -gap - soft * state.multipliers, sp.diags(-soft, format="csr"))
-    full = advance(programme.solver, state, rows, ACCURACY)
+    full = advance(programme.solver, state, rows, programme.settings.accuracy.stride)
     multipliers = full.multipliers.copy()
-    size = max(float(np.abs(multipliers[programme.normal]).mean()), 1e-300)
+    size = max(float(np.abs(multipliers[programme.normal]).mean()), NOTHING)
     pressure = np.maximum(multipliers[programme.normal], 0.0) + size
     multipliers[programme.normal] = pressure
     drag, (bound, _) = programme.tangential(multipliers), programme.bound(pressure)
     length = np.linalg.norm(drag, axis=1)
-    drag *= np.minimum(1.0, 0.5 * bound / np.maximum(length, 1e-300))[:, None]
+    drag *= np.minimum(1.0, 0.5 * bound / np.maximum(length, NOTHING))[:, None]
     there = programme.along >= 0
     multipliers[programme.along[there]] = drag[there]
     multipliers[programme.idle] = 0.0
@@ -209,17 +215,17 @@ def iterate(at: _Near, manner: Manner) -> Interior:
         np.einsum("rd,rd->r", here.slip + length * first.slip, at.traction + length * first.traction),
     ]
     foreseen = max(float(np.concatenate(products).mean()), 0.0)
-    aim = float(np.clip((foreseen / mean) ** 3, LEAST, 1.0)) * mean
+    aim = float(np.clip((foreseen / mean) ** 3, at.programme.settings.interior.central**2, 1.0)) * mean
     of_cones = np.zeros_like(here.slip)
     of_cones[:, 0] = aim
     if len(of_cones):
         of_cones -= product(times(at.scaled.inverse, first.slip), times(at.scaled.matrix, first.traction))
     step = _direction(at, aim - first.gap * first.pressure, of_cones)
     length = min(1.0, manner.boundary * step.length(at))
-    for _ in range(TRIES):
+    for _ in range(4 * at.programme.settings.newton.patience):
         if _central(at, step, length, manner.central):
             break
-        length *= SHORTER
+        length *= at.programme.settings.interior.shorter
     state = here.state
     state = replace(
         state,
@@ -248,7 +254,9 @@ def _direction(at: _Near, of_gaps: Vector, of_cones: Vector) -> _Step:
     scaled = at.scaled
     slip = times(scaled.matrix, quotient(scaled.middle, of_cones)) - here.slip if len(here.slip) else here.slip
     soft = np.einsum("rij,rjk->rik", scaled.matrix, scaled.matrix)
-    full = advance(programme.solver, here.state, _rows(at, shift, here.slip + slip, soft), ACCURACY)
+    full = advance(
+        programme.solver, here.state, _rows(at, shift, here.slip + slip, soft), programme.settings.accuracy.stride
+    )
     change = full.multipliers - here.state.multipliers
     pressure = change[programme.normal]
     traction = np.column_stack([at.slope * pressure[programme.rubs], programme.tangential(change)])

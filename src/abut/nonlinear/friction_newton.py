@@ -11,27 +11,21 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import ROUGH, STRIDE
 from abut.nonlinear.friction_foresight import advanced, foreseen
 from abut.nonlinear.iteration import (
-    FLAT,
-    NO_PRESSURE,
     Found,
     Increment,
     largest_pressure,
     points,
     report,
 )
+from abut.nonlinear.settings import NOTHING
 from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 
-TOLERANCE = 1e-10  # of the laws over the largest pressure, and of equilibrium over the largest force
-STALLED = 1e-7  # the same that may be left where it no longer falls
-PATIENCE = 3  # iterations in which neither fewer change than ever nor less is left than half of ever
-RECENT = 6  # iterations whose statuses tell which multipliers keep changing
 Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
 
@@ -56,7 +50,7 @@ class Course:
         row = replace(row, contact_residual=float(missed / largest))
         self.done.append(row)
         self.observe(row)
-        self.recent = [*self.recent[1 - RECENT :], state.status]
+        self.recent = [*self.recent[1 - 2 * self.increment.settings.newton.patience :], state.status]
         left = max(row.contact_residual, row.residual)
         if left * largest < self.best[0]:
             self.best = left * largest, state
@@ -86,14 +80,15 @@ class Course:
         return Found(state, tuple(self.done), False, changing, friction_laws, between=between)
 
 
-def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -> Found | None:
+def newton(course: Course, first: State, limit: int) -> Found | None:
     """Semi-smooth Newton from a state and its status, in whole steps; None where it gives up.
 
     It does as soon as a status comes back, or nothing gets better any more."""
     system, state = course.solver.system, first
     seen: set[bytes] = set()
     fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
-    tolerance, accuracy = tolerated(course.solver), ROUGH
+    settings, asked = course.increment.settings.newton, course.increment.settings.accuracy
+    tolerance, accuracy = max(settings.balanced, course.solver.accurate), asked.rough
     foreseen_other, last = False, 0
     for _ in range(limit):
         clock = time.perf_counter()
@@ -102,15 +97,15 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
         changed = points(system, wanted != state.status)
         state = following.with_status(wanted)
         left = course.add(state, changed, clock)
-        if not changed and (left <= tolerance or (left <= STALLED and left > 0.5 * before)):
+        if not changed and (left <= tolerance or (left <= settings.stalled and left > 0.5 * before)):
             return course.found(state)
         better = changed < fewest or (changed == 0 and left < 0.5 * least)
         idle = 0 if better else idle + 1
-        if idle >= patience or (changed and wanted.tobytes() in seen):
+        if idle >= settings.patience or (changed and wanted.tobytes() in seen):
             return None
         fewest, least = min(fewest, changed), min(least, left)
         before = left if not changed else np.inf
-        accuracy = ROUGH if changed else max(0.3 * tolerance / left, STRIDE)
+        accuracy = asked.rough if changed else max(asked.spare * tolerance / left, asked.stride)
         seen.add(wanted.tobytes())
         misled, foreseen_other = foreseen_other and changed >= last, False
         last = changed
@@ -119,11 +114,6 @@ def newton(course: Course, first: State, limit: int, patience: int = PATIENCE) -
             foreseen_other = not np.array_equal(status, wanted)
             state = state.with_status(status)
     return None
-
-
-def tolerated(solver: Prepared) -> float:
-    """What laws and equilibrium may have left, over the largest pressure and force."""
-    return TOLERANCE if solver.exact else max(TOLERANCE, solver.accurate)
 
 
 def friction_laws(system: Linearised, state: State) -> list[LawRows]:
@@ -158,7 +148,7 @@ def next_status(system: Linearised, state: State, increment: Increment, gap: Vec
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
     reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
-    small = FLAT * max(reference, NO_PRESSURE)
+    small = increment.settings.newton.balanced * max(reference, NOTHING)
     gap = system.gap(state) if gap is None else gap
     gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
     return system.join(

@@ -11,25 +11,17 @@ from abut.errors import SingularModelError
 from abut.nonlinear.friction_interior import Manner, Programme, begin, iterate, near
 from abut.nonlinear.friction_newton import Course, newton, next_status
 from abut.nonlinear.iteration import Found, largest_pressure, points
+from abut.nonlinear.settings import Settings
 from abut.solution.state import CLOSED, OPEN, State
-
-BOLD, CAREFUL, CONVEX = Manner(0.95, 1e-3), Manner(0.7, 0.05), Manner(0.95, 1e-3, dilates=True)
-FEW = 0.02  # share of the multipliers that may change in an iteration for Newton's method to be worth a try
-NEWTON = 15  # iterations of a try at most, as long as it gets better
-CLOSE = 1.0  # difference between gaps and what they are to be, over the largest pressure, likewise
-LESS = 0.3  # of the dilatancy that is left by an iteration that close
-NONE = 1e-3  # dilatancy that is none
-STUCK, SHORT = 4, 0.05  # iterations in a row whose steps are shorter than that
-GONE = 1e-12  # of the largest pressure over that of the start, from which down nothing is pressed
-FORCE_LEFT = 1e-9  # of forces over those that would hold a node where it was
-FLOOR = 1e-14  # of the mean product over the largest pressure squared
 
 
 def search(course: Course, state: State, limit: int) -> Found | None:
     """The solution of a load step from anywhere; None where none of the ways to it finds one. limit: of iterations of each.
 
     Newton's method ends it as soon as interior points tell the status of most multipliers."""
-    for manner in (BOLD, CAREFUL, CONVEX):
+    interior = course.increment.settings.interior
+    bold = Manner(0.95, interior.central)
+    for manner in (bold, Manner(0.7, 50.0 * interior.central), replace(bold, dilates=True)):
         try:
             with np.errstate(all="ignore"):  # what is no number ends it
                 found = _interior(course, state, manner, limit)
@@ -41,10 +33,11 @@ def search(course: Course, state: State, limit: int) -> Found | None:
 
 
 def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found | None:
-    programme = Programme.of(course.solver)
+    settings = course.increment.settings
+    programme = Programme.of(course.solver, settings)
     here = begin(programme, state, manner)
     before = np.where(programme.solver.system.tied, CLOSED, OPEN)
-    few = max(int(FEW * len(programme.normal)), 2)
+    few = max(int(settings.status.few * len(programme.normal)), 2)
     short, first = 0, np.abs(here.state.multipliers).max()
     for _ in range(limit):
         clock = time.perf_counter()
@@ -57,22 +50,27 @@ def _interior(course: Course, state: State, manner: Manner, limit: int) -> Found
         course.add(now, changed, clock)
         at = near(programme, here)
         largest = largest_pressure(here.state, course.increment)
-        close = at.missed <= CLOSE * largest
+        close = at.missed <= largest
         if close:
-            here = replace(here, dilatancy=LESS * here.dilatancy if here.dilatancy > NONE else 0.0)
-        if np.abs(here.state.multipliers).max() < GONE * first:
+            here = replace(here, dilatancy=_faded(here.dilatancy, settings))
+        if np.abs(here.state.multipliers).max() < settings.newton.rounding * first:
             return _apart(course, programme, now)
         if close and changed <= few and not here.dilatancy:
             try:
-                found = newton(course, now, NEWTON, patience=2)
+                found = newton(course, now, settings.newton.solutions)
             except SingularModelError:
                 found = None
             if found is not None:
                 return found
-        short = short + 1 if here.length < SHORT else 0
-        if short >= STUCK or at.mean < FLOOR * largest**2:
+        short = short + 1 if here.length < 0.05 else 0
+        if short > settings.newton.patience or at.mean < settings.interior.floor * largest**2:
             return None
     return None
+
+
+def _faded(dilatancy: float, settings: Settings) -> float:
+    """What is left of it by an iteration close to what gaps and slips are to be."""
+    return settings.interior.fade * dilatancy if dilatancy > settings.interior.met else 0.0
 
 
 def _apart(course: Course, programme: Programme, state: State) -> Found | None:
@@ -82,7 +80,7 @@ def _apart(course: Course, programme: Programme, state: State) -> Found | None:
     size = system.unit * float(np.abs(state.unknowns).max(initial=0.0))
     if system.tied.any() or system.gap(state)[programme.normal].min() < 0.0:
         return None
-    if np.abs(system.unbalanced(state)).max(initial=0.0) > FORCE_LEFT * size:
+    if np.abs(system.unbalanced(state)).max(initial=0.0) > course.increment.settings.newton.balanced * size:
         return None
     course.add(state, 0, clock)
     return course.found(state)

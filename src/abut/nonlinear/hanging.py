@@ -9,8 +9,6 @@ from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
-FEW = 3  # nodes that go on changing, up to which they are named
-
 
 def hanging(problem: ContactProblem, state: State, changing: NDArray[np.bool_]) -> str:
     """Which contacts press on one node of the contactor alone at the last converged state, or go on changing, where, and
@@ -23,7 +21,7 @@ def hanging(problem: ContactProblem, state: State, changing: NDArray[np.bool_]) 
         pressed, restless = (_nodes(pair, part[own][pair.normal]) for part in (state.closed, changing))
         if len(pressed) == 1:
             told.append(_told(problem, pair, pressed, "hangs on one node of the contactor"))
-        elif 0 < len(restless) <= FEW:
+        elif 0 < len(restless) <= 3:  # more are told in numbers
             told.append(_told(problem, pair, restless, "goes on opening and closing"))
     return "; ".join(told)
 

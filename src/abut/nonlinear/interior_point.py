@@ -13,17 +13,11 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared, Solve
+from abut.nonlinear.settings import NOTHING, Settings
 from abut.problem.laws import softened
 from abut.problem.linearised import Rows
 from abut.solution.state import State
 
-BOUNDARY = 0.995  # share of the way to the nearest zero of a gap or pressure
-CENTRAL = 1e-3  # of the mean product of gaps and pressures: what the smallest keeps ...
-SHORTER, TRIES = 0.8, 12  # ... by steps that many times shorter, so often at most
-CORRECTORS = 2  # that make a step longer, where they cost no factorisation ...
-FARTHER, WORTH = 0.3, 0.1  # ... by that much, and the share of it from which on they do ...
-OUTLIER = 0.1  # ... by gaps times pressures that far at least from what is aimed at
-UNDECIDED = 0.4  # of d p / p from -1/2: neither closing nor opening
 Vector = NDArray[np.float64]
 
 
@@ -43,20 +37,22 @@ class Interior:
         """Rows on which the gap goes faster than the pressure, theory (V20)."""
         return self.closing > self.opening
 
-    @property
-    def undecided(self) -> NDArray[np.bool_]:
-        return np.abs(self.closing + 0.5) < UNDECIDED
-
 
 @dataclass(frozen=True)
 class Programme:
     """What stays the same over the iterations of a load step. prepared: the linear solver; scale: (n,) gap per pressure;
-    tied: (n,) rows that are closed whatever happens; softness: of the bodies over that of their facets."""
+    tied: (n,) rows that are closed whatever happens; softness: of the bodies over that of their facets; settings:
+    thresholds."""
 
     prepared: Prepared
     scale: Vector
     tied: NDArray[np.bool_]
     softness: float
+    settings: Settings
+
+    def undecided(self, here: Interior) -> NDArray[np.bool_]:
+        """Rows that are neither closing nor opening."""
+        return np.abs(here.closing + 0.5) < self.settings.interior.undecided
 
     def mean(self, pressure: Vector, slack: Vector) -> float:
         """Mean product of gaps (as pressures) and pressures, theory (V17)."""
@@ -67,7 +63,7 @@ class Programme:
         """Whether no product is far smaller than the mean of all, which makes the steps after it short."""
         free = ~self.tied
         product = slack[free] * pressure[free] / self.scale[free]
-        return bool(product.min() >= CENTRAL * product.mean())
+        return bool(product.min() >= self.settings.interior.central * product.mean())
 
     def rows(self, state: State, softness: Vector, shift: Vector) -> Rows:
         """The rows of theory (V18)."""
@@ -94,7 +90,9 @@ class Programme:
             if du.any() or dp.any():
                 left = residual + system.stiffness @ du - system.operator.T @ dp
                 of_law = of_law + rows.by_displacement @ du + rows.by_pressure @ dp
-            more = self.prepared.solve(replace(rows, residual=of_law), left, state.multipliers, ROUGH)
+            more = self.prepared.solve(
+                replace(rows, residual=of_law), left, state.multipliers, self.settings.accuracy.rough
+            )
             du, dp = du + more[0], dp + more[1]
             return du, dp
 
@@ -106,9 +104,6 @@ class Programme:
 
     def unbalanced(self, state: State) -> Vector:
         return self.prepared.system.unbalanced(state)
-
-
-ROUGH = 1e-2  # reduction of residuals asked of iterative solvers
 
 
 def softness(solver: Prepared) -> float:
@@ -142,7 +137,7 @@ def begin(programme: Programme, state: State) -> Interior:
     solve = programme.solver(state, soft)
     du, dp = solve(programme.unbalanced(state), -soft * state.multipliers)
     pressure = state.multipliers + dp
-    size = max(float(np.abs(pressure[free]).mean()), 1e-300)
+    size = max(float(np.abs(pressure[free]).mean()), NOTHING)
     pressure = np.where(free, np.maximum(pressure, 0.0) + size, pressure)
     start = replace(state, unknowns=state.unknowns + du, multipliers=pressure)
     return Interior(start, soft * size, np.zeros(len(soft)), np.zeros(len(soft)))
@@ -150,6 +145,7 @@ def begin(programme: Programme, state: State) -> Interior:
 
 def iterate(programme: Programme, here: Interior) -> Interior:
     """One iteration, theory (V18), (V19), with Gondzio's correctors."""
+    settings = programme.settings.interior
     free, scale, p, g = ~programme.tied, programme.scale, here.state.multipliers, here.slack
     inverse = np.where(free, 1.0 / np.where(free, p, 1.0), 0.0)
     solve = programme.solver(here.state, g * inverse)
@@ -166,21 +162,23 @@ def iterate(programme: Programme, here: Interior) -> Interior:
     _, closing, opening = direction(np.zeros_like(p))
     length = length_of(closing, opening)
     foreseen = programme.mean(p + length * closing, g + length * opening)
-    centring = (max(foreseen, 0.0) / max(mean, 1e-300)) ** 3
+    centring = (max(foreseen, 0.0) / max(mean, NOTHING)) ** 3
     product = centring * mean * scale - closing * opening
     du, dp, dg = direction(product)
-    for _ in range(CORRECTORS if programme.prepared.exact else 0):
+    for _ in range(2 if programme.prepared.exact else 0):
         length = length_of(dp, dg)
-        aim = min(1.0, length + FARTHER)
+        aim = min(1.0, length + settings.farther)
         reached, wanted = (p + aim * dp) * (g + aim * dg), centring * mean * scale
-        change = np.maximum(np.clip(reached, OUTLIER * wanted, wanted / OUTLIER) - reached, -wanted / OUTLIER)
+        change = np.maximum(
+            np.clip(reached, settings.worth * wanted, wanted / settings.worth) - reached, -wanted / settings.worth
+        )
         following = product + np.where(free, change, 0.0)
         corrected = direction(following)
-        if length_of(*corrected[1:]) < length + WORTH * FARTHER:
+        if length_of(*corrected[1:]) < length + settings.worth * settings.farther:
             break
         product, (du, dp, dg) = following, corrected
-    length = min(1.0, BOUNDARY * _longest(p, dp, free), BOUNDARY * _longest(g, dg, free))
-    shorter = length * SHORTER ** np.arange(TRIES)
+    length = min(1.0, settings.boundary * _longest(p, dp, free), settings.boundary * _longest(g, dg, free))
+    shorter = length * settings.shorter ** np.arange(4 * programme.settings.newton.patience)
     length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)
     state = replace(
         here.state, unknowns=here.state.unknowns + length * du, multipliers=here.state.multipliers + length * dp

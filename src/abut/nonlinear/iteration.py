@@ -10,24 +10,24 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Complementarity, Tied
 from abut.linear.solver import Prepared
+from abut.nonlinear.settings import DEFAULT, NOTHING, Settings
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
 from abut.solution import Iteration
 from abut.solution.state import Largest, State
 
-FLAT = 1e-9  # pressure over the largest, or scaled penetration likewise, that does not change the active set
-NO_PRESSURE = 1e-300
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Increment:
-    """A load step: its number, and the largest force and pressure of the steps before, against which rounding is judged
-    where the loads are taken off again."""
+    """A load step: its number, the largest force and pressure of the steps before, against which rounding is judged
+    where the loads are taken off again, and the thresholds that it is solved with."""
 
     number: int
     largest: Largest = field(default_factory=Largest)
+    settings: Settings = DEFAULT
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def next_active(
     closed = state.closed
     push = -system.gap(state) / system.scale  # penetration as a pressure
     reference = np.abs(state.multipliers[~tied]).max(initial=increment.largest.pressure)
-    small = FLAT * max(reference, 1e-300)
+    small = increment.settings.newton.balanced * max(reference, NOTHING)
     tension = np.where(closed & ~tied, -state.multipliers, 0.0)
     penetration = np.where(~closed, push, 0.0)
     wanted = np.where(closed, tension <= small, penetration > small) | tied
@@ -138,20 +138,20 @@ def largest_force(system: Linearised, state: State, internal: Vector, increment:
     as round a press fit."""
     push = system.weight * state.multipliers
     if system.about is not None:
-        return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, 1e-300)
+        return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, NOTHING)
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
-    return max(*largest, increment.largest.force, 1e-300)
+    return max(*largest, increment.largest.force, NOTHING)
 
 
 def _relative(violation: Vector, largest: float) -> float:
     """Largest violation over the largest pressure; 1 while there is no pressure."""
     worst = float(violation.max(initial=0.0))
-    return worst / largest if largest > NO_PRESSURE else float(worst > 0.0)
+    return worst / largest if largest > NOTHING else float(worst > 0.0)
 
 
 def largest_pressure(state: State, increment: Increment) -> float:
     """Largest pressure, now or in a step before."""
-    return max(np.abs(state.multipliers).max(initial=0.0), increment.largest.pressure, NO_PRESSURE)
+    return max(np.abs(state.multipliers).max(initial=0.0), increment.largest.pressure, NOTHING)
 
 
 def largest_so_far(system: Linearised, state: State, increment: Increment) -> Largest:

@@ -20,12 +20,6 @@ from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.solution.state import State
 
-MOST = 25  # iterations in a step, above which it is halved
-AGAIN = (
-    1  # cuts in a row up to which a step begins by extrapolation; none where contact alone holds a body: that throws it
-)
-CAREFUL = 2  # cuts in a row from which on a line search shortens iterations
-
 
 class LargeSteps:
     """As ``Stepper``, at large displacements: where a linear solver fails another one takes that step."""
@@ -33,7 +27,7 @@ class LargeSteps:
     def __init__(self, problem: FiniteProblem, solver: LinearSolver, control: Control) -> None:
         self._problem, self._solver, self._control = problem, solver, control
         self._stands_in: LinearSolver | None = None
-        self._limit = min(MOST, control.limit) if problem.pairs else control.limit
+        self._limit = min(control.settings.steps.most, control.limit) if problem.pairs else control.limit
         control.prepared(f"{solver.name}, new in every {'iteration' if solver.count is None else 'step'}")
 
     def prepare(self) -> None:
@@ -44,9 +38,16 @@ class LargeSteps:
         assert pace.end is not None
         before, time = begin.before, pace.end
         setting = Setting(
-            self._problem, self._stands_in or self._solver, begin.number, self._limit, self._control.observe
+            self._problem,
+            self._stands_in or self._solver,
+            begin.number,
+            self._limit,
+            self._control.observe,
+            self._control.settings,
         )
-        attempts = _attempts(setting, before, self._guess(begin, pace), time, careful=begin.cuts >= CAREFUL)
+        attempts = _attempts(
+            setting, before, self._guess(begin, pace), time, careful=begin.cuts >= self._control.settings.steps.careful
+        )
         return _led(setting, before, pace, attempts[-1]) if not attempts[-1].converged and pace.last else attempts
 
     def replace(self, solver: LinearSolver) -> None:
@@ -60,14 +61,10 @@ class LargeSteps:
     def _guess(self, begin: Begin, pace: Pace) -> State | None:
         """By extrapolation, where that tells something; without contact the tangent at the last state tells more."""
         problem, before, earlier = self._problem, begin.before, begin.earlier
-        tried = begin.cuts > (AGAIN if problem.restraint.by_supports else 0)
+        tried = begin.cuts >= (self._control.settings.steps.careful if problem.restraint.by_supports else 1)
         if tried or pace.turned or earlier is None or is_dragged(before) or not problem.pairs:
             return None
-        return (
-            None
-            if let_go(problem, earlier, before)
-            else extrapolated(problem, earlier, before, pace.end or before.time)
-        )
+        return extrapolated(problem, earlier, before, pace.end or before.time)
 
 
 def _attempts(setting: Setting, before: State, guess: State | None, time: float, careful: bool) -> Sequence[Attempt]:
@@ -89,12 +86,6 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     law = gives_way(setting.problem, failed.reason)
     told = (failed.reason, law, where, away, more, led.attempts[-1].reason)
     return [replace(failed, reason="; ".join(filter(None, told)))]
-
-
-def let_go(problem: FiniteProblem, earlier: State, before: State) -> bool:
-    """Whether a contact has ended between two states: bodies that have sprung back do not go on as they came."""
-    parts = zip(problem.pairs, problem.split(earlier.closed), problem.split(before.closed))
-    return any(was[pair.normal].any() and not now[pair.normal].any() for pair, was, now in parts if not pair.two_way)
 
 
 def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:

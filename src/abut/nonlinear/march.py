@@ -9,6 +9,7 @@ from typing import Protocol
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
+from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.step_error import Onset, landed_in
 from abut.solution import Iteration
 from abut.solution.state import State
@@ -19,7 +20,7 @@ class Control:
     """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
     prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
     fails; halves: called with an attempt that failed and the end of the next one; onset: of slip between two states;
-    refines: called with a step that jumps over it and the end of the next one."""
+    refines: called with a step that jumps over it and the end of the next one; settings: thresholds."""
 
     limit: int
     observe: Callable[[Iteration], None]
@@ -30,6 +31,7 @@ class Control:
     halves: Callable[[Attempt, float], None]
     onset: Callable[[State, State], Onset]
     refines: Callable[[Attempt, float], None]
+    settings: Settings = DEFAULT
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,6 @@ from abut.problem.problem import Problem
 from abut.solution import Iteration
 from abut.solution.state import State
 
-BALANCED = 1e-9  # of nonlinear equilibrium, over the largest force
-STALLED = 1e-7  # the same that may be left where it no longer falls
-
 
 @dataclass(frozen=True)
 class Task:
@@ -46,7 +43,7 @@ def newton(
     A constant problem is linearised once: what remains is the search for the contact status. Any other one is linearised
     anew at each state that this search finds, until its forces are in balance there. earlier, aim, settle: as for
     ``abut.nonlinear.active_set.solve_step``."""
-    problem, solver = task.problem, task.solver
+    problem, solver, settings = task.problem, task.solver, task.increment.settings.newton
     system = problem.linearise(task.before, guess)
     prepared = solver.prepare(system, previous)
     found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
@@ -54,7 +51,7 @@ def newton(
     while found.converged and not problem.constant:
         system = problem.linearise(task.before, found.state)
         before, error = error, _unbalanced(system, found.state, task.increment)
-        if error <= BALANCED or (error <= STALLED and error > 0.5 * before):
+        if error <= settings.balanced or (error <= settings.stalled and error > 0.5 * before):
             near = True
             break
         left = task.limit - len(found.iterations) + len(earlier)

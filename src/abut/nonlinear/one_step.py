@@ -12,6 +12,7 @@ from abut.nonlinear.drag import Drag
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
 from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import without_drag
@@ -28,6 +29,7 @@ class Setting:
     number: int
     limit: int
     observe: Callable[[Iteration], None]
+    settings: Settings = DEFAULT
 
     def attempted(
         self, before: State, guess: State | None, time: float, careful: bool = False, drag: Drag | None = None
@@ -40,7 +42,7 @@ class Setting:
         begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
         if guess is not None:
             begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
-        increment = Increment(self.number, before.largest)
+        increment = Increment(self.number, before.largest, self.settings)
         step = Step(problem, begin, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
         return _ended(*_settled(step, solve_finite(step, guess, time), time), time)
 

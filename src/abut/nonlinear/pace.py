@@ -9,18 +9,9 @@ from dataclasses import dataclass
 from abut.model.conditions import History
 from abut.model.step_ends import SAME as NEAR
 from abut.model.step_ends import apart, named_times
+from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.step_error import Onset
 
-FIRST = 0.1  # of the way to the next goal
-EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
-HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
-LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
-LEAST = 0.5  # by how much at most
-POINTS, BENT = 8, 0.01  # load steps over which contact begins to slip, and tractions that may turn in one, theory (R21)
-FINER, COARSER, SAFE = 0.125, 2.0, 0.8  # by how much the next one is shorter or longer at most, and what it aims at
-REFINED = 0.5  # what a step is to be shorter by, at least, to be taken again
-SMALLEST, LAST = 1.0 / 4096.0, 1.0 / 64.0  # of the way to the next goal; the same of steps that a user has given
-SAME = 1e-12  # times that differ by less are the same
 NO_ONSET = Onset()
 
 
@@ -36,25 +27,26 @@ class Pace:
     """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
     goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
     ahead is new; given: the goals are the load steps, however many iterations they take, and what ends between is a part
-    of one; smallest: share of the way to the next goal below which a step is too short; slips: steps are as short as
-    the onset of slip asks for."""
+    of one, at least this share of the way; slips: steps are as short as the onset of slip asks for; settings: thresholds."""
 
     def __init__(
-        self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
-        kinks: Sequence[float] = (), given: bool = False, smallest: float = SMALLEST, slips: Slips | None = None,
+        self, goals: Sequence[float], longest: float = 1.0, first: float | None = None, legs: Sequence[float] = (),
+        kinks: Sequence[float] = (), given: float | None = None, slips: Slips | None = None, settings: Settings = DEFAULT,
     ) -> None:  # fmt: skip
-        self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
-        self._given, self._smallest, self._follows = given, smallest, slips is not None
-        self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
+        self._goals, self._longest, self._kinks, self._given = goals, longest, kinks, given is not None
+        self._smallest = settings.steps.smallest if given is None else given
+        self._settings, self._same, self._follows = settings.steps, settings.newton.rounding, slips is not None
+        self._share = self._settings.first if first is None else first
+        self._legs = [*(leg for leg in legs if leg < goals[-1] - self._same), goals[-1]]
         self.time = 0.0
         self._length = self._fresh()  # as iterations tell
         self._fits = slips is not None and slips.fits
-        self._curve = SMALLEST * self._leg if self._fits else math.inf  # as the onset of slip asks for
+        self._curve = self._settings.smallest * self._leg if self._fits else math.inf  # as the onset of slip asks for
 
     @property
     def goal(self) -> float | None:
         """The next one; None at the end."""
-        return next((goal for goal in self._goals if goal > self.time + SAME), None)
+        return next((goal for goal in self._goals if goal > self.time + self._same), None)
 
     @property
     def end(self) -> float | None:
@@ -63,7 +55,7 @@ class Pace:
         if goal is None:
             return None
         left, length = goal - self.time, min(self._length, self._curve)
-        if left <= length * (1.0 + SAME):
+        if left <= length * (1.0 + self._same):
             return goal
         return self.time + min(length, 0.5 * left if left < 2.0 * length else left)
 
@@ -99,10 +91,11 @@ class Pace:
 
     def refine(self, onset: Onset) -> bool:
         """Whether the step to ``end``, which has converged, jumps over the onset of slip: a shorter one goes before it."""
-        end, factor = self.end, _next(onset)
+        end, factor = self.end, self._next(onset)
         assert end is not None
-        length = max(FINER, SAFE * factor) * (end - self.time)
-        if not self._follows or factor >= REFINED or length < SMALLEST * self._leg:
+        steps = self._settings
+        length = max(1.0 / steps.points, steps.aim * factor) * (end - self.time)
+        if not self._follows or factor >= 0.5 or length < steps.smallest * self._leg:
             return False
         self._curve = length
         return True
@@ -114,16 +107,18 @@ class Pace:
         assert end is not None
         first, taken, limited = self._fits and self.time == 0.0, end - self.time, self._curve < self._length
         self.time = end
-        if any(abs(end - leg) < SAME for leg in self._legs):
+        if any(abs(end - leg) < self._same for leg in self._legs):
             self._length, self._curve = self._fresh(), math.inf
             return
         if self._follows:
             free = first or onset.sticks <= 0.0
-            self._curve = math.inf if free else min(COARSER, SAFE * _next(onset)) * taken
-        factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
+            self._curve = math.inf if free else min(2.0, self._settings.aim * self._next(onset)) * taken
+        steps = self._settings
+        hard = iterations > 2 * steps.easy
+        factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
         factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
-            factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
+            factor = min(factor, max(0.5, math.sqrt(steps.landed / landed)))
         if not limited or (factor < 1.0 and not first):
             self._length = min(factor * (taken if limited else self._length), self._longest)
 
@@ -134,47 +129,50 @@ class Pace:
         length = self._length
         for share in strides:
             self.stride(share)
-            if self.end is not None and abs(self.end - time) < SAME:
+            if self.end is not None and abs(self.end - time) < self._same:
                 break
             self._length = length
-        while self.end is not None and self.end > time + SAME and not self.stuck:
+        while self.end is not None and self.end > time + self._same and not self.stuck:
             self.halve()
-        if self._follows and self.end is not None and abs(self.end - time) > SAME:
+        if self._follows and self.end is not None and abs(self.end - time) > self._same:
             self._length, self._curve = length, time - self.time
         self.take(iterations, landed, onset, at=time)
 
+    def _next(self, onset: Onset) -> float:
+        """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
+        fresh, turned = onset.shares
+        if fresh <= 0.0 or turned <= 0.0:
+            return math.inf
+        return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.bent / turned))
+
     @property
     def _leg(self) -> float:
-        begin = max((leg for leg in self._legs[:-1] if leg <= self.time + SAME), default=0.0)
-        return next(leg for leg in self._legs if leg > begin + SAME) - begin
+        begin = max((leg for leg in self._legs[:-1] if leg <= self.time + self._same), default=0.0)
+        return next(leg for leg in self._legs if leg > begin + self._same) - begin
 
     def _fresh(self) -> float:
         return min(self._share * self._leg, self._longest)
 
 
-def given_pace(ends: Sequence[float], parts: bool = True, slips: Slips | None = None) -> Pace:
-    """Load steps that end at given times; parts: those that fail are taken in parts, down to a sixty-fourth; slips: there
-    are further ones where contact begins to slip."""
-    return Pace(ends, first=1.0, legs=ends[:-1], given=True, smallest=LAST if parts else 1.0, slips=slips)
+def given_pace(
+    ends: Sequence[float], parts: bool = True, slips: Slips | None = None, settings: Settings = DEFAULT
+) -> Pace:
+    """Load steps that end at given times; parts: those that fail are taken in parts, down to the root of the smallest share
+    (a sixty-fourth); slips: there are further ones where contact begins to slip."""
+    smallest = settings.steps.smallest**0.5 if parts else 1.0
+    return Pace(ends, first=1.0, legs=ends[:-1], given=smallest, slips=slips, settings=settings)
 
 
 def pace_of(
-    steps: int | str, times: Sequence[float] | None, histories: Sequence[History], slips: Slips | None = None
-) -> Pace:
+    steps: int | str, times: Sequence[float] | None, histories: Sequence[History], slips: Slips | None = None,
+    settings: Settings = DEFAULT,
+) -> Pace:  # fmt: skip
     """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this, and to
     contacts that may slip; times are met, each in one step if it can be."""
     named, turns = named_times(histories)
     if times:
         goals = sorted([*times, *apart([time for time in named if time < times[-1]], times)])
-        return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
+        return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns, settings=settings)
     if isinstance(steps, str):
-        return Pace([*named, 1.0], legs=turns, kinks=turns, slips=slips)
-    return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns)
-
-
-def _next(onset: Onset) -> float:
-    """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
-    fresh, turned = onset.shares
-    if fresh <= 0.0 or turned <= 0.0:
-        return math.inf
-    return max(1.0 / (POINTS * fresh), math.sqrt(BENT / turned))
+        return Pace([*named, 1.0], legs=turns, kinks=turns, slips=slips, settings=settings)
+    return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns, settings=settings)

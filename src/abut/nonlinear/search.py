@@ -11,18 +11,12 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.exact import STRIDE, Aim, Solved, finer, settled, solve_set
+from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.interior_point import Programme, begin, iterate, softness
 from abut.nonlinear.iteration import Found, Increment, active_laws, largest_pressure, report
 from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
 from abut.solution.state import State
-
-SOLUTIONS, HALVED = 3, 0.5  # exact ones at a time, while ever fewer multipliers change; more while these halve
-SHARE = 0.02  # of the multipliers that may be undecided, or change, for exact solutions to be worth a try
-FLOOR = 1e-13  # of the mean product of gaps and pressures over the largest pressure squared
-VIOLATION_LEFT = 1e-6  # violation of the law over the largest pressure that is left to rounding at the floor
-PATIENCE = 3  # iterations without progress that count as the floor
 
 
 @dataclass
@@ -50,8 +44,8 @@ def search(
     solver: Prepared, state: State, increment: Increment, limit: int, log: Log, tied: NDArray[np.bool_], aim: Aim
 ) -> Found:
     """The state at the end of a load step. limit: of iterations of the constraint function, which come last."""
-    system = solver.system
-    few = max(int(SHARE * (~tied).sum()), 1)
+    system, settings = solver.system, increment.settings
+    few = max(int(settings.status.few * (~tied).sum()), 1)
 
     def finish(solved: Solved) -> Found:
         if aim == "set":
@@ -59,7 +53,7 @@ def search(
         return finish_smooth(solver, solved.state, increment, limit, log.done, log.observe)
 
     clock = time.perf_counter()
-    programme = Programme(solver, system.scale, tied, softness(solver))
+    programme = Programme(solver, system.scale, tied, softness(solver), settings)
     if system.compliance is None:  # it took a solution
         log.add(_row(programme, state, increment, log.next, 0, clock))
     if log.full:
@@ -80,17 +74,21 @@ def search(
         missed = programme.missed(here)
         idle = 0 if mean < best[0] or missed < best[1] else idle + 1
         best = min(mean, best[0]), min(missed, best[1])
-        floor = idle >= PATIENCE or mean < FLOOR * largest_pressure(here.state, increment) ** 2
-        if not floor and (int(here.undecided.sum()) > few or changed > max(few, 2)):
+        floor = (
+            idle >= settings.newton.patience
+            or mean < settings.interior.floor * largest_pressure(here.state, increment) ** 2
+        )
+        if not floor and (int(programme.undecided(here).sum()) > few or changed > max(few, 2)):
             continue
         solved = polish(solver, here.state.with_closed(active), increment, log, tied, aim)
         if solved is not None and not solved.changed.any():
             return finish(solved)
         if floor:
             break
-    if solved is not None and solved.violation.max() <= VIOLATION_LEFT * largest_pressure(solved.state, increment):
+    left = settings.newton.stalled * largest_pressure(here.state, increment)
+    if solved is not None and solved.violation.max() <= left:
         return finish(solved)
-    return Found(here.state.with_closed(active), tuple(log.done), False, here.undecided, active_laws)
+    return Found(here.state.with_closed(active), tuple(log.done), False, programme.undecided(here), active_laws)
 
 
 def polish(
@@ -98,7 +96,9 @@ def polish(
 ) -> Solved | None:
     """Exact solutions, beginning with the active set of ``state``, while ever fewer multipliers change: the last of them,
     and the answer where its set stands still. None where none was possible."""
-    solved, fewest, accuracy, count, error = None, len(tied) + 1, STRIDE, 0, np.inf
+    settings = increment.settings
+    stride, tries = settings.accuracy.stride, settings.newton.patience
+    solved, fewest, accuracy, count, error = None, len(tied) + 1, stride, 0, np.inf
     while not log.full:
         try:
             following = solve_set(solver, state, increment, tied, log.next, accuracy)
@@ -107,15 +107,15 @@ def polish(
         log.add(following.row)
         solved = following
         changed = int(solved.changed.sum())
-        if changed == 0 and settled(solver, solved, aim, error):
+        if changed == 0 and settled(solver, solved, settings, aim, error):
             return solved
         if changed == 0:
-            state, accuracy, error = solved.state, finer(solver, solved, aim), solved.error
+            state, accuracy, error = solved.state, finer(solver, solved, settings, aim), solved.error
             continue
-        if changed >= fewest or (count + 1 >= SOLUTIONS and changed > HALVED * fewest):
+        if changed >= fewest or (count + 1 >= tries and changed > 0.5 * fewest):
             return solved
         fewest, count, error = changed, count + 1, np.inf
-        state, accuracy = solved.state.with_closed(solved.wanted), STRIDE
+        state, accuracy = solved.state.with_closed(solved.wanted), stride
     return solved
 
 

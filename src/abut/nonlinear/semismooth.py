@@ -15,13 +15,14 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
-from abut.nonlinear.forcing import FINE, forcing
+from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_newton import friction_laws
-from abut.nonlinear.holding import flies_off, not_adrift, resisting, sticking, thrown_apart
+from abut.nonlinear.holding import resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
+from abut.nonlinear.line_search import shortened
 from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
+from abut.nonlinear.settings import NOTHING, Settings
 from abut.nonlinear.smallest import smallest, yielding
-from abut.nonlinear.smooth_laws import NO_PRESSURE
 from abut.nonlinear.unsettled import circling, most_at
 from abut.problem.finite import FiniteProblem
 from abut.problem.laws import LawRows
@@ -29,11 +30,6 @@ from abut.problem.linearised import Linearised
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, Largest, State
 
-BALANCED = 1e-9  # of equilibrium over the largest force, and of the laws over the largest pressure
-STALLED = 1e-7  # the same that may be left where it no longer falls
-FAINT = 1e-5  # pressure over Young's modulus that counts as small
-HALVINGS, LESS = 6, 0.1  # of a step in the line search, and by how much of its share it should shrink what is left
-SETTLED = 15  # linear solutions of one iteration for its status
 Vector = NDArray[np.float64]
 
 
@@ -85,10 +81,17 @@ class Step:
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
 
+    @property
+    def settings(self) -> Settings:
+        """Thresholds."""
+        return self.increment.settings
+
     def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
         """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
         self.prepared = self.solver.prepare(system, self.prepared)
-        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
+        return smallest(
+            system, advance(self.prepared, state, yielding(system, laws, self.settings.newton.soft), accuracy)
+        )
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
@@ -109,7 +112,7 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
             break
     if found.converged and any(isinstance(pair.contact.law, str) for pair in pairs):
         reference = largest_pressure(found.state, step.increment)
-        if reference > NO_PRESSURE * max(pair.stiffness * pair.size for pair in pairs):
+        if reference > step.settings.newton.rounding * max(pair.stiffness * pair.size for pair in pairs):
             found = _solved_again(step, Asked(reference=reference), found.state, time)
     return found
 
@@ -131,7 +134,6 @@ def _solved(step: Step, guess: State | None, time: float) -> Found:
             begun, state = clocks.perf_counter(), replace(step.before, time=time)
             _report(step, _judged(step, step.problem.ahead(step.before, time), state), begun)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
-    step.failed = step.failed or thrown_apart(here.system, step.before, here.state)
     changing = here.changed if step.failed else none
     return Found(here.state, tuple(step.done), not step.failed, changing, friction_laws, system=here.own)
 
@@ -146,24 +148,22 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 
 def _newton(step: Step, guess: State | None, time: float) -> Trial:
-    begun, before, errors = clocks.perf_counter(), np.inf, list[float]()
     closings = np.zeros(len(step.before.status), dtype=np.int64)
+    begun, before, errors = clocks.perf_counter(), np.inf, list[float]()
     here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
     if guess is None:
         begun = _report(step, here, begun)
-    if guess is not None or not _balanced(here, before):
-        state = nearest_kept(here.system, step.before, here.state)
+    if guess is not None or not _balanced(step, here, before):
+        state = nearest_kept(here.system, step.before, here.state, 0.1 * step.settings.holding.near)
         here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
-    while guess is not None or not _balanced(here, before):
-        if circling(errors) and not step.careful:
+    while guess is not None or not _balanced(step, here, before):
+        if circling(errors, step.settings) and not step.careful:
             step.careful, errors = True, []
-        if len(step.done) >= step.limit or circling(errors):
+        if len(step.done) >= step.limit or circling(errors, step.settings):
             step.failed = _unsettled(step, here)
             break
-        following, swapped = _following(step, here, closings, forcing(here.error, before, BALANCED))
-        step.failed = flies_off(step.problem, step.before, following)
-        if step.failed:
-            break
+        accuracy = forcing(here.error, before, step.settings)
+        following, swapped = _following(step, here, closings, accuracy)
         step.asked = replace(step.asked, by_pressure=False)
         there = _tried(step, here, following)
         closings += there.state.closed & ~here.state.closed
@@ -200,11 +200,11 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
         return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
 
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
-    other = exchanged(here.system, here.state, there, closings, solved)
+    other = exchanged(here.system, here.state, there, closings, step.settings.newton.again, solved)
     if other is not there:
         return other, True
     seen = {here.state.status.tobytes()}
-    while step.careful and len(seen) < SETTLED:
+    while step.careful and len(seen) < step.settings.newton.solutions:
         wanted = wanted_status(here.system, there, step.increment, step.asked)
         if wanted.tobytes() in seen:
             break
@@ -216,20 +216,21 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
 def _iterated(
     step: Step, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float, begins: bool = False
 ) -> State:
-    """One iteration on, in which no body is thrown out of its contact."""
+    """One iteration on, in which no body that slips all over is thrown out of its contact."""
     if begins and step.drag is None:
-        system = resisting(step.problem, system, state)
+        system = resisting(step.problem, system, state, step.settings)
     there = step.advanced(system, state, laws, accuracy)
-    stuck = sticking(step.problem, system, state, there)
-    if stuck is not state:
-        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
-    return not_adrift(step.problem, system, stuck, there)
+    stuck = sticking(step.problem, system, state, there, step.settings.holding.near)
+    if stuck is state:
+        return there
+    return step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
 
 
-def _balanced(here: Trial, before: float) -> bool:
+def _balanced(step: Step, here: Trial, before: float) -> bool:
     """Whether nothing is left but rounding. before: the error of the iteration before."""
-    idle = here.error > 0.5 * before and here.law <= STALLED and here.force <= max(STALLED, here.rounding)
-    return here.error <= BALANCED or idle
+    left = step.settings.newton
+    idle = here.error > 0.5 * before and here.law <= left.stalled and here.force <= max(left.stalled, here.rounding)
+    return here.error <= left.balanced or idle
 
 
 def _carried(step: Step, time: float) -> State:
@@ -244,7 +245,7 @@ def _carried(step: Step, time: float) -> State:
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
         laws = laws_of(system, state, step.asked)
-        there = _iterated(step, system, state, laws, FINE, begins=True)
+        there = _iterated(step, system, state, laws, step.settings.accuracy.fine, begins=True)
         fewer = without_pulling(system, state, there, step.increment)
         if fewer is None:
             return there
@@ -266,7 +267,7 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
     changed = state.status != before
     so_far = largest_of(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
-    forces, pressures = max(so_far.force, 1e-300), max(so_far.pressure, FAINT * modulus)
+    forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, step.settings.newton.faint * modulus)
     left = system.unbalanced(state) / forces
     law = left_open(system, laws, step.asked) / pressures
     return Trial(
@@ -293,13 +294,12 @@ def largest_of(system: Linearised, state: State, increment: Increment) -> Larges
 
 
 def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
-    """The whole step, or the part of it that halving finds to be better."""
-    share, best = 1.0, full
-    for _ in range(HALVINGS):
-        if best.size <= (1.0 - LESS * share) * here.size:
-            return best
-        share *= 0.5
-        best = _tried(step, here, part_of(here.state, full.state, share))
+    """The whole step, or the part of it that a line search finds to be better."""
+
+    def part(share: float) -> Trial:
+        return _tried(step, here, part_of(here.state, full.state, share))
+
+    best, _ = shortened(full, part, lambda trial: trial.size, here.size, step.increment.settings)
     return best if np.isfinite(best.size) else full
 
 

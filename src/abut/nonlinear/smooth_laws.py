@@ -14,6 +14,7 @@ from abut.contact.laws import TENSION_START, Complementarity, ConstraintFunction
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
+from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_newton import coulomb, friction_laws, next_status
 from abut.nonlinear.iteration import (
     Found,
@@ -26,19 +27,14 @@ from abut.nonlinear.iteration import (
     part_of,
     report,
 )
+from abut.nonlinear.line_search import shortened
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, State
 
-UNSETTLED = 0.1  # share of the largest violation from which on a multiplier is named where Newton fails
-NO_PRESSURE = 1e-12  # over Young's modulus: a contact that presses less does not press at all
-TOLERANCE = 1e-8  # of the relative residuals
 SOFTEST, HARDEST = 1.0, 0.0  # share of the largest pressure over which the function is smoothed, beside its own epsilon
-HARDEN, MET = 0.3, 0.01  # by how much it hardens once it is violated by less than that
-HALVINGS, TRIES = 8, 5  # of a step, and steps that do not shrink the residual even so
-ROUGH = 1e-2  # reduction of residuals asked of iterative linear solvers far from the solution
 
 
 def finish_smooth(
@@ -58,7 +54,7 @@ def finish_smooth(
     if not any(pair.smooth for pair in system.pairs):
         return exact
     reference = largest_pressure(state, increment)
-    if reference <= NO_PRESSURE * max(pair.stiffness * pair.size for pair in system.pairs):
+    if reference <= increment.settings.newton.rounding * max(pair.stiffness * pair.size for pair in system.pairs):
         # The function is smoothed over a share of the largest pressure: without one it is the complementarity law.
         return exact
     smooth = Smooth(solver, increment, reference)
@@ -98,7 +94,8 @@ def _newton(
 ) -> Found:
     """Newton with a line search, on laws that begin as soft as told and harden as they are met; gives up where the line
     search does. ``done`` grows."""
-    solver, increment = smooth.solver, smooth.increment
+    solver, increment, settings = smooth.solver, smooth.increment, smooth.increment.settings
+    tolerance = max(settings.newton.balanced, solver.accurate)
     system = solver.system
     tied, sharp, rubs = (
         system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
@@ -113,9 +110,9 @@ def _newton(
         law_error = float(violation.max(initial=0.0))
         error = max(law_error, _unbalanced(system, state, increment))
         try:
-            following = advance(solver, state, near, _accuracy(error, before))
+            following = advance(solver, state, near, forcing(error, before, settings))
         except SingularModelError:
-            if softness == HARDEST and error < TOLERANCE and not unsettled:
+            if softness == HARDEST and error < tolerance and not unsettled:
                 # A body that nothing presses on, and rounding, which is all that is left, would move it.
                 return Found(state, tuple(done), True, np.zeros(len(state.status), dtype=bool), laws)
             break
@@ -131,13 +128,16 @@ def _newton(
         row = replace(row, contact_residual=law_error)
         done.append(row)
         observe(row)
-        if softness > HARDEST and law_error < MET:
-            softness, before = (softness * HARDEN if softness > 1e-5 else HARDEST), np.inf
-        elif law_error < TOLERANCE and row.residual < 1e-8 and not unsettled:
+        if softness > HARDEST and law_error < settings.interior.met:
+            softness, before = (
+                (softness * settings.interior.fade if softness > settings.accuracy.fine else HARDEST),
+                np.inf,
+            )
+        elif law_error < tolerance and row.residual < tolerance and not unsettled:
             return Found(state, tuple(done), True, np.zeros(len(status), dtype=bool), laws)
-        elif not found and (tries := tries + 1) > TRIES:
+        elif not found and (tries := tries + 1) >= settings.newton.halvings:
             break
-    return Found(state, tuple(done), False, violation > UNSETTLED * violation.max(initial=0.0), smooth.laws(HARDEST))
+    return Found(state, tuple(done), False, violation > 0.1 * violation.max(initial=0.0), smooth.laws(HARDEST))
 
 
 def _wanted(
@@ -147,12 +147,6 @@ def _wanted(
     if any(pair.frictional for pair in system.pairs):
         return next_status(system, state, increment)
     return np.where(next_active(system, state, increment, tied)[0], CLOSED, OPEN)
-
-
-def _accuracy(error: float, before: float) -> float:
-    """The reduction of residuals asked of iterative solvers, so that Newton's method stays quadratic in the end (Eisenstat
-    and Walker 1996) and the last solution reaches ``TOLERANCE``. error, before: of the laws and of equilibrium."""
-    return float(np.clip((error / before) ** 2, 0.3 * TOLERANCE / max(error, TOLERANCE), ROUGH))
 
 
 def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
@@ -183,17 +177,9 @@ def _smooth_laws(system: Linearised, state: State, reference: float, softness: f
 
 
 def _line_search(smooth: Smooth, state: State, full: State, laws: Laws) -> tuple[State, bool]:
-    """Halve the step while the law's residual does not shrink, and whether it did in the end."""
+    """The step shortened until the law's residual shrinks, and whether it does in the end."""
 
     def size(at: State) -> float:
         return float(np.linalg.norm(smooth.violation(laws(smooth.solver.system, at))))
 
-    before = size(state)
-    share = 1.0
-    best = full
-    for _ in range(HALVINGS):
-        if size(best) <= max((1.0 - 0.1 * share) * before, 1e-9):
-            return best, True
-        share *= 0.5
-        best = part_of(state, full, share)
-    return best, False
+    return shortened(full, lambda share: part_of(state, full, share), size, size(state), smooth.increment.settings)

@@ -12,46 +12,35 @@ from abut.nonlinear.holding import loosely_held
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
-from abut.nonlinear.semismooth import BALANCED
+from abut.nonlinear.settings import Settings
 from abut.problem.finite import FiniteProblem
 from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
-FIRST, AGAIN = (
-    1e-3,
-    1e-5,
-)  # drag over the stiffness of each displacement to begin with, and after a step that ended under one
-GREATEST, LEAST = 1e2, 1e-9  # the same at most and at least
-MORE, LESS = 5.0, 10.0  # by which it grows where a part fails, and falls at most where one is easy
-EASY, VERY_EASY = 6, 3  # iterations up to which a part is, after one that failed and before any has
-MOST = 12  # iterations in a part
-PARTS = 60  # of a step, tried
-SLOW = 1e-3  # drag's largest force over the largest of all up to which a part may be the last but one,
-PAST = 1e-2  # and over the largest drag so far: at the outset bodies are slow, too
-GONE = 2.0  # sizes of the model by which bodies that move on are gone
-STRIDES = (1.0 / 64.0, 1.0 / 512.0)  # of the way to the next goal, that are tried
-
 
 @dataclass
 class Strength:
-    """Of a drag from part to part. share: of the stiffness; fall: by which it falls next, 1 after a part that failed and
+    """Of a drag from part to part. share: of the stiffness, at most ``change`` times and
+    at least half of it by ``settings``; fall: by which it falls next, 1 after a part that failed and
     twice as much after each easy one; failed: whether one has."""
 
     share: float
-    fall: float = LESS
+    settings: Settings
+    fall: float
     failed: bool = False
 
     def grow(self) -> bool:
         """After a part that failed; whether it may."""
-        self.share, self.fall, self.failed = self.share * MORE, 1.0, True
-        return self.share <= GREATEST
+        self.share, self.fall, self.failed = self.share * 0.5 * self.settings.drag.change, 1.0, True
+        return self.share <= self.settings.drag.greatest
 
     def ease(self, iterations: int) -> None:
         """After one that took so many."""
-        if iterations <= (EASY if self.failed else VERY_EASY):
-            self.share = max(self.share / self.fall, LEAST)
-            self.fall = min(2.0 * self.fall, LESS)
+        easy = self.settings.steps.easy
+        if iterations <= (easy if self.failed else easy // 2):
+            self.share = max(self.share / self.fall, self.settings.newton.balanced)
+            self.fall = min(2.0 * self.fall, self.settings.drag.change)
 
 
 @dataclass(frozen=True)
@@ -67,10 +56,16 @@ class Led:
         return self.attempts[-1].converged
 
 
+def strides(settings: Settings) -> tuple[float, float]:
+    """Of the way to the next goal, that are tried under a drag."""
+    longest = settings.steps.smallest**0.5
+    return longest, longest / 8.0
+
+
 def led_on(setting: Setting, before: State, pace: Pace) -> Led:
     """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
     length."""
-    for share in STRIDES:
+    for share in strides(setting.settings):
         pace.stride(share)
         assert pace.end is not None
         led = stabilised(setting, before, pace.end)
@@ -82,12 +77,14 @@ def led_on(setting: Setting, before: State, pace: Pace) -> Led:
 def stabilised(setting: Setting, before: State, time: float) -> Led:
     """The step from the converged state ``before`` to ``time`` in parts, each with a drag on the way since the one before:
     backward Euler steps of a motion without inertia."""
-    problem, setting = setting.problem, replace(setting, limit=min(MOST, setting.limit))
+    settings, asked = setting.settings, setting.settings.drag
+    problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
     size, most = scale(problem.linearise(before, before)), 0.0
-    strength = Strength(AGAIN if drag_of(before).any() else FIRST)
+    begin = asked.first if not drag_of(before).any() else asked.first * asked.slow
+    strength = Strength(begin, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
-    for _ in range(PARTS):
+    for _ in range(asked.parts):
         drag = Drag(strength.share * size, here.unknowns)
         part = setting.attempted(here, here if parts else None, time, drag=drag)
         spent += part.iterations
@@ -100,16 +97,19 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
         here = with_drag(part.state, force)
         parts.append(replace(part, state=here, iterations=spent, whole=False))
         spent = ()
-        if is_gone(problem, before, here):
+        if is_gone(problem, before, here, settings.holding.gone):
             why = "bodies move on and on: the loads are more than what they act on can carry"
             break
         left = float(np.abs(force).max(initial=0.0)) / here.largest.force
         most = max(most, left)
         assert part.balance is not None
-        loose = loosely_held(problem, part.balance, here)
-        if loose and left <= BALANCED:
+        loose = loosely_held(problem, part.balance, here, settings.holding.weak)
+        if loose and left <= settings.newton.balanced:
             return Led((*parts[:-1], replace(parts[-1], whole=True)))
-        if not loose and left < SLOW and (left < PAST * most or strength.share <= LEAST):
+        least = strength.share <= settings.newton.balanced
+        if (
+            not loose and left < asked.slow and (left < 10.0 * asked.slow * most or least)
+        ):  # at the outset bodies are slow, too
             last = setting.attempted(here, here, time)
             spent += last.iterations
             if last.converged:
@@ -120,7 +120,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
 
 
-def is_gone(problem: FiniteProblem, before: State, here: State) -> bool:
+def is_gone(problem: FiniteProblem, before: State, here: State, sizes: float) -> bool:
     """Whether something has moved beyond all that loads of a model may mean."""
     way = problem.displacement(here) - problem.displacement(before)
-    return bool(np.abs(way).max() > GONE * np.ptp(problem.model.mesh.points, axis=0).max())
+    return bool(np.abs(way).max() > sizes * np.ptp(problem.model.mesh.points, axis=0).max())

@@ -34,7 +34,7 @@ class SmallSteps:
         assert self._ready is not None
         assert pace.end is not None
         condensed, prepared = self._ready
-        increment = Increment(begin.number, begin.before.largest)
+        increment = Increment(begin.number, begin.before.largest, self._control.settings)
         task = Task(condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe)
         return [load_step(task, pace.end, prepared)]
 

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 
 from abut.materials.elastic import LinearElastic
 from abut.nonlinear.hanging import cured, place
+from abut.nonlinear.settings import Settings
 from abut.problem.finite import FiniteProblem
 
-PERIODS = (2, 3)  # iterations after which they may come back to where they were
-SAME = 0.01  # by which what they leave open differs, over itself
 Vector = NDArray[np.float64]
 
 
-def circling(errors: Sequence[float]) -> bool:
-    """Whether iterations come back to where they were two or three before, which has shown once all around."""
-    for period in PERIODS:
+def circling(errors: Sequence[float], settings: Settings) -> bool:
+    """Whether iterations come back to where they were two or three before, which has shown once all around.
+    Without it ``test_a_flattened_tube_touches_itself_inside`` (hex8) fails."""
+    for period in range(2, settings.newton.patience + 1):
         before, last = np.array(errors[-2 * period : -period]), np.array(errors[-period:])
-        if len(before) == period and (np.abs(last - before) <= SAME * before).all():
+        if len(before) == period and (np.abs(last - before) <= settings.interior.met * before).all():
             return True
     return False
 

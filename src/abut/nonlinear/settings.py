@@ -1,0 +1,164 @@
+"""Every threshold of the nonlinear solution, once: frozen records that ``abut.solve`` takes as ``settings``.
+
+Each has a unit, a meaning, and a test that goes through it (``fields`` of ``dataclasses``, ``metadata``). Tests pass
+others; nothing is patched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+NOTHING = 1e-300  # what divides where there is nothing: no threshold
+
+
+def _of(default: float, unit: str, meaning: str, model: str) -> Any:
+    return field(default=default, metadata={"unit": unit, "meaning": meaning, "model": model})
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """When iterations end, and how far they go."""
+
+    balanced: float = _of(
+        1e-9, "of the largest force or pressure", "what forces and laws may leave; no status changes by less",
+        "test_finite_newton.py",
+    )  # fmt: skip
+    stalled: float = _of(
+        1e-7, "of the largest force or pressure", "the same where it no longer falls: rounding",
+        "test_coming_off.py::test_a_stiff_body_comes_from_afar_to_a_soft_one",
+    )  # fmt: skip
+    rounding: float = _of(
+        1e-12, "of Young's modulus, of the largest stiffness, of the time of a run", "what is nothing but rounding",
+        "test_rolling.py",
+    )  # fmt: skip
+    faint: float = _of(
+        1e-5, "of Young's modulus", "least pressure that laws are judged by", "test_coming_off.py",
+    )  # fmt: skip
+    halvings: int = _of(6, "halvings", "of a step by a line search", "test_stabilised.py::test_an_arch_snaps_through")
+    decrease: float = _of(
+        0.1, "of the share of a step", "by how much what is left is to shrink with it",
+        "test_stabilised.py::test_an_arch_snaps_through",
+    )  # fmt: skip
+    patience: int = _of(3, "iterations", "without progress, or of a short try", "test_search.py")
+    solutions: int = _of(
+        15, "linear solutions", "of one try for a status", "test_friction_assemblies.py",
+    )  # fmt: skip
+    bent: float = _of(
+        0.2, "facets", "gap up to which a point that presses stays closed for an iteration", "test_opening.py",
+    )  # fmt: skip
+    soft: float = _of(
+        1e-6, "of h / E", "how far repeated gaps yield in an iteration", "test_deck_large.py::test_level_faces",
+    )  # fmt: skip
+    again: int = _of(
+        2, "closings in a step", "after which a point may take the place of another", "test_exchange.py",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class AccuracySettings:
+    """How well linear systems are solved where that is done iteratively."""
+
+    rough: float = _of(1e-2, "of the residual", "left at most", "test_forcing.py")
+    fine: float = _of(1e-5, "of the residual", "below which it need not fall in one solution", "test_forcing.py")
+    share: float = _of(0.5, "of the last reduction squared", "left next (Eisenstat, Walker 1996)", "test_forcing.py")
+    spare: float = _of(0.3, "of what may be left", "aimed at in the last solution", "test_forcing.py")
+    stride: float = _of(1e-4, "of the residual", "at most in one solve while a set may change", "test_multigrid.py")
+    told: float = _of(0.2, "of forces and pressures", "left in a state that tells the next set", "test_multigrid.py")
+
+
+@dataclass(frozen=True)
+class StepSettings:
+    """Load steps that the program finds."""
+
+    first: float = _of(0.1, "of the way to the next goal", "the first step", "test_pace.py")
+    easy: int = _of(6, "iterations", "up to which the next step is longer; shorter above twice as many", "test_pace.py")
+    growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
+    shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
+    landed: float = _of(0.01, "of friction", "at points that touch and stick in one step", "test_step_error.py")
+    points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
+    bent: float = _of(0.01, "of tractions", "turns in a step while contact begins to slip", "test_onset_of_slip.py")
+    aim: float = _of(0.8, "of the longest step", "that the onset of slip allows", "test_onset_of_slip.py")
+    smallest: float = _of(
+        1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
+    )  # fmt: skip
+    most: int = _of(25, "iterations", "in a step, above which it is halved", "test_large_sliding.py")
+    careful: int = _of(
+        2, "cuts in a row", "from which on a line search shortens iterations", "test_stabilised.py",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class HoldingSettings:
+    """Bodies that contact alone holds."""
+
+    near: float = _of(
+        0.1, "facets", "an iteration may move bodies along motions that nothing resists",
+        "test_corners.py::test_pin_that_falls",
+    )  # fmt: skip
+    weak: float = _of(
+        1e-3, "of the strongest resistance", "to a rigid motion, below which a body is hardly held",
+        "test_stabilised.py::test_a_ball_on_one_node_rolls_half_as_far_as_its_plate",
+    )  # fmt: skip
+    gone: float = _of(
+        2.0, "sizes of the model", "beyond which a body has flown off",
+        "test_stabilised.py::test_bodies_that_are_gone",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class DragSettings:
+    """A drag that leads a step, theory (G23). Relative forces are over the largest of the step."""
+
+    first: float = _of(1e-3, "of the stiffness", "drag to begin with", "test_stabilised.py")
+    greatest: float = _of(1e2, "of the stiffness", "drag at most", "test_stabilised.py")
+    change: float = _of(10.0, "drag over the last one", "at most from part to part", "test_stabilised.py")
+    parts: int = _of(60, "parts", "of a step, tried", "test_large_sliding.py::test_too_much_ends_with_words")
+    slow: float = _of(1e-3, "of the largest force", "drag at which bodies are all but at rest", "test_stabilised.py")
+
+
+@dataclass(frozen=True)
+class StatusSettings:
+    """The search for the active set: when it is left to interior points."""
+
+    rows: int = _of(
+        8, "iterations", "in which a set should settle at its pace", "test_search.py::test_when_a_set_is_hopeless"
+    )
+    misled: float = _of(
+        0.25, "of the set", "that changes where it was foreseen wrongly", "test_search.py::test_foreseen_wrongly"
+    )
+    settling: float = _of(0.1, "of the set", "below which a foreseen set may settle yet", "test_search.py")
+    few: float = _of(0.02, "of the multipliers", "that may change for exact solutions to be tried", "test_search.py")
+
+
+@dataclass(frozen=True)
+class InteriorSettings:
+    """Interior points, and laws that begin soft."""
+
+    boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
+    central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
+    shorter: float = _of(0.8, "of a step", "tried where it would not", "test_search.py")
+    farther: float = _of(0.3, "of a step", "that a corrector aims to gain", "test_search.py")
+    worth: float = _of(0.1, "of that gain, of the product aimed at", "below which it is none", "test_search.py")
+    undecided: float = _of(0.4, "relative change", "from -1/2: neither closing nor opening", "test_search.py")
+    floor: float = _of(1e-14, "of the largest pressure squared", "mean product that is rounding", "test_search.py")
+    steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
+    fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")
+    met: float = _of(
+        0.01, "of the largest pressure", "violation of a softened law that is met", "test_smooth_friction_runs.py"
+    )
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All of them."""
+
+    newton: NewtonSettings = NewtonSettings()
+    accuracy: AccuracySettings = AccuracySettings()
+    steps: StepSettings = StepSettings()
+    holding: HoldingSettings = HoldingSettings()
+    drag: DragSettings = DragSettings()
+    status: StatusSettings = StatusSettings()
+    interior: InteriorSettings = InteriorSettings()
+
+
+DEFAULT = Settings()
