@@ -1,4 +1,4 @@
-"""Names that a deck defines twice: which definition counts, as runs of CalculiX 2.20 show. Members that a set names twice."""
+"""What a deck defines twice, and which definition counts, as runs of CalculiX 2.20 show; members that a set names twice."""
 
 from __future__ import annotations
 
@@ -48,12 +48,13 @@ def repeated_members(cards: Iterable[Card], mesh: MeshCards) -> list[str]:
     for card in cards:
         if card.key not in ("CLOAD", "DLOAD"):
             continue
-        names, what = (mesh.node_sets, "node") if card.key == "CLOAD" else (mesh.element_sets, "element")
+        sets, what = (mesh.node_sets, "node") if card.key == "CLOAD" else (mesh.element_sets, "element")
         for line in card.lines:
-            twice = names.repeated.get(line.text(0).upper(), ())
-            if len(twice) and line.text(1).upper() not in ("GRAV", "CENTRIF"):
-                result[line.text(0).upper()] = (
-                    f"{line.place}: {card.title}: set '{line.text(0)}' names {what} {twice[0]} more than once: the load acts on "
-                    "it once, as in Abaqus; CalculiX applies it each time"
+            name = line.text(0)
+            twice = [] if name.upper() not in sets.repeated else sets.repeated[name.upper()].tolist()
+            if twice and line.text(1).upper() not in ("GRAV", "CENTRIF"):
+                result[name.upper()] = (
+                    f"{line.place}: {card.title}: set '{name}' names {what} {twice[0]} more than once: the load acts on it "
+                    "once, as in Abaqus; CalculiX applies it each time"
                 )
     return list(result.values())
