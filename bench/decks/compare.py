@@ -1,7 +1,8 @@
 """abut and CalculiX on the same deck, node by node.
 
 python bench/decks/compare.py [NAME ...] [--folder FOLDER] [--small] prints a line for each contact deck of CalculiX's own
-tests (Debian: apt install calculix-ccx calculix-ccx-test). With --small displacements are small in both, else as the deck
+tests (Debian: apt install calculix-ccx calculix-ccx-test), or those named, which may also be of metal that yields or of
+rubber (the cards in ``MATERIALS``). With --small displacements are small in both, else as the deck
 says.
 """
 
@@ -26,6 +27,7 @@ from abut.io.deck import read_deck
 from abut.io.deck.time_histories import ends
 from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
+MATERIALS = ("PLASTIC", "HYPERELASTIC")
 AGREES = 0.01  # largest difference of displacement over the largest displacement
 # What abut may be told to ignore here, because the reference run leaves it out too.
 IGNORABLE = (
@@ -183,7 +185,7 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run of CalculiX")
     parser.add_argument("--small", action="store_true", help="small displacements, where the deck has NLGEOM, too")
     arguments = parser.parse_args()
-    found = decks(arguments.folder)
+    found = decks(arguments.folder, ("CONTACT PAIR", *(MATERIALS if arguments.names else ())))
     for name in arguments.names or found:
         print(line(compare(name, found[name], arguments.limit, not arguments.small)), flush=True)
 

@@ -59,11 +59,11 @@ class Reference:
     kind: str
 
 
-def decks(folder: Path = EXAMPLES) -> dict[str, Path]:
-    """Decks with a contact pair, by name."""
+def decks(folder: Path = EXAMPLES, having: Collection[str] = ("CONTACT PAIR",)) -> dict[str, Path]:
+    """Decks with one of these cards, by name."""
     found = {}
     for path in sorted([*folder.glob("*.inp"), *folder.glob("*.inp.gz")]):
-        if any(card.name == "CONTACT PAIR" for card in read(path)):
+        if any(card.name in having for card in read(path)):
             found[path.name.split(".")[0]] = path
     return found
 
@@ -161,7 +161,7 @@ def _split(cards: Sequence[Card]) -> tuple[list[Card], list[list[Card]]]:
 
 
 def _young(cards: Sequence[Card]) -> float:
-    return max(float(c.data[0].split(",")[0]) for c in cards if c.name == "ELASTIC")
+    return max((float(c.data[0].split(",")[0]) for c in cards if c.name == "ELASTIC"), default=1.0)
 
 
 def _size(cards: Sequence[Card]) -> float:

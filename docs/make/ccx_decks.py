@@ -1,7 +1,7 @@
 """abut beside CalculiX on the contact decks of CalculiX's own tests.
 
-python docs/make/ccx_decks.py [NAME ...] prints a line for each deck; with --page it writes the table of
-docs/verification/decks.md (all decks; about 12 minutes on one idle core). Needs CalculiX and its tests: apt install
+python docs/make/ccx_decks.py [NAME ...] prints a line for each deck; with --page it writes their rows in the table of
+docs/verification/decks.md (all decks: about 12 minutes on one idle core). Needs CalculiX and its tests: apt install
 calculix-ccx calculix-ccx-test.
 """
 
@@ -11,7 +11,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from page import DOCS, write_table
+from page import DOCS, read_table, write_table
 
 sys.path.insert(0, str(DOCS.parent / "bench" / "decks"))
 from compare import Outcome, compare, line
@@ -73,9 +73,16 @@ def main() -> None:
     count = sum(outcome.status == "agrees" for outcome in outcomes)
     print(f"{count} of {len(outcomes)} decks agree")
     if arguments.page:
-        write_table(PAGE, "decks", HEADER, [row(outcome) for outcome in outcomes])
-        counts = [[status, str(sum(outcome.status == status for outcome in outcomes))] for status in STATUSES]
-        write_table(PAGE, "counts", ["result", "decks"], counts)
+        renew({outcome.name: row(outcome) for outcome in outcomes})
+
+
+def renew(rows: dict[str, list[str]]) -> None:
+    """Put rows in place of those of the same decks, and count anew."""
+    kept = {line["deck"].strip("`"): list(line.values()) for line in read_table(PAGE, "decks")}
+    lines = [line for _, line in sorted((kept | rows).items())]
+    write_table(PAGE, "decks", HEADER, lines)
+    counts = [[status, str(sum(line[2] == status for line in lines))] for status in STATUSES]
+    write_table(PAGE, "counts", ["result", "decks"], counts)
 
 
 if __name__ == "__main__":

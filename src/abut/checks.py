@@ -106,3 +106,10 @@ def known(name: object, known: Iterable[str] | Mapping[str, object], where: str,
     """Raise InputError for a name that is not among the known ones, with the nearest."""
     if name not in known:
         raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")
+
+
+def listed(values: object, where: str) -> tuple[Any, ...]:
+    """A list of records as a tuple. Raises InputError for one record alone, a mapping, or text."""
+    if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
+        raise InputError(f"{where}: expected a list of records, in brackets [...], got {type(values).__name__}")
+    return tuple(values)

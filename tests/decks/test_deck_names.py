@@ -143,3 +143,17 @@ def test_rigid_bodies_that_are_a_part(what: str, tmp_path: Path) -> None:
     solution = abut.solve(job.model)
     middle = (solution.model.mesh.points == [0, 0, 1]).all(axis=1)
     assert solution.displacement[middle, 2] == pytest.approx(5.0 / E, rel=1e-9)
+
+
+def test_a_load_acts_once_on_a_member_that_its_set_names_twice(tmp_path: Path) -> None:
+    """As in Abaqus; CalculiX adds it each time, so a note says so. Gravity acts once in both."""
+    sets = "*NSET, NSET=DUP\n15, 15, 16\n*NSET, NSET=DUP\n16, 17, 18\n*ELSET, ELSET=DUP\n2, 2\n"
+    text = BRICKS + sets + PAIR + HELD
+    for card, line, total in (("*CLOAD", "DUP, 3, -2.5", 10.0), ("*DLOAD", "DUP, P2, 10.", 10.0)):
+        job = load(tmp_path, text + step(card, line))
+        (note,) = (note for note in job.notes if "more than once" in note)
+        assert f"{card}: set 'DUP' names {'node 15' if card == '*CLOAD' else 'element 2'}" in note
+        assert abut.solve(job.model).contacts[0].force[2] == pytest.approx(total, rel=1e-10)
+    assert not any(
+        "more than once" in note for note in load(tmp_path, text + step("*DLOAD", "DUP, GRAV, 1, 0,0,-1")).notes
+    )

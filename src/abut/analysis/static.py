@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from abut.analysis.run import Run
-from abut.errors import OutOfTime
+from abut.errors import InputError, OutOfTime
 from abut.model import Model
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.solution import Observer, OnStep, Saved, Solution
@@ -86,6 +86,8 @@ def solve(
     >>> all(check.passed for check in solution.certificate)
     True
     """
+    if not isinstance(model, Model):
+        raise InputError(f"solve: expected a model (abut.Model), got {type(model).__name__}")
     run = Run.of(model, observer or _silent, on_step or _silent, team, resume, settings)
     first = run.restore(resume)
     try:

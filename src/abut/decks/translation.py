@@ -12,7 +12,7 @@ from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.body_loads import body_loads
-from abut.decks.clearance import bilateral_note, gap_options
+from abut.decks.clearance import adjusted, bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
@@ -23,7 +23,6 @@ from abut.decks.rubber import of_rubber
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
-from abut.io.deck.adjust import distance
 from abut.io.deck.elements import FACES
 from abut.io.deck.groups import Groups, Piece, pieces
 from abut.io.deck.nodal_constraints import Bonds, bonds
@@ -253,18 +252,13 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
             slave, master = master, slave
             notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
         return Contact(contactor=slave, target=master, name=pair.name, kind="tied")
-    adjust = pair.adjust
-    if isinstance(adjust, np.ndarray):
-        adjust = distance(deck, groups, pair, adjust)
-        notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {adjust:.4g}")
-    if pair.clearance is not None:
-        adjust = float(np.ptp(deck.points, axis=0).max())
+    adjust = adjusted(deck, groups, pair, notes)
     gap = gap_options(deck, groups, pair, notes)
     if pair.bilateral:
-        notes.append(bilateral_note(deck, groups, pair, float(adjust)))
-        return Contact(slave, master, name=pair.name, kind="bilateral", adjust=float(adjust), **gap)
+        notes.append(bilateral_note(deck, groups, pair, adjust))
+        return Contact(slave, master, name=pair.name, kind="bilateral", adjust=adjust, **gap)
     rub = friction_options(deck, pair.friction)
-    return Contact(slave, master, name=pair.name, adjust=float(adjust), **gap, **rub)
+    return Contact(slave, master, name=pair.name, adjust=adjust, **gap, **rub)
 
 
 def _general(

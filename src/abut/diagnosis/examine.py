@@ -40,6 +40,8 @@ def check(model: Model) -> Report:
         ``findings``, the gravest first, each with severity, place, what it is and how to correct it; ``motions`` that
         supports leave free; ``status``, the exit status of `abut check`: 0 without errors.
     """
+    if not isinstance(model, Model):
+        raise InputError(f"check: expected a model (abut.Model), got {type(model).__name__}")
     findings, doubts = [*quality(model.mesh), *probes(model), *too_stiff(model)], units(model)
     shown: list[Motion] = []
     try:

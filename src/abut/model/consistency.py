@@ -14,6 +14,19 @@ from abut.model.conditions import COMPONENTS, TURNS, Equation, Rigid, Support
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 
 
+def check_filled(mesh: Mesh, named: Sequence[tuple[str, str | None]]) -> None:
+    """Raise InputError for surfaces without facets, and node sets without nodes: what is stated there would be lost.
+
+    named: where in the model, and the name."""
+    for where, name in named:
+        if not isinstance(name, str):
+            continue
+        if name in mesh.surfaces and not len(mesh.surfaces[name]):
+            raise InputError(f"{where}: surface '{name}' has no facets; fill it in the mesh, or take this entry out")
+        if name not in mesh.surfaces and name in mesh.node_sets and not len(mesh.node_sets[name]):
+            raise InputError(f"{where}: node set '{name}' has no nodes; fill it in the mesh, or take this entry out")
+
+
 def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
     """Raise InputError for places that do not exist, and components that do not."""
     for i, support in enumerate(supports):

@@ -31,7 +31,7 @@ from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Load
 from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
-from abut.model.consistency import check_equations, check_loads, check_rigid, check_supports
+from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
@@ -140,8 +140,9 @@ class Model:
             "couplings",
             "preloads",
         ):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+            object.__setattr__(self, name, checks.listed(getattr(self, name), name))
         check_entries(self.mesh)
+        check_filled(self.mesh, self._named())
         self._check_plane()
         self._cut()
         check_rigid(self.mesh, self.rigid)
@@ -287,6 +288,20 @@ class Model:
         mesh, preloads = cut_sections(self.mesh, self.preloads, sides, self.loads)
         object.__setattr__(self, "mesh", mesh)
         object.__setattr__(self, "preloads", preloads)
+
+    def _named(self) -> list[tuple[str, str | None]]:
+        """Places in the mesh that entries name, and where."""
+        lists = {
+            "supports": self.supports,
+            "loads": self.loads,
+            "couplings": self.couplings,
+            "rotations": self.rotations,
+        }
+        named = [(f"{kind}[{i}].on", entry.on) for kind, entries in lists.items() for i, entry in enumerate(entries)]
+        for i, contact in enumerate(self.contacts):
+            every = [name for side in contact.named for name in ([side] if isinstance(side, str) else side)]
+            named += [(f"contacts[{i}]", name) for name in every]
+        return named
 
     def _check_plane(self) -> None:
         if self.dim == 2:

@@ -153,10 +153,10 @@ def sides(card: Card, mesh: MeshCards) -> Iterator[tuple[Line, str, str]]:
         yield line, names[0], names[1]
 
 
-def _adjust(card: Card, mesh: MeshCards) -> float | str | Numbers:
+def _adjust(card: Card, mesh: MeshCards) -> float | Numbers | None:
     text = card.get("ADJUST")
     if text is None:
-        return 0.0
+        return None
     value = as_float(text)
     if value is not None:
         if value < 0.0:

@@ -21,11 +21,12 @@ MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which
 @dataclass
 class Names:
     """Sets by their name in any case; ``spelled`` keeps the first spelling, ``order`` the members of sets that are UNSORTED
-    in the order of the deck. Filled while the mesh cards are read."""
+    in the order of the deck, ``repeated`` those that a set names more than once. Filled while the mesh cards are read."""
 
     sets: dict[str, Numbers] = field(default_factory=dict)
     spelled: dict[str, str] = field(default_factory=dict)
     order: dict[str, Numbers] = field(default_factory=dict)
+    repeated: dict[str, Numbers] = field(default_factory=dict)
 
     def add(self, name: str, numbers: Numbers, unsorted: bool = False) -> None:
         upper = name.upper()
@@ -33,7 +34,9 @@ class Names:
         known = self.sets.get(upper, numbers[:0])
         if unsorted or upper in self.order:
             self.order[upper] = np.concatenate([self.order.get(upper, known), numbers])
-        self.sets[upper] = np.unique(np.concatenate([known, numbers]))
+        members, times = np.unique(np.concatenate([known, numbers]), return_counts=True)
+        self.sets[upper] = members
+        self.repeated[upper] = np.union1d(self.repeated.get(upper, known[:0]), members[times > 1])
 
     def by_name(self) -> dict[str, Numbers]:
         return {self.spelled[name]: numbers for name, numbers in self.sets.items()}
@@ -233,13 +236,13 @@ def _set(
             parts.append(np.arange(first, last + 1, step, dtype=np.int64))
             continue
         parts += [names.resolve(line, i, what, card.has("UNSORTED")) for i, text in enumerate(line.fields) if text]
-    return np.concatenate(parts) if card.has("UNSORTED") else np.unique(np.concatenate(parts))
+    return np.concatenate(parts)
 
 
 def _present(card: Card, what: str, numbers: Numbers, known: Collection[int], notes: list[str]) -> Numbers:
     """The members that exist. GENERATE may jump over gaps; others that are missing are noted, as CalculiX warns of them."""
     there = np.array([number in known for number in numbers.tolist()], dtype=bool)
-    missing = numbers[~there]
+    missing = np.unique(numbers[~there])
     if len(missing) and not card.has("GENERATE"):
         name = card.need("NSET" if what == "node" else "ELSET")
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""

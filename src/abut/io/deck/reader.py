@@ -23,7 +23,7 @@ from abut.io.deck.model_cards import (
 )
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
-from abut.io.deck.repeated import without_repeated
+from abut.io.deck.repeated import repeated_members, without_repeated
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
@@ -49,7 +49,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     history, known = with_interferences(
         steps(groups, mesh, known, reasons), groups, Scene(mesh, pair_list, known), reasons
     )
-    notes += friction_notes(cards)
+    notes += [*friction_notes(cards), *repeated_members(cards, mesh)]
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,

@@ -95,7 +95,7 @@ NO_FRICTION = Friction()
 
 @dataclass(frozen=True)
 class Pair:
-    """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, or node numbers;
+    """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, node numbers, or None;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
     tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
     overclosure, where that has numbers; bilateral: NO SEPARATION."""
@@ -105,7 +105,7 @@ class Pair:
     master: str
     tied: bool
     overclosure: str
-    adjust: float | str | Numbers
+    adjust: float | str | Numbers | None
     clearance: float | None
     place: Place
     friction: Friction = NO_FRICTION

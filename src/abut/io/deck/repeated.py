@@ -1,10 +1,11 @@
-"""Names that a deck defines twice: which definition counts, as runs of CalculiX 2.20 show."""
+"""What a deck defines twice, and which definition counts, as runs of CalculiX 2.20 show; members that a set names twice."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from abut.io.deck.cards import Card
+from abut.io.deck.mesh_cards import MeshCards
 
 # Of these the first counts, with the cards that follow it and belong to it
 FIRST = {
@@ -39,3 +40,21 @@ def without_repeated(cards: Sequence[Card], notes: list[str]) -> tuple[Card, ...
                     continue
         result.append(card)
     return tuple(result)
+
+
+def repeated_members(cards: Iterable[Card], mesh: MeshCards) -> list[str]:
+    """Notes on forces and pressures on sets that name a member more than once: CalculiX applies them as often."""
+    result = {}
+    for card in cards:
+        if card.key not in ("CLOAD", "DLOAD"):
+            continue
+        sets, what = (mesh.node_sets, "node") if card.key == "CLOAD" else (mesh.element_sets, "element")
+        for line in card.lines:
+            name = line.text(0)
+            twice = [] if name.upper() not in sets.repeated else sets.repeated[name.upper()].tolist()
+            if twice and line.text(1).upper() not in ("GRAV", "CENTRIF"):
+                result[name.upper()] = (
+                    f"{line.place}: {card.title}: set '{name}' names {what} {twice[0]} more than once: the load acts on it "
+                    "once, as in Abaqus; CalculiX applies it each time"
+                )
+    return list(result.values())
