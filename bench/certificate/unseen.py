@@ -3,7 +3,8 @@
 python bench/certificate/unseen.py [NAME ...]; needs gmsh, which a `bench` install brings. A wavy surface pressed flat
 (Westergaard; metres and pascals), a roller of unstructured triangles on another metal (inches and psi), a heated shaft of
 unstructured triangles in a hub of bricks' sections, crossed cylinders, a ball of unstructured tetrahedra on a finer and much
-stiffer block, a cone (Sneddon).
+stiffer block, a cone (Sneddon); a steel shaft in a soft hub three times as coarse (inches), a thin sleeve, a disc that
+spins, a ball fitted in a hollow one (unstructured tetrahedra of both orders), a polymer ball of unstructured triangles.
 """
 
 from __future__ import annotations
@@ -31,10 +32,11 @@ def star(*materials: abut.LinearElastic) -> float:
     return 1.0 / sum((1.0 - m.poisson**2) / m.young for m in materials)
 
 
-def hertz(load: float, a: float, dim: int) -> Callable[[Array], Array]:
-    """dim: 2 for a line, 3 for a round contact."""
+def hertz(load: float, a: float, dim: int, across: int = 0) -> Callable[[Array], Array]:
+    """dim: 2 for a line, 3 for a round contact; across: coordinates along the surface, one fewer by default."""
+    across = across or dim - 1
     top = 2.0 * load / (np.pi * a) if dim == 2 else 1.5 * load / (np.pi * a**2)
-    return lambda x: top * np.sqrt(np.maximum(0.0, 1.0 - (x[:, : dim - 1] ** 2).sum(axis=1) / a**2))
+    return lambda x: top * np.sqrt(np.maximum(0.0, 1.0 - (x[:, :across] ** 2).sum(axis=1) / a**2))
 
 
 def within(a: float, dim: int) -> Callable[[Array], NDArray[np.bool_]]:
@@ -89,7 +91,9 @@ def meshed(build: Callable[[], None], size: Callable[..., float], order: int, di
         return abut.Mesh.read(path)
 
 
-def sector(radius: float, centre: float, start: float, end: float, size: Callable[..., float]) -> abut.Mesh:
+def sector(
+    radius: float, centre: float, start: float, end: float, size: Callable[..., float], order: int = 1
+) -> abut.Mesh:
     """Of a disc about (0, centre), angles in degrees; surfaces round, start, end."""
 
     def build() -> None:
@@ -104,7 +108,7 @@ def sector(radius: float, centre: float, start: float, end: float, size: Callabl
         for line, name in zip(lines, ("start", "round", "end")):
             gmsh.model.addPhysicalGroup(1, [line], name=name)
 
-    return meshed(build, size, 1, 2)
+    return meshed(build, size, order, 2)
 
 
 def roller() -> Case:
@@ -233,7 +237,136 @@ def cone() -> Case:
     )  # fmt: skip
 
 
-MODELS = {"wavy": wavy, "roller": roller, "shaft": shaft, "crossed": crossed, "tetrahedra": tetrahedra, "cone": cone}
+def lame(own: abut.LinearElastic, other: abut.LinearElastic, radii: tuple[float, float, float], plane: str) -> float:
+    """Interference over pressure of a ring (own, from the first radius to the second) in another one."""
+    a, r, b = radii
+    give = 0.0
+    for m, sign, wall in ((own, -1.0, (r**2 + a**2) / (r**2 - a**2)), (other, 1.0, (b**2 + r**2) / (b**2 - r**2))):
+        young, nu = (
+            (m.young, m.poisson) if plane == "stress" else (m.young / (1 - m.poisson**2), m.poisson / (1 - m.poisson))
+        )
+        give += r / young * (wall + sign * nu)
+    return give
+
+
+def fitted(
+    name: str, parts: dict[str, abut.Mesh], materials: tuple[abut.LinearElastic, abut.LinearElastic],
+    interference: float, pressure: float, order: int, **options: object,
+) -> Case:  # fmt: skip
+    """A quarter of two rings; parts: the inner one first; options: of the model."""
+    inner, outer = parts
+
+    def model() -> abut.Model:
+        held = [abut.Support(f"{part}.{end}", normal=0) for part in parts for end in ("start", "end")]
+        contact = abut.Contact(f"{outer}.inner", f"{inner}.outer", offset=-interference)
+        solids = [abut.Solid(part, m) for part, m in zip(parts, materials)]
+        return abut.Model(join(parts), solids, held, contacts=[contact], **options)
+
+    return Case(name, order, model, lambda x: np.full(len(x), pressure), everywhere)
+
+
+def soft_hub() -> Case:
+    """Steel in a plastic 30 times as soft, inches and psi; the shaft three times as fine."""
+    steel, soft, radii = abut.LinearElastic(30e6, 0.29), abut.LinearElastic(1e6, 0.35), (0.5, 1.0, 2.0)
+    parts = {"shaft": ring(radii[:2], cells=(9, 18), cell="tri3"), "hub": ring(radii[1:], cells=(4, 6), cell="quad4")}
+    p = 0.002 / lame(steel, soft, radii, "strain")
+    return fitted(
+        "steel shaft tri3 18 in a soft hub quad4 6, inches", parts, (steel, soft), 0.002, p, 1, plane="strain"
+    )
+
+
+def sleeve() -> Case:
+    """A thin steel sleeve (R 50 to 50.8) shrunk on an aluminium tube, plane stress; the sleeve is named first."""
+    alloy, steel, radii = abut.LinearElastic(70e3, 0.33), abut.LinearElastic(210e3, 0.3), (30.0, 50.0, 50.8)
+    parts = {
+        "tube": ring(radii[:2], cells=(6, 17), cell="quad4"),
+        "sleeve": ring(radii[1:], cells=(1, 11), cell="quad8"),
+    }
+    p = 0.04 / lame(alloy, steel, radii, "stress")
+    return fitted("thin sleeve quad8 11 on a tube quad4 17", parts, (alloy, steel), 0.04, p, 2, plane="stress")
+
+
+def spinning() -> Case:
+    """A steel disc on a sleeve of steel, 1000 radians a second, plane stress: Lame less what rotation opens; mm, t, s."""
+    steel, (a, r, b), speed = abut.LinearElastic(210e3, 0.3, density=7.85e-9), (20.0, 40.0, 100.0), 1000.0
+    unit = steel.density * speed**2 * r / (4.0 * steel.young)
+    opened = unit * (3.0 + steel.poisson) * (b**2 - a**2)
+    p = (0.04 - opened) / lame(steel, steel, (a, r, b), "stress")
+    parts = {"sleeve": ring((a, r), cells=(5, 9), cell="tri6"), "disc": ring((r, b), cells=(12, 22), cell="quad4")}
+    options = {"plane": "stress", "loads": [abut.Centrifugal(speed)]}
+    return fitted("spinning disc quad4 22 on a sleeve tri6 9", parts, (steel, steel), 0.04, p, 1, **options)
+
+
+def shell(radii: tuple[float, float], size: float, order: int) -> abut.Mesh:
+    """An octant of a (hollow) ball of unstructured tetrahedra; surfaces x0, y0, z0, inner, outer."""
+
+    def build() -> None:
+        occ = gmsh.model.occ
+        solid = occ.addSphere(0, 0, 0, radii[1], -1, 0, np.pi / 2, np.pi / 2)
+        if radii[0] > 0.0:
+            occ.cut([(3, solid)], [(3, occ.addSphere(0, 0, 0, radii[0], -1, 0, np.pi / 2, np.pi / 2))])
+        occ.synchronize()
+        gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], name="body")
+        for _, tag in gmsh.model.getEntities(2):
+            flat = np.abs(gmsh.model.occ.getCenterOfMass(2, tag)) < 1e-6 * radii[1]
+            reach = gmsh.model.getBoundingBox(2, tag)[3]
+            inside = radii[0] > 0.0 and abs(reach - radii[0]) < 1e-3 * radii[0]
+            name = f"{'xyz'[flat.argmax()]}0" if flat.any() else "inner" if inside else "outer"
+            gmsh.model.addPhysicalGroup(2, [tag], name=name)
+
+    return meshed(build, lambda *_: size, order, 3)
+
+
+def sphere() -> Case:
+    """A ball of brass in a hollow ball of steel, with an interference: Lame's spheres."""
+    brass, steel, (r, b), interference = (
+        abut.LinearElastic(100e3, 0.34),
+        abut.LinearElastic(210e3, 0.3),
+        (10.0, 16.0),
+        0.02,
+    )
+    give = (1 - 2 * brass.poisson) / brass.young * r
+    hollow = (1 - 2 * steel.poisson) * r**3 + 0.5 * (1 + steel.poisson) * b**3
+    give += r / steel.young * hollow / (b**3 - r**3)
+
+    def model() -> abut.Model:
+        parts = {"ball": shell((0.0, r), 1.5, 1), "shell": shell((r, b), 2.5, 2)}
+        held = [abut.Support(f"{part}.{s}", **{s[0]: 0}) for part in parts for s in ("x0", "y0", "z0")]
+        return abut.Model(
+            join(parts), [abut.Solid("ball", brass), abut.Solid("shell", steel)], held,
+            contacts=[abut.Contact("shell.inner", "ball.outer", offset=-interference)],
+        )  # fmt: skip
+
+    p = interference / give
+    return Case("ball tet4 in a hollow ball tet10, unstructured", 1, model, lambda x: np.full(len(x), p), everywhere)
+
+
+def polymer() -> Case:
+    """A polymer ball of unstructured tri6 on a coarser steel plate, axisymmetric, metres."""
+    soft, steel, radius, a = abut.LinearElastic(3e9, 0.38), abut.LinearElastic(200e9, 0.3), 0.05, 0.002
+    force = 4.0 / 3.0 * star(soft, steel) * a**3 / radius
+
+    def model() -> abut.Model:
+        def size(dim: int, tag: int, x: float, y: float, z: float, lc: float) -> float:
+            return a / 6.0 * max(1.0, (np.hypot(x, y) / a - 1.0) * 0.7)
+
+        lines = np.concatenate([np.linspace(0.0, 1.5 * a, 8), 1.5 * a + np.cumsum(0.35 * a * 1.35 ** np.arange(13))])
+        parts = {
+            "ball": sector(radius, radius, -90.0, 0.0, size, 2),
+            "plate": grid([lines, -lines[::-1]], "quad9"),
+        }
+        return abut.Model(
+            join(parts), [abut.Solid("ball", soft), abut.Solid("plate", steel)], [abut.Support("plate.bottom", x=0, y=0)],
+            [abut.Force("ball.end", (0.0, -force))], [abut.Contact("plate.top", "ball.round")], plane="axisymmetric",
+        )  # fmt: skip
+
+    return Case("polymer ball, unstructured tri6 on quad9, m", 2, model, hertz(force, a, 3, across=1), within(a, 2))
+
+
+MODELS = {
+    "wavy": wavy, "roller": roller, "shaft": shaft, "crossed": crossed, "tetrahedra": tetrahedra, "cone": cone,
+    "soft-hub": soft_hub, "sleeve": sleeve, "spinning": spinning, "sphere": sphere, "polymer": polymer,
+}  # fmt: skip
 
 
 def main() -> None:

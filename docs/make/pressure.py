@@ -1,8 +1,11 @@
-"""Tables and picture of docs/verification/pressure.md: python docs/make/pressure.py (a few minutes, after benchmarks.py)."""
+"""Tables and picture of docs/verification/pressure.md: python docs/make/pressure.py [TABLE ...], by default all of them (a
+quarter of an hour, after benchmarks.py)."""
 
 from __future__ import annotations
 
+import argparse
 import sys
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,26 +225,39 @@ def picture() -> None:
     save(figure, "pressure-ball.svg")
 
 
+BODIES = ("ball", "block")
+BENT_CELLS = (
+    "quad4", "tri3", "quad8", "quad9", "tri6", "hex8", "tet4", "wedge6", "hex20", "hex27", "tet10", "wedge15",
+)  # fmt: skip
+TABLES: dict[str, Callable[[], tuple[list[str], list[list[str]]]]] = {
+    "line": lambda: (LINE_HEADER, [line_row(cell, n, s) for cell in LINE_CELLS for n in LINE_SIZES for s in spaces(cell)]),
+    "places": lambda: (PLACES_HEADER, [places_row(cell, space) for cell in LINE_CELLS for space in spaces(cell)]),
+    "ball": lambda: (BALL_HEADER, [ball_row(c, side, s) for c in SOLID_CELLS for side in BODIES for s in spaces(c)]),
+    "mean": lambda: (MEAN_HEADER, [mean_row(cell, side) for cell in MEAN_SIZES for side in BODIES]),
+    "pole": lambda: (["cells over 1.1", *map(str, POLE_SIZES)], [pole_row()]),
+    "axis": lambda: (
+        AXIS_HEADER,
+        [axis_row(c, n, s) for c in ("tri3", "quad4", "tri6", "quad8") for n in (10, 24) for s in ("P1", AUTO)],
+    ),
+    "square": lambda: (["pressure", *map(str, PARTS)], [square_row(space) for space in ("P1", "dual", AUTO)]),
+    "flat": lambda: (
+        FLAT_HEADER, [flat_row(c, side, s) for c in LINE_CELLS for side in ("block", "punch") for s in spaces(c)]
+    ),
+    "bent": lambda: (BENT_HEADER, [bent_row(cell) for cell in BENT_CELLS]),
+    "rim": lambda: (["facets", *map(str, RIM_SIZES)], [rim_row()]),
+    "rates": lambda: (RATE_HEADER, rate_rows()),
+}  # fmt: skip
+
+
 def main() -> None:
-    rows = [line_row(cell, n, space) for cell in LINE_CELLS for n in LINE_SIZES for space in spaces(cell)]
-    write_table(PAGE, "line", LINE_HEADER, rows)
-    rows = [places_row(cell, space) for cell in LINE_CELLS for space in spaces(cell)]
-    write_table(PAGE, "places", PLACES_HEADER, rows)
-    rows = [ball_row(cell, side, s) for cell in SOLID_CELLS for side in ("ball", "block") for s in spaces(cell)]
-    write_table(PAGE, "ball", BALL_HEADER, rows)
-    rows = [mean_row(cell, side) for cell in MEAN_SIZES for side in ("ball", "block")]
-    write_table(PAGE, "mean", MEAN_HEADER, rows)
-    write_table(PAGE, "pole", ["cells over 1.1", *map(str, POLE_SIZES)], [pole_row()])
-    rows = [axis_row(c, n, s) for c in ("tri3", "quad4", "tri6", "quad8") for n in (10, 24) for s in ("P1", AUTO)]
-    write_table(PAGE, "axis", AXIS_HEADER, rows)
-    write_table(PAGE, "square", ["pressure", *map(str, PARTS)], [square_row(space) for space in ("P1", "dual", AUTO)])
-    rows = [flat_row(cell, side, s) for cell in LINE_CELLS for side in ("block", "punch") for s in spaces(cell)]
-    write_table(PAGE, "flat", FLAT_HEADER, rows)
-    write_table(PAGE, "bent", BENT_HEADER, [bent_row(cell) for cell in ("quad4", "tri3", "quad8", "quad9", "tri6",
-        "hex8", "tet4", "wedge6", "hex20", "hex27", "tet10", "wedge15")])  # fmt: skip
-    write_table(PAGE, "rim", ["facets", *map(str, RIM_SIZES)], [rim_row()])
-    write_table(PAGE, "rates", RATE_HEADER, rate_rows())
-    picture()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", choices=[*TABLES, "picture", []], metavar="TABLE")
+    asked = parser.parse_args().tables or [*TABLES, "picture"]
+    for name in asked:
+        if name == "picture":
+            picture()
+        else:
+            write_table(PAGE, name, *TABLES[name]())
 
 
 if __name__ == "__main__":
