@@ -21,6 +21,8 @@ from abut.benchmarks import (
     friction_balls,
     friction_statics,
     hertz,
+    incompressible,
+    onset,
     patch,
     plastic,
     punches,
@@ -53,6 +55,8 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_wires.BENCHMARKS,
         *finite_capstan.BENCHMARKS,
         *plastic.BENCHMARKS,
+        *onset.BENCHMARKS,
+        *incompressible.BENCHMARKS,
         *finite_edges.BENCHMARKS,
         *finite_stacks.BENCHMARKS,
     )
