@@ -72,7 +72,7 @@ public:
     functions.project(growth.data(), volume.data(), 1, factors.data(), pressure.data());
   }
 
-  // Theory (D20).
+  // Adds the forces of theory (D20).
   void add_force(std::size_t q, const double *stress, double *force) const {
     const double square = points[q].scale * points[q].scale;
     const double swell = pressure[q] * points[q].det - mean_stress[q];
@@ -90,7 +90,7 @@ public:
 
   bool symmetric() const { return true; }
 
-  // Theory (D21).
+  // Adds the stiffness of theory (D21).
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     const double w = volume[q], square = points[q].scale * points[q].scale, t = 3 * mean_stress[q];
     const double whole = pressure[q] * points[q].det, turn = whole - mean_stress[q];
